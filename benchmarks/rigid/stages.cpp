@@ -58,7 +58,7 @@ int run(const std::string& name, double rate) {
   const auto clock = std::make_shared<vp::StageClock>(now_ns);
   world->world().observe_stages(clock);
   using C = vp::StepCounters;
-  std::array sums{Sum{"pairs", &C::pairs},         Sum{"looked at", &C::looked_at},
+  std::array sums{Sum{"pairs", &C::pairs},         Sum{"narrow phase", &C::narrow_phase_pairs},
                   Sum{"manifolds", &C::manifolds}, Sum{"recycled", &C::recycled},
                   Sum{"contacts", &C::contacts},   Sum{"colours", &C::colours},
                   Sum{"regions", &C::regions},     Sum{"impacts", &C::impacts},

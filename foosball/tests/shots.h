@@ -139,7 +139,7 @@ class ShotGallery {
         ++(contact.other.what == Tag::What::man ? report_.man_hits : report_.table_hits);
       }
       report_.held_steps += world_.status().impact_limit ? 1 : 0;
-      report_.held_seconds += world_.status().time_held;
+      report_.held_seconds += world_.status().time_lost;
       const vp::Vec3 to = world_.ball().pose.position();
       judge_men(from, to);
       if (!judge_table(to)) break;

@@ -34,7 +34,7 @@ endif()
 if(TARGET vphysics_tbb)
   vphysics_install(vphysics_tbb tbb VirtualPhysicsTbbTargets)
 else()
-  list(APPEND without PATTERN tbb_jobs.h EXCLUDE)
+  list(APPEND without PATTERN tbb_task_scheduler.h EXCLUDE)
 endif()
 install(DIRECTORY include/vphysics DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} ${without})
 

@@ -11,7 +11,7 @@
 
 namespace {
 
-constexpr std::size_t kWord = sizeof(std::uint32_t);
+constexpr std::size_t kU32Size = sizeof(std::uint32_t);
 
 // A recording of each kind of call.
 std::vector<std::byte> good_recording() {
@@ -51,7 +51,7 @@ std::vector<std::byte> good_recording() {
   (void)world.set_joint_state(arm, 1, 0, 0.2, 0.1);
   (void)world.set_drive(arm, 0, 1, {0, 1, 0, 10, 5});
   (void)world.set_drive(hinge, {0.5, 0, 10, 1, 5});
-  (void)world.set_drive(six, JointAxis::turn_z, {0.5, 0, 10, 1, 5});
+  (void)world.set_drive(six, JointAxis::rotation_z, {0.5, 0, 10, 1, 5});
   (void)world.step(0.01);
   (void)world.apply_impulse(bodies[0], {1, 0, 0}, {0, 0, 0});
   (void)world.set_pose(bodies[1], SE3(Vec3{0, 1, 0.2}));
@@ -77,27 +77,27 @@ std::vector<std::byte> good_recording() {
   return recorder->take();
 }
 
-std::uint32_t word_at(const std::vector<std::byte>& bytes, std::size_t at) {
+std::uint32_t u32_at(const std::vector<std::byte>& bytes, std::size_t at) {
   std::uint32_t word = 0;
-  std::memcpy(&word, &bytes[at], kWord);
+  std::memcpy(&word, &bytes[at], kU32Size);
   return word;
 }
 
 void repair_check(std::vector<std::byte>& bytes, std::size_t begin, std::size_t end) {
   const std::uint32_t check =
       vp::recording::check_of(std::span<const std::byte>(bytes).subspan(begin, end - begin));
-  std::memcpy(&bytes[end], &check, kWord);
+  std::memcpy(&bytes[end], &check, kU32Size);
 }
 
 // header: where that of the good recording ends.
 void repair_checks(std::vector<std::byte>& bytes, std::size_t header) {
-  if (bytes.size() < header + kWord) return;
+  if (bytes.size() < header + kU32Size) return;
   repair_check(bytes, 0, header);
-  for (std::size_t at = header + kWord; at + 2 * kWord <= bytes.size();) {
-    const std::size_t length = word_at(bytes, at);
-    if (length > bytes.size() - at - 2 * kWord) return;
-    repair_check(bytes, at, at + kWord + length);
-    at += 2 * kWord + length;
+  for (std::size_t at = header + kU32Size; at + 2 * kU32Size <= bytes.size();) {
+    const std::size_t length = u32_at(bytes, at);
+    if (length > bytes.size() - at - 2 * kU32Size) return;
+    repair_check(bytes, at, at + kU32Size + length);
+    at += 2 * kU32Size + length;
   }
 }
 

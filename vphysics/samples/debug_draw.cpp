@@ -14,12 +14,12 @@ class Svg : public vp::DebugDraw {
  public:
   double upwards = 0.0;  // sum of the impulses' lines [m]
 
-  void line(const vp::Vec3& from, const vp::Vec3& to, vp::DebugMark mark) override {
+  void line(const vp::Vec3& from, const vp::Vec3& to, vp::DebugCategory mark) override {
     std::printf("<path d='M%.4f %.4f L%.4f %.4f' stroke='#%06x' stroke-width='0.01'/>\n", from.x,
                 -from.z, to.x, -to.z, vp::usual_colour(mark));
-    if (mark == vp::DebugMark::impulse) upwards += to.z - from.z;
+    if (mark == vp::DebugCategory::impulse) upwards += to.z - from.z;
   }
-  void point(const vp::Vec3& at, vp::DebugMark mark) override {
+  void point(const vp::Vec3& at, vp::DebugCategory mark) override {
     std::printf("<circle cx='%.4f' cy='%.4f' r='0.02' fill='#%06x'/>\n", at.x, -at.z,
                 vp::usual_colour(mark));
   }

@@ -60,7 +60,7 @@ int main() {
   double wrong = 0.0;
   for (int degrees = 0; degrees <= 360; degrees += 10) {
     q[0] = degrees * vp::kPi / 180;
-    vp::ClosingOptions options;
+    vp::ClosureOptions options;
     options.held = held;
     if (const auto closed = vp::close_loops(*model, data, q, options); !closed) {
       std::printf("%s\n", closed.error().message.c_str());

@@ -487,8 +487,8 @@ TEST(PairFinder, AllocatesNothingOnceWarm) {
   struct Words {
     std::vector<std::uint64_t> words;
     std::size_t at = 0;
-    void word(std::uint64_t w) { words.push_back(w); }
-    std::uint64_t word() { return words[at++]; }
+    void u64(std::uint64_t w) { words.push_back(w); }
+    std::uint64_t u64() { return words[at++]; }
     void check(bool condition) { EXPECT_TRUE(condition); }
     bool ok() const { return true; }
   } words;

@@ -79,8 +79,8 @@ TEST(Drive, AnyStiffnessIsStable) {
   }
 }
 
-// Held against a wall, a motor presses with k (target - q), no more and no less: seen as the
-// impulse of the contact.
+// SlotImpulses against a wall, a motor presses with k (target - q), no more and no less: seen as
+// the impulse of the contact.
 TEST(Drive, PressesWithItsSpringForce) {
   OneJoint j = make_joint(link_of(PrismaticJoint{}));
   ColliderDesc box;

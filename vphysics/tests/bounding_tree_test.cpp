@@ -18,7 +18,7 @@ using Effort = BoundingTree::Effort;
 using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
 FloatBounds box_at(const Vec3& centre, const Vec3& half) {
-  return collide::rounded_outwards({centre - half, centre + half});
+  return collide::rounded_outward({centre - half, centre + half});
 }
 FloatBounds random_box(Random& random, double world, double size) {
   const Vec3 centre = random.in_cube(world);

@@ -55,7 +55,7 @@ TEST_P(EveryPairsDistance, IsAsFarApartAsItsNormalProvesAndNoDirectionTellsMore)
     const ClosestPoints c = closest(a, Ta, b, Tb);
     ASSERT_NEAR(norm(c.normal), 1.0, 1e-14);
     // From below. Measured: 6e-11 at worst, of two cylinders.
-    ASSERT_NEAR(gap_along(a.geometry, Ta, b.geometry, Tb, c.normal), c.distance, 1e-9) << i;
+    ASSERT_NEAR(separation_along(a.geometry, Ta, b.geometry, Tb, c.normal), c.distance, 1e-9) << i;
     // From above. Measured: 8e-10 at worst, of a box and a cone.
     ASSERT_LT(sampled_separation(random, a.geometry, Ta, b.geometry, Tb), c.distance + kNear) << i;
     ASSERT_LT(norm(c.on_b - c.on_a - c.distance * c.normal), 1e-8) << i;
@@ -286,7 +286,7 @@ TEST(ClosestPoints, OfShapesInSymmetricPositionsAreProvenToo) {
             const SE3 Tb(Exp(w), p);
             const ClosestPoints c = closest(a, SE3{}, b, Tb);
             ASSERT_NEAR(norm(c.normal), 1.0, 1e-14);
-            const double gap = gap_along(a.geometry, SE3{}, b.geometry, Tb, c.normal);
+            const double gap = separation_along(a.geometry, SE3{}, b.geometry, Tb, c.normal);
             ASSERT_NEAR(gap, c.distance, kNear)
                 << a.shape.index() << ' ' << b.shape.index() << ' ' << p.x << p.y << p.z << turn;
             // The axes of both, and between the middles: none may tell more.
@@ -294,7 +294,8 @@ TEST(ClosestPoints, OfShapesInSymmetricPositionsAreProvenToo) {
               Vec3 n;
               n[k] = 1.0;
               for (const Vec3& m : {n, -n, Tb.rotate(n), -Tb.rotate(n)}) {
-                EXPECT_LE(gap_along(a.geometry, SE3{}, b.geometry, Tb, m), c.distance + kNear)
+                EXPECT_LE(separation_along(a.geometry, SE3{}, b.geometry, Tb, m),
+                          c.distance + kNear)
                     << a.shape.index() << b.shape.index() << " at " << p.x << p.y << p.z
                     << " turned " << turn << " about " << axis;
               }

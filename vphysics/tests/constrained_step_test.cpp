@@ -38,7 +38,7 @@ struct OneSlide {
   void step(double h = kH) {
     const auto done = constrained_step(model, data, q, v, tau, motors, {.gravity = {}}, h);
     ASSERT_TRUE(done) << done.error().message;
-    ASSERT_TRUE(done->settled);
+    ASSERT_TRUE(done->converged);
   }
 };
 
@@ -48,7 +48,7 @@ TEST(DryFriction, SticksBelowItsBoundAndSlidesAboveIt) {
   for (int i = 0; i < 1000; ++i) stuck.step();
   EXPECT_EQ(stuck.v[0], 0.0);
   EXPECT_EQ(stuck.q[0], 0.0);  // no creep at all
-  EXPECT_NEAR(law_forces(stuck.data)[0], -4.99, 1e-12);
+  EXPECT_NEAR(force_law_forces(stuck.data)[0], -4.99, 1e-12);
 
   OneSlide slides({.friction = 5.0});
   slides.tau[0] = 6.0;
@@ -101,7 +101,7 @@ TEST(Stop, IsMetWithoutBounceAndCarriesTheWeight) {
     met = met || (q[0] == 0.7 && v[0] == 0.0);
   }
   EXPECT_TRUE(met);
-  EXPECT_NEAR(law_forces(data)[0], -1.5 * 9.81 * 0.4 * std::cos(0.7), 1e-10);
+  EXPECT_NEAR(force_law_forces(data)[0], -1.5 * 9.81 * 0.4 * std::cos(0.7), 1e-10);
 }
 
 TEST(Stop, LeadsBackWhatBeganBeyondItWithoutThrowingIt) {
@@ -308,8 +308,8 @@ TEST(ConstrainedStep, ObeysEveryLawOfATree) {
     const Numbers q = s.q, v = s.v;
     const auto done = constrained_step(model, data, s.q, s.v, s.tau, motors, {}, kH);
     ASSERT_TRUE(done) << done.error().message;
-    ASSERT_TRUE(done->settled);
-    rounds = std::max(rounds, done->rounds);
+    ASSERT_TRUE(done->converged);
+    rounds = std::max(rounds, done->iterations);
     // M (v+ - v) / h + h(q, v) = tau + what the laws did; viscous damping is one of the laws.
     Numbers a(n), force(n);
     for (std::size_t i = 0; i < n; ++i) a[i] = (s.v[i] - v[i]) / kH;
@@ -334,7 +334,7 @@ TEST(ConstrainedStep, ObeysEveryLawOfATree) {
         at_stop += range.most == kNever || range.least == -kNever;
         cut_off += std::fabs(motor_forces(data)[i]) >= motor.max_force * (1 - 1e-12) &&
                    motor.max_force > 0.0;
-        EXPECT_NEAR(law_forces(data)[i], did, 1e-9 * scale);
+        EXPECT_NEAR(force_law_forces(data)[i], did, 1e-9 * scale);
       }
     }
   }
@@ -379,9 +379,9 @@ TEST(ConstrainedStep, SettlesWhateverTheLaws) {
     for (int i = 0; i < 10; ++i) {
       const auto done = constrained_step(model, data, q, v, tau, motors, {}, 0.01);
       ASSERT_TRUE(done) << done.error().message;
-      ASSERT_TRUE(done->settled) << round << ' ' << i << ' ' << done->rounds;
-      most = std::max(most, done->rounds);
-      sum += done->rounds;
+      ASSERT_TRUE(done->converged) << round << ' ' << i << ' ' << done->iterations;
+      most = std::max(most, done->iterations);
+      sum += done->iterations;
     }
   }
   std::printf("%.1f rounds, %d at most\n", sum / 600.0, most);  // 4.6 and 41; 48 among 9000
@@ -428,7 +428,7 @@ TEST(ConstrainedStep, FrictionHoldsALinkageBelowItsBoundOnly) {
   for (int i = 0; i < 1000; ++i) held.step();
   EXPECT_EQ(held.q[0], 0.5);
   EXPECT_NEAR(held.q[1], -0.5, 1e-12);
-  EXPECT_NEAR(law_forces(held.data)[0], -held.weight_moment(), 1e-9);
+  EXPECT_NEAR(force_law_forces(held.data)[0], -held.weight_moment(), 1e-9);
 
   Swing slips({.friction = 5.0});
   const double expected = (slips.weight_moment() + 5.0) / slips.inertia() * kH;
@@ -445,7 +445,7 @@ TEST(ConstrainedStep, StopsAndLocksHoldALinkageInMotion) {
   EXPECT_EQ(swing.q[0], -0.4);
   EXPECT_NEAR(swing.q[2], -0.4, 1e-11);
   for (const double x : swing.v) EXPECT_NEAR(x, 0.0, 1e-12);
-  EXPECT_NEAR(law_forces(swing.data)[0], -swing.weight_moment(), 1e-9);
+  EXPECT_NEAR(force_law_forces(swing.data)[0], -swing.weight_moment(), 1e-9);
 
   Swing locked({.friction = kNever});
   locked.v = {4.0, -4.0, 4.0};

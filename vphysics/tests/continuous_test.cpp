@@ -70,7 +70,7 @@ TEST(Continuous, SpinningRodsNeverPassAThinWall) {
 // Plates of 2 mm that fly at one another at 25 m/s each, turning: one is continuous.
 TEST(Continuous, PlatesThatFlyAtOneAnotherMeet) {
   Random random(802);
-  int turned_back = 0;
+  int rotated_back = 0;
   for (int i = 0; i < 40; ++i) {
     World world({.gravity = {}});
     const auto add_plate = [&](double side) {
@@ -96,9 +96,9 @@ TEST(Continuous, PlatesThatFlyAtOneAnotherMeet) {
       ASSERT_LT(world.pose(left).position().x, world.pose(right).position().x) << i;
     }
     EXPECT_LT(norm(momentum() - before), 1e-9 * inertia.mass() * 25.0);
-    turned_back += world.pose(left).rotate(world.velocity(left).v).x < 10.0 ? 1 : 0;
+    rotated_back += world.pose(left).rotate(world.velocity(left).v).x < 10.0 ? 1 : 0;
   }
-  EXPECT_EQ(turned_back, 40);
+  EXPECT_EQ(rotated_back, 40);
 }
 
 // What comes to rest stays, as deep as the slop allows.
@@ -288,7 +288,7 @@ TEST(Continuous, ThrownCompoundsStayInARoomOfThinWalls) {
     for (int k = 0; k < 150; ++k) {
       const StepStatus status = must(world.step(0.002));
       ASSERT_FALSE(status.non_finite);
-      held += status.time_held;
+      held += status.time_lost;
       for (const ContactEvent& e : world.contact_events()) {
         hits += e.kind == ContactEvent::Kind::hit ? 1 : 0;
       }

@@ -87,7 +87,7 @@ TEST_P(EveryPairsManifold, TouchesAsDeepAsItIs) {
     ASSERT_LE(c.distance, margin + 1e-9) << i;
     ASSERT_NEAR(deepest(m), c.distance, behind) << i;
     ASSERT_NEAR(norm(m.normal), 1.0, 1e-12);
-    ASSERT_GT(gap_along(a.geometry, Ta, b.geometry, Tb, m.normal), c.distance - behind) << i;
+    ASSERT_GT(separation_along(a.geometry, Ta, b.geometry, Tb, m.normal), c.distance - behind) << i;
     std::set<std::uint32_t> names;
     for (int k = 0; k < m.count; ++k) {
       const auto& p = m.points[k];

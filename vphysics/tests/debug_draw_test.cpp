@@ -17,12 +17,12 @@ using test::must;
 
 struct Line {
   Vec3 from, to;
-  DebugMark mark;
+  DebugCategory mark;
   bool operator==(const Line&) const = default;
 };
 struct Point {
   Vec3 at;
-  DebugMark mark;
+  DebugCategory mark;
   bool operator==(const Point&) const = default;
 };
 
@@ -33,22 +33,22 @@ struct Kept : DebugDraw {
   std::vector<ColliderId> shapes;
   bool draws_shapes = false;
 
-  void line(const Vec3& from, const Vec3& to, DebugMark mark) override {
+  void line(const Vec3& from, const Vec3& to, DebugCategory mark) override {
     lines.push_back({from, to, mark});
   }
-  void point(const Vec3& at, DebugMark mark) override { points.push_back({at, mark}); }
-  bool shape(ColliderId collider, const Shape&, const SE3&, DebugMark) override {
+  void point(const Vec3& at, DebugCategory mark) override { points.push_back({at, mark}); }
+  bool shape(ColliderId collider, const Shape&, const SE3&, DebugCategory) override {
     shapes.push_back(collider);
     return draws_shapes;
   }
 
-  std::vector<Line> of(DebugMark mark) const {
+  std::vector<Line> of(DebugCategory mark) const {
     std::vector<Line> found;
     std::copy_if(lines.begin(), lines.end(), std::back_inserter(found),
                  [&](const Line& line) { return line.mark == mark; });
     return found;
   }
-  std::vector<Vec3> points_of(DebugMark mark) const {
+  std::vector<Vec3> points_of(DebugCategory mark) const {
     std::vector<Vec3> found;
     for (const Point& point : points) {
       if (point.mark == mark) found.push_back(point.at);
@@ -135,7 +135,7 @@ TEST(DebugDraw, WiresLieOnTheSurfaceAndReachAsFarAsTheShape) {
       const auto hit = must(world.ray_cast(p + 5.0 * out, -out, 10.0));
       ASSERT_TRUE(hit) << known.name;
       EXPECT_NEAR(hit->distance, 5.0, 1e-6) << known.name;
-      EXPECT_EQ(line.mark, DebugMark::fixed_shape);
+      EXPECT_EQ(line.mark, DebugCategory::fixed_shape);
     }
   }
 }
@@ -183,7 +183,7 @@ TEST(DebugDraw, SurfacesAreTheirTrianglesWithoutHoles) {
   const std::vector<TriangleMesh::Triangle> triangles{{0, 1, 2}, {0, 1, 3}};
   const Shape mesh = TriangleMesh::of(vertices, triangles).value().scaled({1, 2, 3}).value();
   Kept kept;
-  draw_wire(mesh, SE3(Vec3{10, 0, 0}), 1.0, DebugMark::fixed_shape, kept);
+  draw_wire(mesh, SE3(Vec3{10, 0, 0}), 1.0, DebugCategory::fixed_shape, kept);
   EXPECT_EQ(kept.lines.size(), 6u);
   const Extent e = extent_of(kept.lines);
   EXPECT_EQ(e.low, (Vec3{10, 0, 0}));
@@ -196,7 +196,7 @@ TEST(DebugDraw, SurfacesAreTheirTrianglesWithoutHoles) {
   grid.heights = heights;
   grid.holes = holes;
   Kept field;
-  draw_wire(HeightField::of(grid).value(), SE3(), 1.0, DebugMark::fixed_shape, field);
+  draw_wire(HeightField::of(grid).value(), SE3(), 1.0, DebugCategory::fixed_shape, field);
   EXPECT_EQ(field.lines.size(), 3 * 5u);
   EXPECT_EQ(extent_of(field.lines).high, (Vec3{2, 2, 7}));
 }
@@ -209,7 +209,7 @@ TEST(DebugDraw, ABoxAtRestHasFourContactsThatCarryItsWeight) {
       world, {.shape = Box{{0.5, 0.5, 0.5}}, .material = {}, .pose = SE3(Vec3{2, 3, 0.5})});
   run(world, 300);
   const Kept kept = drawn(world, contacts());
-  const auto points = kept.points_of(DebugMark::contact);
+  const auto points = kept.points_of(DebugCategory::contact);
   ASSERT_EQ(points.size(), 4u);
   for (const Vec3& p : points) {
     const Vec3 q = inverse_times(world.pose(box), p);
@@ -219,11 +219,11 @@ TEST(DebugDraw, ABoxAtRestHasFourContactsThatCarryItsWeight) {
   }
   const DebugDrawOptions options;
   double sum = 0.0;
-  for (const Line& line : kept.of(DebugMark::impulse)) {
+  for (const Line& line : kept.of(DebugCategory::impulse)) {
     sum += (line.to.z - line.from.z) / options.impulse_scale;
   }
   EXPECT_NEAR(sum, 1000.0 * 9.81 * 0.001, 0.1);  // 9.81 N s a step
-  for (const Line& line : kept.of(DebugMark::normal)) {
+  for (const Line& line : kept.of(DebugCategory::normal)) {
     EXPECT_NEAR(norm(line.to - line.from), options.normal_length, 1e-6);
     EXPECT_NEAR(line.to.z - line.from.z, options.normal_length, 1e-6);
   }
@@ -248,7 +248,7 @@ TEST(DebugDraw, ContactPointsGoWithBodiesThatTravelTogether) {
   for (int step = 0; step < 700; ++step) {
     must(world.step(0.001));
     if (step < 100) continue;
-    const auto points = drawn(world, contacts()).points_of(DebugMark::contact);
+    const auto points = drawn(world, contacts()).points_of(DebugCategory::contact);
     ASSERT_EQ(points.size(), 4u) << step;
     for (const Vec3& p : points) {
       const Vec3 q = inverse_times(world.pose(box), p);
@@ -271,7 +271,7 @@ TEST(DebugDraw, FrictionLeansAgainstTheSlope) {
   DebugDrawOptions options = nothing();
   options.impulses = true;
   Vec3 sum;
-  for (const DebugMark mark : {DebugMark::impulse, DebugMark::friction}) {
+  for (const DebugCategory mark : {DebugCategory::impulse, DebugCategory::friction}) {
     for (const Line& line : drawn(world, options).of(mark))
       sum += (1.0 / options.impulse_scale) * (line.to - line.from);
   }
@@ -291,9 +291,9 @@ TEST(DebugDraw, AContinuousBallAtRestShowsItsOneContact) {
                       .continuous = true});
   run(world, 200);
   const Kept kept = drawn(world, contacts());
-  ASSERT_EQ(kept.points_of(DebugMark::contact).size(), 1u);
-  EXPECT_NEAR(norm(kept.points_of(DebugMark::contact)[0] - Vec3{0.2, 0.1, 0.0}), 0.0, 2e-4);
-  const auto impulses = kept.of(DebugMark::impulse);
+  ASSERT_EQ(kept.points_of(DebugCategory::contact).size(), 1u);
+  EXPECT_NEAR(norm(kept.points_of(DebugCategory::contact)[0] - Vec3{0.2, 0.1, 0.0}), 0.0, 2e-4);
+  const auto impulses = kept.of(DebugCategory::impulse);
   ASSERT_EQ(impulses.size(), 1u);
   const double mass = 1000.0 * 4.0 / 3.0 * kPi * 0.0175 * 0.0175 * 0.0175;
   EXPECT_NEAR((impulses[0].to.z - impulses[0].from.z) / DebugDrawOptions{}.impulse_scale,
@@ -310,18 +310,19 @@ TEST(DebugDraw, FramesCentresAndBoundsAreTheBodies) {
   options.frame_size = 0.5;
   const Kept kept = drawn(world, options);
   const Vec3* axes[] = {&pose.rotation().cx, &pose.rotation().cy, &pose.rotation().cz};
-  const DebugMark marks[] = {DebugMark::axis_x, DebugMark::axis_y, DebugMark::axis_z};
+  const DebugCategory marks[] = {DebugCategory::axis_x, DebugCategory::axis_y,
+                                 DebugCategory::axis_z};
   for (int i = 0; i < 3; ++i) {
     const auto lines = kept.of(marks[i]);
     ASSERT_EQ(lines.size(), 1u);
     EXPECT_EQ(lines[0].from, pose.position());
     EXPECT_NEAR(norm(lines[0].to - (pose.position() + 0.5 * *axes[i])), 0.0, 1e-12);
   }
-  const auto centres = kept.points_of(DebugMark::centre);
+  const auto centres = kept.points_of(DebugCategory::centre);
   ASSERT_EQ(centres.size(), 1u);
   EXPECT_NEAR(norm(centres[0] - pose * Vec3{0, 0, -0.2}), 0.0, 1e-12);
   // The bounds hold the wire, which is as wide as the cone.
-  const Extent bounds = extent_of(kept.of(DebugMark::bounds));
+  const Extent bounds = extent_of(kept.of(DebugCategory::bounds));
   const Extent wire = extent_of(drawn(world, {}).lines);
   for (int i = 0; i < 3; ++i) {
     EXPECT_LE(bounds.low[i], wire.low[i] + 1e-12);
@@ -339,14 +340,14 @@ TEST(DebugDraw, JointsAreWhereTheyHold) {
   DebugDrawOptions options = nothing();
   options.joints = true;
   const Kept kept = drawn(world, options);
-  for (const Vec3& p : kept.points_of(DebugMark::joint)) {
+  for (const Vec3& p : kept.points_of(DebugCategory::joint)) {
     EXPECT_NEAR(norm(p - Vec3{0.1, 0, 2}), 0.0, 1e-12);
   }
-  EXPECT_EQ(kept.points_of(DebugMark::joint).size(), 2u);
-  const auto axes = kept.of(DebugMark::joint_axis);
+  EXPECT_EQ(kept.points_of(DebugCategory::joint).size(), 2u);
+  const auto axes = kept.of(DebugCategory::joint_axis);
   ASSERT_EQ(axes.size(), 1u);
   EXPECT_NEAR(norm(axes[0].to - axes[0].from - Vec3{0, 0.25, 0}), 0.0, 1e-12);
-  const auto lines = kept.of(DebugMark::joint);
+  const auto lines = kept.of(DebugCategory::joint);
   EXPECT_TRUE(std::any_of(lines.begin(), lines.end(), [](const Line& line) {
     return norm(line.to - Vec3{0.5, 0, 2}) < 1e-12;
   })) << "none leads to the mass";
@@ -365,11 +366,11 @@ TEST(DebugDraw, AnArticulationsJointsFollowItsCoordinates) {
   DebugDrawOptions options = nothing();
   options.joints = true;
   const Kept kept = drawn(world, options);
-  const auto points = kept.points_of(DebugMark::joint);
+  const auto points = kept.points_of(DebugCategory::joint);
   ASSERT_EQ(points.size(), 2u);
   EXPECT_NEAR(norm(points[0]), 0.0, 1e-12);
   EXPECT_NEAR(norm(points[1] - Vec3{-1, 0, 0}), 0.0, 1e-12);
-  EXPECT_EQ(kept.of(DebugMark::joint_axis).size(), 2u);
+  EXPECT_EQ(kept.of(DebugCategory::joint_axis).size(), 2u);
 }
 
 TEST(DebugDraw, WhoDrawsAShapeGetsNoWireOfIt) {
@@ -411,10 +412,10 @@ TEST(DebugDraw, NoImpulsesAreKnownAfterARestore) {
   world.snapshot(bytes);
   must(world.restore(bytes));
   const Kept restored = drawn(world, contacts());
-  EXPECT_EQ(restored.points_of(DebugMark::contact).size(), 4u);
-  EXPECT_TRUE(restored.of(DebugMark::impulse).empty());
+  EXPECT_EQ(restored.points_of(DebugCategory::contact).size(), 4u);
+  EXPECT_TRUE(restored.of(DebugCategory::impulse).empty());
   run(world, 1);
-  EXPECT_EQ(drawn(world, contacts()).of(DebugMark::impulse).size(), 4u);
+  EXPECT_EQ(drawn(world, contacts()).of(DebugCategory::impulse).size(), 4u);
 }
 
 TEST(DebugDraw, SizesThatAreNoneAreRefusedAndNothingIsDrawn) {
@@ -439,11 +440,11 @@ TEST(DebugDraw, SizesThatAreNoneAreRefusedAndNothingIsDrawn) {
 
 TEST(DebugDraw, UsualColoursTellTheMarksApart) {
   std::set<std::uint32_t> colours;
-  for (int mark = 0; mark < kDebugMarks; ++mark) {
-    colours.insert(usual_colour(static_cast<DebugMark>(mark)));
+  for (int mark = 0; mark < kDebugCategories; ++mark) {
+    colours.insert(usual_colour(static_cast<DebugCategory>(mark)));
   }
-  EXPECT_EQ(colours.size(), static_cast<std::size_t>(kDebugMarks));
-  EXPECT_EQ(static_cast<int>(DebugMark::joint_axis), kDebugMarks - 1);
+  EXPECT_EQ(colours.size(), static_cast<std::size_t>(kDebugCategories));
+  EXPECT_EQ(static_cast<int>(DebugCategory::joint_axis), kDebugCategories - 1);
 }
 
 }  // namespace

@@ -305,11 +305,11 @@ TEST(InverseDerivatives, AreThoseOfDualNumbersInTheLinksFrames) {
     const double scale = 1 + largest_of(slopes.q) + largest_of(slopes.v);
     for (std::size_t k = 0; k < 2 * n; ++k) {
       std::vector<D> delta(n), v(s.v.begin(), s.v.end());
-      (k < n ? delta[k] : v[k - n]).slope[0] = 1.0;
+      (k < n ? delta[k] : v[k - n]).derivative[0] = 1.0;
       const std::vector<D> tau = newton_euler(model, s, loads, delta, v);
       for (std::size_t i = 0; i < n; ++i) {
         const double found = k < n ? slopes.q[i * n + k] : slopes.v[i * n + k - n];
-        worst = std::max(worst, std::fabs(tau[i].slope[0] - found) / scale);
+        worst = std::max(worst, std::fabs(tau[i].derivative[0] - found) / scale);
         value = std::max(value, std::fabs(tau[i].value - expected[i]) / scale);
       }
     }

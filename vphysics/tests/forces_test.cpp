@@ -164,7 +164,7 @@ TEST(Force, IsFeltAsALoadAndMakesNoHits) {
 
 // --- bodies that nothing touches
 
-Vec3 turn_of(const Mat3& R) {
+Vec3 rotation_bound(const Mat3& R) {
   return Log(to_quaternion(R));
 }
 
@@ -198,7 +198,7 @@ TEST(Force, GivesTheClosedFormToTheOrderOfTheStep) {
       EXPECT_LT(norm(T.rotate(V.v) - 0.5 * force), 1e-12);
       EXPECT_LT(norm(T.rotate(V.w) - (1.0 / 0.3) * torque), 1e-12);
       const double error = norm(T.position() - 0.25 * force);
-      const double turn = norm(turn_of(T.rotation()) - (0.5 / 0.3) * torque);
+      const double turn = norm(rotation_bound(T.rotation()) - (0.5 / 0.3) * torque);
       std::printf("%d steps: %.3e m, %.3e rad off\n", steps, error, turn);
       if (before > 0.0) {
         EXPECT_NEAR(before / error, 2.0, 0.5);
@@ -243,8 +243,8 @@ TEST(Torque, TurnsATumblingBodyToTheOrderOfTheStep) {
       return f.world.pose(f.body).rotation();
     };
     const Mat3 fine = after(20000);
-    const double coarse = norm(turn_of(transpose(fine) * after(200)));
-    const double half = norm(turn_of(transpose(fine) * after(400)));
+    const double coarse = norm(rotation_bound(transpose(fine) * after(200)));
+    const double half = norm(rotation_bound(transpose(fine) * after(400)));
     std::printf("tumbling: %.3e, %.3e rad off\n", coarse, half);
     EXPECT_NEAR(coarse / half, 2.0, 0.3);
   }

@@ -7,7 +7,7 @@
 
 #include "random.h"
 #include "rig.h"
-#include "world/free_turn.h"
+#include "world/free_rotation.h"
 
 namespace vp::test {
 namespace {
@@ -168,14 +168,14 @@ TEST(FreeBody, ComesToTheSameEndAtAConstantRate) {
   const Sym3 I = solid_inertia(kRod, 1000).central();
   for (int i = 0; i < 2000; ++i) {
     const Vec3 w = std::exp(random.uniform(-8, 5)) * random.direction();
-    const FreeTurn turn = free_turn(I, inverse(I), w, 1.0 / 30);
-    const Mat3 a = from_quaternion(turn.q), b = Exp(constant_turn(turn)).matrix();
+    const FreeRotation turn = free_rotation(I, inverse(I), w, 1.0 / 30);
+    const Mat3 a = from_quaternion(turn.q), b = Exp(mean_rotation(turn)).matrix();
     ASSERT_LT(norm(a.cx - b.cx) + norm(a.cy - b.cy), 1e-9) << i;
   }
   // Whole turns are told.
   for (const double rate : {1.0, 100.0, 200.0, -200.0, 500.0, -1000.0}) {
-    const FreeTurn turn = free_turn(I, inverse(I), {0, 0, rate}, 1.0 / 30);
-    EXPECT_NEAR(constant_turn(turn).z, rate / 30, 1e-9);
+    const FreeRotation turn = free_rotation(I, inverse(I), {0, 0, rate}, 1.0 / 30);
+    EXPECT_NEAR(mean_rotation(turn).z, rate / 30, 1e-9);
   }
 }
 

@@ -412,13 +412,13 @@ TEST(Integrators, RefuseStepsThatAreNone) {
   AdaptiveReport report;
   for (const Adaptive& options :
        {Adaptive{.absolute = 0.0}, Adaptive{.relative = -1.0}, Adaptive{.absolute = nan},
-        Adaptive{.first_step = -1.0}, Adaptive{.minimum_step = nan}, Adaptive{.most_steps = 0}}) {
+        Adaptive{.first_step = -1.0}, Adaptive{.minimum_step = nan}, Adaptive{.max_steps = 0}}) {
     const auto done = advance_adaptive<double>(model, data, q, v, {.h = 1.0}, options, report);
     ASSERT_FALSE(done);
     EXPECT_EQ(done.error().code, Errc::invalid_argument);
   }
   for (const Variational& options : {Variational{.tolerance = 0.0}, Variational{.tolerance = nan},
-                                     Variational{.most_iterations = 0}}) {
+                                     Variational{.max_iterations = 0}}) {
     const auto done = step_variational<double>(model, data, q, v, {.h = 1e-3}, options);
     ASSERT_FALSE(done);
     EXPECT_EQ(done.error().code, Errc::invalid_argument);
@@ -461,7 +461,7 @@ TEST(Adaptive, SaysWhereItsStepFallsBelowTheMinimum) {
   EXPECT_NEAR(v[0], 1 / (1 - report.t) - 1, 1e-5 * v[0]);  // the state is the one at report.t
   q = {0.0}, v = {0.0};
   const auto few = advance_adaptive<double>(model, data, q, v, {.h = 2.0, .forces = pole},
-                                            {.most_steps = 5}, report);
+                                            {.max_steps = 5}, report);
   ASSERT_FALSE(few);
   EXPECT_EQ(report.taken + report.refused, 5);
 }

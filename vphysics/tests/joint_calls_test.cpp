@@ -125,15 +125,15 @@ TEST(SetDrive, RefusesWhatTheJointHoldsOrDoesNotHave) {
   const JointId ball = join(p.world, p.a, p.b, BallSocket{}, SE3{});
   EXPECT_FALSE(p.world.set_drive(ball, {}));
   EXPECT_FALSE(p.world.set_drive(ball, JointAxis::x, {}));
-  EXPECT_TRUE(p.world.set_drive(ball, JointAxis::turn_z, {0, 1, 0, 1, 1}));
-  EXPECT_FALSE(p.world.set_drive(ball, JointAxis::turn_z, {0, kNan, 0, 1, 1}));
+  EXPECT_TRUE(p.world.set_drive(ball, JointAxis::rotation_z, {0, 1, 0, 1, 1}));
+  EXPECT_FALSE(p.world.set_drive(ball, JointAxis::rotation_z, {0, kNan, 0, 1, 1}));
   EXPECT_FALSE(p.world.set_drive(ball, static_cast<JointAxis>(17), {}));
   JointDesc desc;
   desc.kind = Spring{1, 1, 1};
   EXPECT_FALSE(p.world.set_drive(must(p.world.create_joint(p.a, p.b, desc)), {}));
   desc.kind = ConeTwist{};
   const JointId cone = must(p.world.create_joint(p.a, p.b, desc));
-  EXPECT_FALSE(p.world.set_drive(cone, JointAxis::turn_x, {}));
+  EXPECT_FALSE(p.world.set_drive(cone, JointAxis::rotation_x, {}));
   EXPECT_TRUE(p.world.set_drive(cone, {}));
 }
 

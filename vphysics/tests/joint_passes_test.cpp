@@ -62,7 +62,7 @@ struct Pairs {
       for (int k = 0; k < 3; ++k) row.inertia[k] = body % 9 == 0 ? 0.0f : number(4.0, 8.0);
       for (int k = 3; k < 6; ++k) row.inertia[k] = body % 9 == 0 ? 0.0f : number(-1.0, 1.0);
       for (int k = 0; k < 6; ++k) start[body][static_cast<std::size_t>(k)] = number(-0.1, 0.1);
-      for (int k = 0; k < 6; ++k) row.way[k] = number(-0.4, 0.4);
+      for (int k = 0; k < 6; ++k) row.displacement[k] = number(-0.4, 0.4);
     }
     for (std::uint32_t pair = 0; pair < kHanging; ++pair) fill(pair, random);
   }
@@ -96,7 +96,7 @@ struct Pairs {
     if constexpr (B::kAxes) {
       put3(to.point.start_arm_a, 0.5);
       put3(to.point.start_arm_b, 0.5);
-      put3(to.point.start_gap, 0.01);
+      put3(to.point.start_separation, 0.01);
       put3(to.point.impulse, 1.0);
       put_row(to.point);
     }
@@ -119,8 +119,8 @@ struct Pairs {
       put(row.impulse, -1, 1);
       put(bound.stop, -1, 1);
       bound.holds.lane[at] = random.word() % 4 == 0 ? 1.0f : 0.0f;
-      put(bound.least, -2, random.word() % 3 == 0 ? 0.0 : -1.0);
-      put(bound.most, 0, 2);
+      put(bound.min_impulse, -2, random.word() % 3 == 0 ? 0.0 : -1.0);
+      put(bound.max_impulse, 0, 2);
       put(bound.stiffness, 0, random.word() % 3 == 0 ? 1e6 : 0.0);
       put(bound.damping, 0, 10);
       put(bound.position, -1, 1);
@@ -142,9 +142,9 @@ struct Pairs {
     passes.load_inertias(run);
     passes.prepare(run);
     passes.warm_start(run);
-    passes.push_first(run, kH);
-    passes.push_again(run, kH);
-    passes.push_again(run, kH);
+    passes.solve_first(run, kH);
+    passes.solve_again(run, kH);
+    passes.solve_again(run, kH);
     passes.relax(run, kH);
   }
 };
@@ -223,7 +223,7 @@ TEST(JointPasses, TurnsAreThoseOfTheExponential) {
     quaternion_of<4>(t, q, w);
     const Vec3T<F> v{F(static_cast<float>(u.x)), F(static_cast<float>(u.y)),
                      F(static_cast<float>(u.z))};
-    const Vec3T<F> less = turned_less(q, w, v);
+    const Vec3T<F> less = rotated_minus(q, w, v);
     const Vec3 exact = Exp(theta).matrix() * u - u;
     const Vec3 found{static_cast<double>(less.x[2]), static_cast<double>(less.y[2]),
                      static_cast<double>(less.z[2])};

@@ -323,14 +323,14 @@ TEST(ConeTwist, StaysWithinConeAndTwist) {
     double worst = 0.0;
     for (int i = 0; i < 4000; ++i) {
       must(world.step(0.001));
-      const double x = world.joint_coordinate(joint, JointAxis::turn_x) / kSwingX;
-      const double y = world.joint_coordinate(joint, JointAxis::turn_y) / kSwingY;
+      const double x = world.joint_coordinate(joint, JointAxis::rotation_x) / kSwingX;
+      const double y = world.joint_coordinate(joint, JointAxis::rotation_y) / kSwingY;
       worst = std::max(worst, std::sqrt(x * x + y * y));
       EXPECT_LT(std::fabs(world.joint_coordinate(joint)), 0.41);
     }
     EXPECT_LT(worst, 1.03);
-    const double x = world.joint_coordinate(joint, JointAxis::turn_x) / kSwingX;
-    const double y = world.joint_coordinate(joint, JointAxis::turn_y) / kSwingY;
+    const double x = world.joint_coordinate(joint, JointAxis::rotation_x) / kSwingX;
+    const double y = world.joint_coordinate(joint, JointAxis::rotation_y) / kSwingY;
     EXPECT_NEAR(std::sqrt(x * x + y * y), 1.0, 0.02) << direction;
   }
 }
@@ -470,7 +470,7 @@ TEST(UserConstraint, MovesAsTheBuiltInOneItIsEqualTo) {
 class Above : public PairConstraint {
  public:
   int rows() const override { return 1; }
-  PairRowLaw law(int) const override { return {0, 1, 0, kNoLimit}; }
+  ConstraintRowDesc row_desc(int) const override { return {0, 1, 0, kNoLimit}; }
   void evaluate(const SE3&, const SE3& T_b, std::span<double> residual,
                 std::span<PairRow> jacobian) const override {
     residual[0] = T_b.position().z;

@@ -49,11 +49,11 @@ Vec3 value(const Vec3T<Dual>& a) {
   return {a.x.value, a.y.value, a.z.value};
 }
 Vec3 slope(const Vec3T<Dual>& a) {
-  return {a.x.slope[0], a.y.slope[0], a.z.slope[0]};
+  return {a.x.derivative[0], a.y.derivative[0], a.z.derivative[0]};
 }
 Vec3T<Dual> along(const Vec3& a, const Vec3& d) {
   Vec3T<Dual> out = cast<Dual>(a);
-  for (int i = 0; i < 3; ++i) out[i].slope[0] = d[i];
+  for (int i = 0; i < 3; ++i) out[i].derivative[0] = d[i];
   return out;
 }
 se3T<Dual> along(const se3& V, const se3& d) {
@@ -70,13 +70,13 @@ se3 velocity(const SE3T<Dual>& A) {
 
 TEST(Dual, KnowsTheSlopesOfArithmetic) {
   const Dual x = Dual::variable(0.7);
-  EXPECT_NEAR((x * x * x).slope[0], 3 * 0.49, 1e-15);
-  EXPECT_NEAR((Dual(1) / x).slope[0], -1 / 0.49, 1e-15);
-  EXPECT_NEAR((-x - Dual(2) * x).slope[0], -3, 1e-15);
-  EXPECT_NEAR(sqrt(x).slope[0], 0.5 / std::sqrt(0.7), 1e-15);
-  EXPECT_NEAR(sin_cos(x).sin.slope[0], std::cos(0.7), 1e-15);
-  EXPECT_NEAR(sin_cos(x).cos.slope[0], -std::sin(0.7), 1e-15);
-  EXPECT_NEAR(arc_tangent(x, Dual(2)).slope[0], 2 / (4 + 0.49), 1e-15);
+  EXPECT_NEAR((x * x * x).derivative[0], 3 * 0.49, 1e-15);
+  EXPECT_NEAR((Dual(1) / x).derivative[0], -1 / 0.49, 1e-15);
+  EXPECT_NEAR((-x - Dual(2) * x).derivative[0], -3, 1e-15);
+  EXPECT_NEAR(sqrt(x).derivative[0], 0.5 / std::sqrt(0.7), 1e-15);
+  EXPECT_NEAR(sin_cos(x).sin.derivative[0], std::cos(0.7), 1e-15);
+  EXPECT_NEAR(sin_cos(x).cos.derivative[0], -std::sin(0.7), 1e-15);
+  EXPECT_NEAR(arc_tangent(x, Dual(2)).derivative[0], 2 / (4 + 0.49), 1e-15);
 }
 
 // Measured: 9e-15 and 1.2e-14 at half a turn.

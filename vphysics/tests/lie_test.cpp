@@ -153,9 +153,9 @@ TEST(Coefficients, HoldOnBothSidesOfTheirSwitchingPoints) {
                              theta * off(k.B, exact.B),
                              t * off(C, exact.C),
                              t * off(D, exact.D),
-                             t * off(detail::slope_B(k), exact.B1),
-                             t * theta * off(detail::slope_C(k, C), exact.C1),
-                             t * theta * off(detail::slope_D(k, D), exact.D1)};
+                             t * off(detail::derivative_B(k), exact.B1),
+                             t * theta * off(detail::derivative_C(k, C), exact.C1),
+                             t * theta * off(detail::derivative_D(k, D), exact.D1)};
     for (int i = 0; i < 7; ++i) worst[i] = std::max(worst[i], error[i]);
   }
   const double bounds[7] = {2.3e-16, 3.4e-16, 2.3e-16, 4.5e-16, 2.3e-16, 5.6e-16, 7.8e-16};

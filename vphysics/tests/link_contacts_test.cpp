@@ -246,16 +246,16 @@ TEST(LinkContact, AWalkerStandsOnPillarsUnderALoad) {
       for (int i = 0; i < static_cast<int>(seconds * rate); ++i) must(world.step(1.0 / rate));
     };
     run(0.6);
-    std::vector<Vec3> settled;
-    for (const BodyId box : boxes) settled.push_back(world.pose(box).position());
+    std::vector<Vec3> converged;
+    for (const BodyId box : boxes) converged.push_back(world.pose(box).position());
     run(0.6);
     double drift = 0.0;
     for (std::size_t i = 0; i < boxes.size(); ++i) {
-      drift = std::max(drift, norm(world.pose(boxes[i]).position() - settled[i]));
+      drift = std::max(drift, norm(world.pose(boxes[i]).position() - converged[i]));
     }
-    std::printf("%g Hz: %.2g m in 0.6 s; the load at %.4f\n", rate, drift, settled.back().z);
+    std::printf("%g Hz: %.2g m in 0.6 s; the load at %.4f\n", rate, drift, converged.back().z);
     EXPECT_LT(drift, 0.002) << rate;
-    EXPECT_NEAR(settled.back().z, trunk + 0.18, 0.03) << rate;  // its legs give way
+    EXPECT_NEAR(converged.back().z, trunk + 0.18, 0.03) << rate;  // its legs give way
   }
 }
 

@@ -320,7 +320,7 @@ TEST(LinkJoint, AStretchedChainIsNotThrownAbout) {
 TEST(LinkJoint, ABoundedRowLetsGo) {
   class Weak : public Level {
    public:
-    PairRowLaw law(int) const override { return {0.0, 1.0, -5.0, 5.0}; }
+    ConstraintRowDesc row_desc(int) const override { return {0.0, 1.0, -5.0, 5.0}; }
   };
   for (const Ends ends : {Ends::links, Ends::continuous}) {
     World world;
@@ -338,7 +338,7 @@ TEST(LinkJoint, ABoundedRowLetsGo) {
 TEST(LinkJoint, ABoundedRowGivesNoMoreInStepsWithImpacts) {
   class Weak : public Level {
    public:
-    PairRowLaw law(int) const override { return {0.0, 1.0, -5.0, 5.0}; }
+    ConstraintRowDesc row_desc(int) const override { return {0.0, 1.0, -5.0, 5.0}; }
   };
   World world;
   add_ground(world, {0.5, 0.8, 0.0});

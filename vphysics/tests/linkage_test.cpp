@@ -128,12 +128,12 @@ struct OneDegree {
 OneDegree lagrange(const FourBar& f, double angle, double gravity) {
   const auto root = [](const Dual& x) {
     Dual out(std::sqrt(x.value));
-    out.slope[0] = x.slope[0] / (2 * out.value);
+    out.derivative[0] = x.derivative[0] / (2 * out.value);
     return out;
   };
   Dual c2(std::cos(angle)), s2(std::sin(angle));
-  c2.slope[0] = -s2.value;
-  s2.slope[0] = c2.value;
+  c2.derivative[0] = -s2.value;
+  s2.derivative[0] = c2.value;
   // The far end of the coupler: where circles about A and the ground's end meet, above.
   const Dual ax = Dual(f.a) * c2, ay = Dual(f.a) * s2;
   const Dual dx = Dual(f.d) - ax, dy = -ay, D2 = dx * dx + dy * dy;
@@ -177,7 +177,8 @@ TEST(FourBar, AcceleratesAsItsLagrangeEquationSays) {
         constrained_forward_dynamics(model, data, q, v, tau, {.gravity = {0, -g, 0}}, 0.0, a);
     ASSERT_TRUE(done) << done.error().message;
     const OneDegree e = lagrange(f, t2, g);
-    const double expected = (torque - 0.5 * e.I.slope[0] * rate * rate - e.U.slope[0]) / e.I.value;
+    const double expected =
+        (torque - 0.5 * e.I.derivative[0] * rate * rate - e.U.derivative[0]) / e.I.value;
     worst = std::max(worst, std::fabs(a[0] - expected) / (1 + std::fabs(expected)));
   }
   std::printf("worst: %.1e\n", worst);

@@ -96,12 +96,12 @@ struct Rig {
 
 struct Words {
   std::vector<std::uint64_t> words;
-  void word(std::uint64_t w) { words.push_back(w); }
+  void u64(std::uint64_t w) { words.push_back(w); }
 };
 struct WordReader {
   std::span<const std::uint64_t> words;
   bool good = true;
-  std::uint64_t word() {
+  std::uint64_t u64() {
     if (words.empty()) {
       good = false;
       return 0;

@@ -9,7 +9,7 @@
 
 #include "random.h"
 #include "solve/contact_graph.h"
-#include "solve/contact_lane.h"
+#include "solve/contact_slot.h"
 
 namespace vp::solve {
 namespace {
@@ -36,7 +36,7 @@ struct Net {
   std::vector<BodyRow> rows{kBodies + 1};
   ContactGraph graph;
   std::vector<std::uint32_t> bodies;
-  std::vector<Gain> gains{kBodies};
+  std::vector<VelocityChange> velocity_changes{kBodies};
 
   double gaping;             // share of the contacts
   std::vector<float> acted;  // which lanes later rounds have found unsettled
@@ -95,7 +95,7 @@ struct Net {
     c.restitution = random.word() % 6 == 0 ? 0.5 : 0.0;
     c.rolling = P == 1 ? 0.01 : 0.0;
     c.slid_limit = 0.01;
-    write_lane(block, ContactGraph::lane(place), c, rows[a.row], rows[b.row]);
+    write_slot(block, ContactGraph::lane(place), c, rows[a.row], rows[b.row]);
   }
 
   // f(passes of the kind, run).
@@ -117,13 +117,15 @@ struct Net {
     int bounces = 0;
     const std::size_t n = bodies.size();
     if (first) for_runs(passes, [&](const auto& p, const auto& run) { p.load_inertias(run); });
-    if (!first) passes.find_gains(rows.data(), gains.data(), bodies.data(), n);
+    if (!first)
+      passes.find_velocity_changes(rows.data(), velocity_changes.data(), bodies.data(), n);
     passes.accelerate(rows.data(), bodies.data(), n, kH);
     for (int round = 0; round < 4; ++round) {
-      for_runs(passes,
-               [&](const auto& p, const auto& run) { bounces += p.strike(run, kH, 0.05f); });
+      for_runs(passes, [&](const auto& p, const auto& run) {
+        bounces += p.apply_restitution(run, kH, 0.05f);
+      });
     }
-    (first ? passes.keep : passes.repeat)(rows.data(), gains.data(), bodies.data(), n);
+    (first ? passes.keep : passes.repeat)(rows.data(), velocity_changes.data(), bodies.data(), n);
     if (first) for_runs(passes, [&](const auto& p, const auto& run) { p.warm_start(run); });
     for_runs(passes, [&](const auto& p, const auto& run) { p.solve_first(run, soft); });
     acted.clear();
@@ -145,7 +147,7 @@ struct Net {
     const auto add = [&all](const float(&row)[8]) { all.insert(all.end(), row, row + 8); };
     for (const BodyRow& row : rows) {
       add(row.velocity);
-      add(row.way);
+      add(row.displacement);
     }
     for_runs(passes(), [&](const auto&, const auto& run) {
       for (std::uint32_t l = 0; l < run.lanes; ++l) {
@@ -189,7 +191,7 @@ TEST(Passes, PushEveryPointAsItsEquationSays) {
         const Vec3 first = random.in_cube(0.4);
         for (auto& point : c.points)
           point = {first + random.in_cube(0.1), random.uniform(-2e-3, 1e-3), 0.0f};
-        write_lane(blocks[0], lane, c, rows[1 + 2 * lane], rows[2 + 2 * lane]);
+        write_slot(blocks[0], lane, c, rows[1 + 2 * lane], rows[2 + 2 * lane]);
       }
       const ContactPasses<4>::Run run{blocks.data(), kLanes, kLanes, rows.data()};
       of.passes->four.load_inertias(run);
@@ -261,7 +263,7 @@ TEST(Passes, LeaveAloneWhatNoBlowReaches) {
         const double blow = 0.05 + 0.1 * lane;
         c.points[0] = {{0.1, 0, 0}, kH * (blow - speed), 0.0f};
         c.points[1] = {{-0.1, 0, 0}, kH * (5.0 - speed), 0.0f};
-        write_lane(blocks[0], lane, c, rows[a], rows[b]);
+        write_slot(blocks[0], lane, c, rows[a], rows[b]);
       }
       const ContactPasses<4>::Run run{blocks.data(), kLanes, kLanes, rows.data()};
       of.passes->four.load_inertias(run);
@@ -289,7 +291,7 @@ TEST(Passes, GiveTheSameBitsInEveryWidth) {
         const int found = nets[i].sub_step(*all[i].passes, soft, k == 0);
         if (i == 0) bounces += found;
       }
-      soft.kept = 1.0f;
+      soft.keeps_load = 1.0f;
       const std::vector<float> first = nets[0].state();
       for (std::size_t i = 1; i < all.size(); ++i) {
         const std::vector<float> other = nets[i].state();

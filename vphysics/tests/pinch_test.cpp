@@ -32,7 +32,7 @@ TEST(Pinch, ADrivenRodIsStoppedByABallAtAWall) {
   double deepest = 0.0, held = 0.0;
   for (int tick = 0; tick < 3000; ++tick) {
     const StepStatus status = must(world.step(kTick));
-    held += status.time_held;
+    held += status.time_lost;
     const Vec3 p = world.pose(ball).position();
     deepest = std::max(deepest, wall + kBallRadius - p.x);
     deepest = std::max(deepest, kBallRadius - p.z);
@@ -79,7 +79,7 @@ TEST(Pinch, ABallUnderAFootStaysAboveTheField) {
     must(world.set_drive(rod.articulation, 0, 1, {target, 0.0, 200.0, 1.0, 20.0}));
     double deepest = 0.0, held = 0.0;
     for (int tick = 0; tick < 1500; ++tick) {
-      held += must(world.step(kTick)).time_held;
+      held += must(world.step(kTick)).time_lost;
       const Vec3 p = world.pose(ball).position();
       deepest = std::max(deepest, kBallRadius - p.z);
       ASSERT_GT(p.z, 0.5 * kBallRadius) << "tick " << tick;

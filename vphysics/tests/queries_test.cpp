@@ -146,8 +146,8 @@ std::optional<double> fraction_of(const Geometry& shape, const SE3& T, const Cas
                                   const Geometry& g, const SE3& T_g) {
   collide::PartsScratch scratch;
   collide::PartsImpact found{};
-  const double sizes = core_reach(shape) + (is_convex_body(g) ? core_reach(g) : 0.0);
-  const collide::ImpactQuery q{{&shape, T, {T.position(), m.translation, m.turn}},
+  const double sizes = core_extent(shape) + (is_convex_body(g) ? core_extent(g) : 0.0);
+  const collide::ImpactQuery q{{&shape, T, {T.position(), m.translation, m.rotation}},
                                {&g, T_g, {T_g.position(), {}, {}}},
                                1.0,
                                1e-9 + 1e-12 * sizes};

@@ -222,7 +222,7 @@ std::vector<Change> changes() {
        }},
       {"set_drive of an axis",
        [](Yard& y) {
-         must(y.world.set_drive(y.six, JointAxis::turn_z, {0, 5, 0, 100, 1e3}));
+         must(y.world.set_drive(y.six, JointAxis::rotation_z, {0, 5, 0, 100, 1e3}));
        }},
       {"restore",
        [](Yard& y) {

@@ -189,7 +189,7 @@ TEST(Snapshot, CarriesThatTheLastStepHadAPositionError) {
 
 // A ball, and a link above another ball, that are held in every step from when they would touch:
 // at 1 m/s, by the 1 mm that is between them in a step of 1 ms. After a second 9.8 m/s before.
-TEST(Held, CollectsNoSpeedFromGravity) {
+TEST(SlotImpulses, CollectsNoSpeedFromGravity) {
   WorldDesc desc;
   desc.max_impacts_per_step = 0;
   World world(desc);

@@ -57,7 +57,7 @@ class ScrewsJoint final : public UserJoint {
     for (std::size_t k = 0; k < N; ++k) {
       const SE3T<DualT<T>> X = pose(moved(q, k, T(1)));
       const auto slope = [](const Vec3T<DualT<T>>& a) {
-        return Vec3T<T>{a.x.slope[0], a.y.slope[0], a.z.slope[0]};
+        return Vec3T<T>{a.x.derivative[0], a.y.derivative[0], a.z.derivative[0]};
       };
       const auto value = [](const Vec3T<DualT<T>>& a) {
         return Vec3T<T>{a.x.value, a.y.value, a.z.value};
@@ -75,7 +75,7 @@ class ScrewsJoint final : public UserJoint {
     std::array<DualT<T>, N> along;
     for (std::size_t k = 0; k < N; ++k) {
       along[k] = DualT<T>(q[k]);
-      along[k].slope[0] = v[k];
+      along[k].derivative[0] = v[k];
     }
     const auto S = subspace(along);
     se3T<T> sum;
@@ -92,8 +92,8 @@ class ScrewsJoint final : public UserJoint {
     std::copy(columns.begin(), columns.end(), S.begin());
     rate_of_S = rate(at, array(v));
   }
-  bool slopes(std::span<const double> q, std::span<const double> v, std::span<se3> dS_dq,
-              std::span<se3> drate_dq) const override {
+  bool subspace_derivatives(std::span<const double> q, std::span<const double> v,
+                            std::span<se3> dS_dq, std::span<se3> drate_dq) const override {
     if (!says_slopes_) return false;
     std::array<DualT<double>, N> constant;
     for (std::size_t k = 0; k < N; ++k) constant[k] = v[k];
@@ -116,13 +116,13 @@ class ScrewsJoint final : public UserJoint {
   static std::array<DualT<T>, N> moved(const std::array<T, N>& q, std::size_t k, const T& slope) {
     std::array<DualT<T>, N> out;
     for (std::size_t i = 0; i < N; ++i) out[i] = DualT<T>(q[i]);
-    out[k].slope[0] = slope;
+    out[k].derivative[0] = slope;
     return out;
   }
   template <class T>
   static se3T<T> slope_of(const se3T<DualT<T>>& V) {
-    return {{V.w.x.slope[0], V.w.y.slope[0], V.w.z.slope[0]},
-            {V.v.x.slope[0], V.v.y.slope[0], V.v.z.slope[0]}};
+    return {{V.w.x.derivative[0], V.w.y.derivative[0], V.w.z.derivative[0]},
+            {V.v.x.derivative[0], V.v.y.derivative[0], V.v.z.derivative[0]}};
   }
 
   bool says_slopes_;

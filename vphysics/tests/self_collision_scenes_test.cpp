@@ -399,7 +399,7 @@ class Humanoid {
     }
     id = must(world.create_articulation({model_of(links_), collide}));
     for (std::size_t l = 0; l < links_.size(); ++l) {
-      for (const Round& r : shapes_[l]) {
+      for (const Pass& r : shapes_[l]) {
         must(world.add_collider(world.link_body(id, static_cast<int>(l)),
                                 collider_of(shape_of(r), kRough, pose_of(r))));
       }
@@ -412,24 +412,24 @@ class Humanoid {
   ArticulationId id;
 
  private:
-  struct Round {
+  struct Pass {
     Vec3 from, to;
     double radius;
   };
-  static Shape shape_of(const Round& r) {
+  static Shape shape_of(const Pass& r) {
     const double length = norm(r.to - r.from);
     if (length == 0.0) return Sphere{r.radius};
     return Capsule{r.radius, 0.5 * length};
   }
-  static SE3 pose_of(const Round& r) {
+  static SE3 pose_of(const Pass& r) {
     const double length = norm(r.to - r.from);
     const Mat3 R = length > 0.0 ? facing((1.0 / length) * (r.to - r.from)) : Mat3::identity();
     return SE3(R, 0.5 * (r.from + r.to));
   }
   int add(int parent, const Vec3& at, const Joint& joint, const std::vector<JointForces>& forces,
-          const std::vector<Round>& shapes) {
+          const std::vector<Pass>& shapes) {
     Inertia sum;
-    for (const Round& r : shapes) {
+    for (const Pass& r : shapes) {
       sum = sum + solid_inertia(shape_of(r), 1000.0).InvXform(pose_of(r));
     }
     links_.push_back(link_of(parent, joint, at, sum));
@@ -438,7 +438,7 @@ class Humanoid {
     return static_cast<int>(links_.size()) - 1;
   }
   int hinge(int parent, const Vec3& at, const Vec3& axis, double lower, double upper,
-            const std::vector<Round>& shapes = {}) {
+            const std::vector<Pass>& shapes = {}) {
     const int link = add(parent, at, RevoluteJoint{axis}, {stops(lower, upper)}, shapes);
     links_.back().damping = damping_;
     links_.back().armature = armature_;
@@ -446,7 +446,7 @@ class Humanoid {
   }
   double damping_ = 0.0, armature_ = 0.0;
   std::vector<LinkSpec> links_;
-  std::vector<std::vector<Round>> shapes_;
+  std::vector<std::vector<Pass>> shapes_;
 };
 
 TEST(SelfCollision, AHumanoidFallsOnItselfAndLiesStill) {

@@ -101,8 +101,8 @@ inline Vec3 support(const Geometry& g, const SE3& T, const Vec3& n) {
 }
 
 // Gap between the shapes' projections on n, n from a to b.
-inline double gap_along(const Geometry& a, const SE3& Ta, const Geometry& b, const SE3& Tb,
-                        const Vec3& n) {
+inline double separation_along(const Geometry& a, const SE3& Ta, const Geometry& b, const SE3& Tb,
+                               const Vec3& n) {
   return dot(n, support(b, Tb, -n) - support(a, Ta, n));
 }
 
@@ -113,12 +113,12 @@ inline double sampled_separation(Random& random, const Geometry& a, const SE3& T
   double best = -1e30;
   for (int start = 0; start < 24; ++start) {
     Vec3 n = random.direction();
-    double gap = gap_along(a, Ta, b, Tb, n);
+    double gap = separation_along(a, Ta, b, Tb, n);
     // A step that gains doubles the reach, so that a long way along a ridge is not cut short.
     for (double size = 0.5; size > 1e-7;) {
       Vec3 m = n + size * random.in_cube(1.0);
       m = (1.0 / norm(m)) * m;
-      const double g = gap_along(a, Ta, b, Tb, m);
+      const double g = separation_along(a, Ta, b, Tb, m);
       size *= g > gap ? 2.0 : 0.93;
       if (g > gap) gap = g, n = m;
     }

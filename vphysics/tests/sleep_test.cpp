@@ -129,7 +129,7 @@ TEST(Sleep, MovesNothingAndLooksAtNothing) {
     must(s.world.step(0.001));
     ASSERT_EQ(s.world.counters().awake, 0u);
     ASSERT_EQ(s.world.counters().contacts, 0u);
-    ASSERT_EQ(s.world.counters().looked_at, 0u);
+    ASSERT_EQ(s.world.counters().narrow_phase_pairs, 0u);
     ASSERT_TRUE(s.world.contact_events().empty());
   }
   for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -331,7 +331,7 @@ TEST(Sleep, IsPartOfTheState) {
 struct News {
   std::vector<ContactEvent> events;
   std::vector<SE3> poses;
-  std::uint32_t looked_at = 0;  // in the last step
+  std::uint32_t narrow_phase_pairs = 0;  // in the last step
 };
 template <class F>
 News after_change(bool with_ball, const F& change, double time = 0.1) {
@@ -356,14 +356,14 @@ News after_change(bool with_ball, const F& change, double time = 0.1) {
     news.events.insert(news.events.end(), events.begin(), events.end());
   }
   for (const BodyId box : boxes) news.poses.push_back(world.pose(box));
-  news.looked_at = world.counters().looked_at;
+  news.narrow_phase_pairs = world.counters().narrow_phase_pairs;
   return news;
 }
 template <class F>
 News same_with_and_without_others(const F& change) {
   const News alone = after_change(false, change), beside = after_change(true, change);
   EXPECT_EQ(alone.poses, beside.poses);
-  EXPECT_EQ(alone.looked_at, beside.looked_at);
+  EXPECT_EQ(alone.narrow_phase_pairs, beside.narrow_phase_pairs);
   EXPECT_EQ(alone.events.size(), beside.events.size());
   for (std::size_t i = 0; i < std::min(alone.events.size(), beside.events.size()); ++i) {
     EXPECT_EQ(alone.events[i].kind, beside.events[i].kind);
@@ -404,7 +404,7 @@ TEST(Sleep, DoesNotMindWhatIsMadeBesideIt) {
     add_fixed(world, Box{{0.1, 0.1, 0.02}}, {}, SE3(kUpper + Vec3{0.202, 0, 0}));
   });
   EXPECT_TRUE(news.events.empty());
-  EXPECT_EQ(news.looked_at, 0u);
+  EXPECT_EQ(news.narrow_phase_pairs, 0u);
 }
 
 TEST(Sleep, IsSeenBySensorsMadeOrPutThere) {
@@ -429,7 +429,7 @@ TEST(Sleep, IsSeenBySensorsMadeOrPutThere) {
     ASSERT_EQ(news.events.size(), 1u);
     EXPECT_EQ(news.events[0].kind, ContactEvent::Kind::begin);
     EXPECT_TRUE(news.events[0].sensor);
-    EXPECT_EQ(news.looked_at, 0u);  // not again and again
+    EXPECT_EQ(news.narrow_phase_pairs, 0u);  // not again and again
   }
 }
 

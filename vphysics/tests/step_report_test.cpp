@@ -133,11 +133,11 @@ TEST(Counters, OfBoxesAtRestAreThoseOfASketch) {
   EXPECT_EQ(c.manifolds, 6u);
   EXPECT_EQ(c.contacts, 24u);
   EXPECT_EQ(c.recycled, 6u);
-  EXPECT_EQ(c.looked_at, 0u);
+  EXPECT_EQ(c.narrow_phase_pairs, 0u);
   EXPECT_EQ(c.pairs, 6u);
   EXPECT_EQ(c.colours, 2u);  // box on box, box on ground
   EXPECT_EQ(c.sub_steps, 3u);
-  EXPECT_EQ(c.bounce_rounds, 0u);
+  EXPECT_EQ(c.restitution_iterations, 0u);
   EXPECT_EQ(c.awake, 6u);
   EXPECT_EQ(c.events, world.contact_events().size());
 }

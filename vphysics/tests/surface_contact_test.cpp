@@ -340,7 +340,7 @@ TEST(SurfaceContact, HasNoMoreManifoldsThanNormalsAreToldApart) {
   for (int k = 0; k < 200; ++k) {
     const SE3 T(random.rotation(), {random.uniform(1, 4), random.uniform(1, 4), 0.3});
     const Found found = find(mesh, SE3{}, Box{{0.8, 0.8, 0.2}}, T, 0.05);
-    EXPECT_LE(found.manifolds.size(), collide::kMostClusters);
+    EXPECT_LE(found.manifolds.size(), collide::kMaxClusters);
     std::vector<std::uint32_t> names;
     for (const SubManifold& s : found.manifolds) {
       for (int i = 0; i < s.manifold.count; ++i) names.push_back(s.manifold.points[i].feature);

@@ -348,14 +348,14 @@ TEST(Contact, AWalkerStandsOnItsFourFeet) {
     const Walker walker = add_walker(world, {0, 0, Walker::kHeight + 0.001}, m);
     const BodyId trunk = world.link_body(walker.id, 0);
     for (int i = 0; i < static_cast<int>(2.0 / dt); ++i) must(world.step(dt));
-    const Vec3 settled = world.pose(trunk).position();
+    const Vec3 converged = world.pose(trunk).position();
     for (int i = 0; i < static_cast<int>(2.0 / dt); ++i) must(world.step(dt));
     const SE3 T = world.pose(trunk);
     std::printf("at %.2f ms: trunk sunk by %.3g mm, in two seconds moved by %.3g mm\n", 1e3 * dt,
-                1e3 * (Walker::kHeight - T.position().z), 1e3 * norm(T.position() - settled));
+                1e3 * (Walker::kHeight - T.position().z), 1e3 * norm(T.position() - converged));
     EXPECT_NEAR(T.position().z, Walker::kHeight, 0.002) << dt;
     EXPECT_GT(T.rotation().cz.z, 0.9999) << dt;
-    EXPECT_LT(norm(T.position() - settled), 1e-3) << dt;
+    EXPECT_LT(norm(T.position() - converged), 1e-3) << dt;
     EXPECT_LT(norm(world.velocity(trunk).v), 0.01) << dt;
   }
 }

@@ -31,8 +31,8 @@ class SliderOnACurve final : public UserJoint {
     S[0] = {{0, 0, 1}, {1, 0, s}};  // seen from the link
     rate = {{0, 0, 0}, {0, 0, v[0] * v[0]}};
   }
-  bool slopes(std::span<const double> /*q*/, std::span<const double> /*v*/, std::span<se3> dS_dq,
-              std::span<se3> drate_dq) const override {
+  bool subspace_derivatives(std::span<const double> /*q*/, std::span<const double> /*v*/,
+                            std::span<se3> dS_dq, std::span<se3> drate_dq) const override {
     dS_dq[0] = {{0, 0, 0}, {0, 0, 1}};
     drate_dq[0] = {};
     return true;

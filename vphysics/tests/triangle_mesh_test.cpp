@@ -38,7 +38,7 @@ TEST(TriangleMesh, RefusesWhatIsNoMeshAndSaysWhy) {
   expect_refused({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 1, 2}}, "area");
   expect_refused({{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}, {{0, 1, 2}}, "area");
   MeshOptions strict;
-  strict.refuse_degenerate = true;
+  strict.reject_degenerate = true;
   expect_refused(corner, {{0, 1, 2}, {2, 1, 2}}, "triangle 1", strict);
   EXPECT_TRUE(TriangleMesh::of(corner, Triangles{{0, 1, 2}}, strict));
 }
@@ -133,13 +133,13 @@ TEST(TriangleMesh, KnowsNeighboursByThePlaceOfTheirCorners) {
   for (std::uint32_t i = 0; i < 12; ++i) {
     const collide::SurfaceTriangle t = surface.triangle(i);
     for (int e = 0; e < 3; ++e) {
-      EXPECT_TRUE(t.has_across[e]);
+      EXPECT_TRUE(t.has_opposite[e]);
       // The diagonals of the faces are not felt, the box's edges are, from outside only.
       const Vec3 middle = 0.5 * (t.p[e] + t.p[(e + 1) % 3]);
       const int on = (std::fabs(middle.x) == 1.0) + (std::fabs(middle.y) == 2.0) +
                      (std::fabs(middle.z) == 3.0);
-      EXPECT_EQ((t.felt >> e) & 1u, on == 2 ? 1u : 0u);
-      EXPECT_EQ((t.felt >> (3 + e)) & 1u, 0u);
+      EXPECT_EQ((t.active >> e) & 1u, on == 2 ? 1u : 0u);
+      EXPECT_EQ((t.active >> (3 + e)) & 1u, 0u);
     }
   }
 }
@@ -152,7 +152,7 @@ TEST(TriangleMesh, FeelsNoEdgeInsideAPlaneOfAnyTriangulation) {
     const collide::SurfaceTriangle t = surface.triangle(i);
     EXPECT_NEAR(t.normal.z, 1.0, 1e-12);
     for (unsigned e = 0; e < 3; ++e) {
-      EXPECT_EQ((t.felt >> e) & 1u, t.has_across[e] ? 0u : 1u);  // the border is
+      EXPECT_EQ((t.active >> e) & 1u, t.has_opposite[e] ? 0u : 1u);  // the border is
     }
   }
 }
@@ -164,10 +164,10 @@ TEST(TriangleMesh, LooksAcrossTrianglesWithoutArea) {
       TriangleMesh::of(v, Triangles{{0, 1, 3}, {0, 2, 1}, {0, 4, 2}, {2, 5, 1}}).value();
   EXPECT_EQ(mesh.left_out(), 1u);
   const Surface surface(*mesh.data(), mesh.scale());
-  EXPECT_TRUE(surface.triangle(0).has_across[0]);
-  EXPECT_EQ(surface.triangle(0).felt & 1u, 0u);
-  EXPECT_TRUE(surface.triangle(2).has_across[2]);
-  EXPECT_TRUE(surface.triangle(3).has_across[2]);
+  EXPECT_TRUE(surface.triangle(0).has_opposite[0]);
+  EXPECT_EQ(surface.triangle(0).active & 1u, 0u);
+  EXPECT_TRUE(surface.triangle(2).has_opposite[2]);
+  EXPECT_TRUE(surface.triangle(3).has_opposite[2]);
 }
 
 // An edge of three triangles, two triangles in one place, and a fold onto itself are borders.
@@ -177,7 +177,7 @@ TEST(TriangleMesh, FeelsEdgesThatHaveNoOneNeighbour) {
        {Triangles{{0, 1, 2}, {1, 0, 3}, {0, 1, 4}}, Triangles{{0, 1, 2}, {1, 0, 5}}}) {
     const TriangleMesh mesh = TriangleMesh::of(v, triangles).value();
     const Surface surface(*mesh.data(), mesh.scale());
-    EXPECT_EQ(surface.triangle(0).felt & 9u, 9u);
+    EXPECT_EQ(surface.triangle(0).active & 9u, 9u);
   }
 }
 
@@ -283,12 +283,12 @@ TEST(HeightField, HasTheNeighboursAndFeltEdgesOfTheMeshOfItsTriangles) {
     for (std::uint32_t k = 0; k < ids.size(); ++k) {
       const collide::SurfaceTriangle a = surface.triangle(ids[k]), b = truth.triangle(k);
       EXPECT_GT(a.normal.z, 0.0);
-      EXPECT_EQ(a.felt, b.felt);
+      EXPECT_EQ(a.active, b.active);
       for (int e = 0; e < 3; ++e) {
         EXPECT_EQ(a.p[e], b.p[e]);
-        ASSERT_EQ(a.has_across[e], b.has_across[e]);
-        if (a.has_across[e]) {
-          EXPECT_EQ(a.across[e], b.across[e]);
+        ASSERT_EQ(a.has_opposite[e], b.has_opposite[e]);
+        if (a.has_opposite[e]) {
+          EXPECT_EQ(a.opposite[e], b.opposite[e]);
         }
       }
     }

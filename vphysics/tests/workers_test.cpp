@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "joints_rig.h"
-#include "vphysics/jobs.h"
+#include "vphysics/task_scheduler.h"
 // The thread sanitizer does not see how Debian's oneTBB, not built for it, hands work over.
 #if defined(VP_TEST_TBB) && defined(__has_feature)
 #if __has_feature(thread_sanitizer)
@@ -15,14 +15,14 @@
 #endif
 #endif
 #ifdef VP_TEST_TBB
-#include "vphysics/tbb_jobs.h"
+#include "vphysics/tbb_task_scheduler.h"
 #endif
 
 namespace vp::test {
 namespace {
 
 // One grain after the other, the last first.
-class Backwards final : public Jobs {
+class Backwards final : public TaskScheduler {
  public:
   int parts = 0;
 
@@ -35,7 +35,7 @@ class Backwards final : public Jobs {
 };
 
 // As many threads as it is told, each taking the next grain that is left.
-class Threads final : public Jobs {
+class Threads final : public TaskScheduler {
  public:
   explicit Threads(int count) : begin_(count), end_(count) {
     for (int i = 1; i < count; ++i) {
@@ -105,10 +105,10 @@ World busy_world(int region_bodies) {
 }
 
 // The hashes of every tenth step.
-std::vector<std::uint64_t> hashes_with(std::shared_ptr<Jobs> jobs, int steps = 30,
+std::vector<std::uint64_t> hashes_with(std::shared_ptr<TaskScheduler> jobs, int steps = 30,
                                        int region_bodies = 2048) {
   World world = busy_world(region_bodies);
-  world.set_jobs(std::move(jobs));
+  world.set_task_scheduler(std::move(jobs));
   std::vector<std::uint64_t> hashes;
   for (int i = 0; i < steps; ++i) {
     must(world.step(1.0 / 240));
@@ -145,13 +145,13 @@ TEST_F(Workers, MayBeFiveThreads) {
 TEST_F(Workers, MayBeThoseOfOneTbb) {
   for (const int workers : {1, 2, 4}) {
     SCOPED_TRACE(workers);
-    EXPECT_EQ(hashes_with(make_tbb_jobs(workers)), alone_);
+    EXPECT_EQ(hashes_with(make_tbb_task_scheduler(workers)), alone_);
   }
 }
 #endif
 // Contacts alone, in regions of a few bodies that are divided anew on the way: a heap on a lift
 // that rises and turns.
-std::vector<std::uint64_t> hashes_of_lift(const std::shared_ptr<Jobs>& jobs) {
+std::vector<std::uint64_t> hashes_of_lift(const std::shared_ptr<TaskScheduler>& jobs) {
   WorldDesc desc;
   desc.region_bodies = 12;
   World world(desc);
@@ -163,7 +163,7 @@ std::vector<std::uint64_t> hashes_of_lift(const std::shared_ptr<Jobs>& jobs) {
         SE3(Vec3{0.21 * (i % 5) + 0.01 * (i % 3), 0.21 * (i / 5 % 5), 0.2 + 0.22 * (i / 25)});
     add_dynamic(world, part);
   }
-  world.set_jobs(jobs);
+  world.set_task_scheduler(jobs);
   std::vector<std::uint64_t> hashes;
   for (int i = 0; i < 150; ++i) {
     must(world.step(1.0 / 240));
@@ -194,7 +194,7 @@ TEST_F(Workers, MayTakeRegions) {
 TEST_F(Workers, MayComeAndGo) {
   World world = busy_world(2048);
   for (int i = 0; i < 30; ++i) {
-    world.set_jobs(i % 2 == 0 ? std::make_shared<Backwards>() : nullptr);
+    world.set_task_scheduler(i % 2 == 0 ? std::make_shared<Backwards>() : nullptr);
     must(world.step(1.0 / 240));
   }
   EXPECT_EQ(world.state_hash(), alone_[2]);

@@ -371,7 +371,7 @@ TEST(ImpactLimit, HoldsWhatWouldMeetAndSaysSo) {
   const BodyId ball = add_ball(world, {0, 0, kBallRadius + 0.005}, {0, 0, -20}, {0.0, 1.0, 0.0});
   const StepStatus status = must(world.step(0.001));
   EXPECT_TRUE(status.impact_limit);
-  EXPECT_NEAR(status.time_held, 0.001, 1e-12);
+  EXPECT_NEAR(status.time_lost, 0.001, 1e-12);
   EXPECT_EQ(world.pose(ball).position().z, kBallRadius + 0.005);
 }
 

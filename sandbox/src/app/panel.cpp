@@ -116,7 +116,7 @@ void timings(const Simulation& simulation, const Meter& meter, double drawing) {
     row("awake", "%.0f", counters.awake);
     row("pairs", "%.0f", counters.pairs);
     row("contacts", "%.0f", counters.contacts);
-    row("looked at", "%.0f", counters.looked_at);
+    row("narrow phase", "%.0f", counters.narrow_phase_pairs);
     row("recycled", "%.0f", counters.recycled);
     row("colours", "%.0f", counters.colours);
     row("regions", "%.0f", counters.regions);
@@ -143,7 +143,7 @@ void limits(const vp::StepStatus& status) {
   for (const vp::Limit limit : vp::kLimits) {
     if (reached(status, limit)) ImGui::TextColored(kBright, "%s", sentence(limit));
   }
-  if (status.impact_limit) ImGui::TextColored(kBright, "%.3f s held", status.time_held);
+  if (status.impact_limit) ImGui::TextColored(kBright, "%.3f s held", status.time_lost);
   ImGui::PopTextWrapPos();
 }
 

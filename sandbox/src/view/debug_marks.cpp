@@ -19,14 +19,14 @@ class ToMarks : public vp::DebugDraw {
  public:
   ToMarks(const vp::Vec3& origin, Marks& marks) : origin_(origin), marks_(marks) {}
 
-  void line(const vp::Vec3& from, const vp::Vec3& to, vp::DebugMark mark) override {
+  void line(const vp::Vec3& from, const vp::Vec3& to, vp::DebugCategory mark) override {
     marks_.line(seen(from), seen(to), mark_colour(mark), behind(mark));
   }
-  void point(const vp::Vec3& at, vp::DebugMark mark) override {
+  void point(const vp::Vec3& at, vp::DebugCategory mark) override {
     marks_.point(seen(at), mark_colour(mark), behind(mark));
   }
   // The picture has its own ground.
-  bool shape(vp::ColliderId, const vp::Shape& shape, const vp::SE3&, vp::DebugMark) override {
+  bool shape(vp::ColliderId, const vp::Shape& shape, const vp::SE3&, vp::DebugCategory) override {
     return std::holds_alternative<vp::HalfSpace>(shape);
   }
 
@@ -36,8 +36,8 @@ class ToMarks : public vp::DebugDraw {
   }
 
  private:
-  static float behind(vp::DebugMark mark) {
-    return mark >= vp::DebugMark::axis_x ? Marks::kWithin : Marks::kOnSurface;
+  static float behind(vp::DebugCategory mark) {
+    return mark >= vp::DebugCategory::axis_x ? Marks::kWithin : Marks::kOnSurface;
   }
 
   vp::Vec3 origin_;

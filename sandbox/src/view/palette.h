@@ -10,7 +10,7 @@
 namespace sandbox {
 
 inline constexpr glm::vec4 kGripColour{1.0f, 1.0f, 1.0f, 1.0f};
-glm::vec4 mark_colour(vp::DebugMark mark);
+glm::vec4 mark_colour(vp::DebugCategory mark);
 
 // linear rgb; a: gloss
 glm::vec4 body_colour(std::size_t index);

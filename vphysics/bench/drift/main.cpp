@@ -157,8 +157,9 @@ int main(int argc, char** argv) {
   }
   std::vector<Curve> curves;
   for (const System& system : {tumbling_body(), ten_link_pendulum()}) {
-    for (const auto& movers : {our_movers(system), mujoco_movers(system), dart_movers(system)}) {
-      for (const auto& mover : movers) {
+    for (const auto& awake_bodies :
+         {our_movers(system), mujoco_movers(system), dart_movers(system)}) {
+      for (const auto& mover : awake_bodies) {
         curves.push_back(watch(system, *mover, steps));
         const Curve& c = curves.back();
         const Errors e = until(c, steps);

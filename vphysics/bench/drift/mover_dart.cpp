@@ -81,9 +81,9 @@ class Dart final : public Mover {
 }  // namespace
 
 std::vector<std::unique_ptr<Mover>> dart_movers(const System& system) {
-  std::vector<std::unique_ptr<Mover>> movers;
-  movers.push_back(std::make_unique<Dart>(system));
-  return movers;
+  std::vector<std::unique_ptr<Mover>> awake_bodies;
+  awake_bodies.push_back(std::make_unique<Dart>(system));
+  return awake_bodies;
 }
 
 }  // namespace vp::bench

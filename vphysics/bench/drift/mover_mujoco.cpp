@@ -93,11 +93,11 @@ class Mujoco final : public Mover {
 
 std::vector<std::unique_ptr<Mover>> mujoco_movers(const System& system) {
   mju_user_warning = [](const char*) {};  // else a file in the working directory; counted instead
-  std::vector<std::unique_ptr<Mover>> movers;
-  movers.push_back(std::make_unique<Mujoco>(system, mjINT_EULER, "MuJoCo: Euler"));
-  movers.push_back(std::make_unique<Mujoco>(system, mjINT_IMPLICIT, "MuJoCo: implicit"));
-  movers.push_back(std::make_unique<Mujoco>(system, mjINT_RK4, "MuJoCo: RK4"));
-  return movers;
+  std::vector<std::unique_ptr<Mover>> awake_bodies;
+  awake_bodies.push_back(std::make_unique<Mujoco>(system, mjINT_EULER, "MuJoCo: Euler"));
+  awake_bodies.push_back(std::make_unique<Mujoco>(system, mjINT_IMPLICIT, "MuJoCo: implicit"));
+  awake_bodies.push_back(std::make_unique<Mujoco>(system, mjINT_RK4, "MuJoCo: RK4"));
+  return awake_bodies;
 }
 
 }  // namespace vp::bench

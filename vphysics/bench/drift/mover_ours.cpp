@@ -52,15 +52,15 @@ class Ours final : public Mover {
 }  // namespace
 
 std::vector<std::unique_ptr<Mover>> our_movers(const System& system) {
-  std::vector<std::unique_ptr<Mover>> movers;
+  std::vector<std::unique_ptr<Mover>> awake_bodies;
   const auto add = [&](Method method, const char* label) {
-    movers.push_back(std::make_unique<Ours>(system, method, label));
+    awake_bodies.push_back(std::make_unique<Ours>(system, method, label));
   };
   add(Method::semi_implicit, "vphysics: semi-implicit Euler");
   add(Method::rk4, "vphysics: RK4");
   add(Method::adaptive, "vphysics: adaptive 1e-10");
   add(Method::variational, "vphysics: variational");
-  return movers;
+  return awake_bodies;
 }
 
 }  // namespace vp::bench

@@ -19,7 +19,7 @@ struct ShareGoal {
   const char* metric;
   double bound;
 };
-constexpr ShareGoal kShares[] = {{"forward", 0.19}, {"inverse", 0.15}, {"mass", 0.28}};
+constexpr ShareGoal kFractions[] = {{"forward", 0.19}, {"inverse", 0.15}, {"mass", 0.28}};
 // Half of Pinocchio's derivatives of forward dynamics, as shares of MuJoCo's forward dynamics.
 struct DerivativeGoal {
   const char* model;
@@ -136,7 +136,7 @@ std::string reasons(const std::vector<Figure>& figures) {
 
 std::vector<Goal> goals(const std::vector<Figure>& figures, const CompileCost* compile) {
   std::vector<Goal> out;
-  for (const ShareGoal& goal : kShares) {
+  for (const ShareGoal& goal : kFractions) {
     const std::string metric = std::string(goal.metric) + "_us";
     for (const char* model : kShareModels)
       add_share(figures, model, metric, metric, goal.bound, out);

@@ -11,7 +11,7 @@
 namespace vp {
 
 // What a line or a point stands for: the picture chooses its colour, its width, or to leave it out.
-enum class DebugMark : std::uint8_t {
+enum class DebugCategory : std::uint8_t {
   fixed_shape,
   kinematic_shape,
   dynamic_shape,  // links too
@@ -28,22 +28,22 @@ enum class DebugMark : std::uint8_t {
   joint,       // from a body or a link's parent over the joint to the other body or the link
   joint_axis,  // that it turns about or slides along
 };
-inline constexpr int kDebugMarks = 15;
+inline constexpr int kDebugCategories = 15;
 
 // A colour that tells it from the others on dark and light ground: 0xRRGGBB.
-std::uint32_t usual_colour(DebugMark mark);
+std::uint32_t usual_colour(DebugCategory category);
 
 // Is called from within World::debug_draw, in the same order for the same world. Nothing in it may
 // change that world. World frame [m].
 class DebugDraw {
  public:
   virtual ~DebugDraw() = default;
-  virtual void line(const Vec3& from, const Vec3& to, DebugMark mark) = 0;
-  virtual void point(const Vec3& at, DebugMark mark) = 0;
+  virtual void line(const Vec3& from, const Vec3& to, DebugCategory category) = 0;
+  virtual void point(const Vec3& at, DebugCategory category) = 0;
   // A collider. True: it is drawn; false: its wire follows, as lines. The shape is there for the
   // call alone.
   virtual bool shape(ColliderId collider, const Shape& shape, const SE3& T_world_shape,
-                     DebugMark mark);
+                     DebugCategory category);
 };
 
 struct DebugDrawOptions {

@@ -38,7 +38,7 @@ struct RayHit : QueryHit {
 // Where a shape goes: along a straight line, turning about its frame's origin.
 struct CastMotion {
   Vec3 translation;  // world frame [m]
-  Vec3 turn;         // world frame [rad], axis times angle
+  Vec3 rotation;     // world frame [rad], axis times angle
 };
 
 struct ShapeHit : QueryHit {

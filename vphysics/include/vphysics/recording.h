@@ -63,8 +63,8 @@ class Recorder {
  private:
   friend class World;
   [[nodiscard]] Expected<void> begin(const World& world, const WorldDesc& desc,
-                                     std::uint64_t structure, bool empty);
-  void add(const RecordedCall& call, std::uint64_t structure);
+                                     std::uint64_t topology_hash, bool empty);
+  void add(const RecordedCall& call, std::uint64_t topology_hash);
   void add_step(const World& world, double dt);
   void end();
   void write_frame();
@@ -113,7 +113,7 @@ class Replay {
                                               World* built);
   class Frame;
   [[nodiscard]] Expected<void> play(std::span<const std::byte> frame);
-  [[nodiscard]] Expected<void> make(const RecordedCall& call, std::uint64_t structure);
+  [[nodiscard]] Expected<void> make(const RecordedCall& call, std::uint64_t topology_hash);
   [[nodiscard]] Expected<void> make_step(double dt, const std::uint64_t* hash);
   tl::unexpected<Error> stop(const Error& error);
 

@@ -16,7 +16,7 @@ struct StepStatus {
   bool distance_limit = false;  // Limit::distances
   bool colour_limit = false;    // Limit::colours
   bool position_error = false;  // Limit::positions
-  double time_held = 0.0;       // the part of dt lost to impact_limit [s]
+  double time_lost = 0.0;       // the part of dt lost to impact_limit [s]
 
   StepStatus& operator|=(const StepStatus& other);  // what either has met; times add up
 };
@@ -49,9 +49,9 @@ bool reached(const StepStatus& status, Limit limit);
 const char* sentence(Limit limit);
 
 struct StepCounters {
-  std::uint32_t pairs = 0;      // of colliders, or of parts of them, that are near one another
-  std::uint32_t looked_at = 0;  // of them, given to the narrow phase; the others have not moved by
-                                // enough against one another
+  std::uint32_t pairs = 0;  // of colliders, or of parts of them, that are near one another
+  std::uint32_t narrow_phase_pairs = 0;  // of them, given to the narrow phase; the others have not
+                                         // moved by enough against one another
   std::uint32_t triangles = 0;  // of meshes and height fields, that it looked at
   std::uint32_t manifolds = 0;  // contacts in the solver of sub-steps, with one normal each
   std::uint32_t recycled = 0;   // of them, those of the last step, as they were
@@ -59,10 +59,11 @@ struct StepCounters {
   std::uint32_t colours = 0;    // sets of contacts that share no body
   std::uint32_t regions = 0;    // that a large world is solved in; 0: in one piece
   std::uint32_t sub_steps = 0;  // 0: nothing takes part in them
-  std::uint32_t bounce_rounds = 0;  // in which something bounced, summed over the sub-steps
-  std::uint32_t impacts = 0;        // times of impact found
-  std::uint32_t awake = 0;   // bodies that move, those asleep left out; links are not counted
-  std::uint32_t events = 0;  // contact_events()
+  std::uint32_t restitution_iterations =
+      0;                      // in which something bounced, summed over the sub-steps
+  std::uint32_t impacts = 0;  // times of impact found
+  std::uint32_t awake = 0;    // bodies that move, those asleep left out; links are not counted
+  std::uint32_t events = 0;   // contact_events()
 };
 
 }  // namespace vp

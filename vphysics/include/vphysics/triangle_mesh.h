@@ -22,7 +22,7 @@ struct MeshOptions {
   bool two_sided = false;
   // Triangles without area (two corners in one place, or all on a line) are left out, or else the
   // mesh that has any is refused.
-  bool refuse_degenerate = false;
+  bool reject_degenerate = false;
 };
 
 // Triangles that share corners. A handle: copies share the same constant data, which may be used by

@@ -22,13 +22,13 @@
 #include "vphysics/debug_draw.h"
 #include "vphysics/error.h"
 #include "vphysics/ids.h"
-#include "vphysics/jobs.h"
 #include "vphysics/lie.h"
 #include "vphysics/multibody/model.h"
 #include "vphysics/query.h"
 #include "vphysics/shapes.h"
 #include "vphysics/stages.h"
 #include "vphysics/step_report.h"
+#include "vphysics/task_scheduler.h"
 #include "vphysics/world_joints.h"
 
 namespace vp {
@@ -312,7 +312,7 @@ class World {
 
   // --- time -------------------------------------------------------------------------------------
   // Who helps with the steps to come; null: nobody. The results are the same bits.
-  void set_jobs(std::shared_ptr<Jobs> jobs);
+  void set_task_scheduler(std::shared_ptr<TaskScheduler> scheduler);
   // Who is told of the stages of the steps to come; null: nobody, which costs nothing. The results
   // are the same bits.
   void observe_stages(std::shared_ptr<StageObserver> observer);

@@ -4,9 +4,10 @@
 // a's gives its coordinates:
 //
 //   x, y, z         b's origin along the axes of a's frame [m]
-//   turn_x, turn_y  the shortest turn that takes a's z axis to b's, as a vector across a's z [rad];
+//   rotation_x, rotation_y  the shortest turn that takes a's z axis to b's, as a vector across a's
+//   z [rad];
 //                   each within half a turn, not to be used near it
-//   turn_z          the turn about z that is left [rad]; counted on beyond whole turns
+//   rotation_z          the turn about z that is left [rad]; counted on beyond whole turns
 //
 // One of the two bodies may be fixed or kinematic, each may be a link: of one articulation they
 // close a loop of its tree. A continuous body may be joined to another one, to a link and to what
@@ -51,8 +52,8 @@ struct JointDrive {
 // The origins coincide.
 struct BallSocket {};
 
-// The origins and the z axes coincide. Its coordinate is turn_z; limits may be any number of turns
-// away.
+// The origins and the z axes coincide. Its coordinate is rotation_z; limits may be any number of
+// turns away.
 struct Hinge {
   double lower = -kNoLimit, upper = kNoLimit;  // [rad]
   JointDrive drive;
@@ -70,7 +71,7 @@ struct Weld {};
 // The origins are between least and most apart; equal ones make a rod. Its coordinate is the
 // distance [m].
 struct Distance {
-  double least = 0.0, most = 0.0;
+  double min = 0.0, max = 0.0;
 };
 
 // A spring with a damper between the origins; it pushes and pulls. Its coordinate is the length
@@ -82,16 +83,16 @@ struct Spring {
   double damping = 0.0;    // [N s/m]
 };
 
-// The origins coincide, b's z axis stays within an elliptic cone about a's z, and turn_z within
-// limits. Its coordinate is turn_z, the twist.
+// The origins coincide, b's z axis stays within an elliptic cone about a's z, and rotation_z within
+// limits. Its coordinate is rotation_z, the twist.
 struct ConeTwist {
-  double swing_x = 0.5, swing_y = 0.5;         // most of turn_x, of turn_y; in (0, 3.1] [rad]
+  double swing_x = 0.5, swing_y = 0.5;  // most of rotation_x, of rotation_y; in (0, 3.1] [rad]
   double lower = -kNoLimit, upper = kNoLimit;  // of the twist [rad]
   JointDrive drive;                            // of the twist
 };
 
 enum class AxisMotion : std::uint8_t { free, limited, locked };
-enum class JointAxis : std::uint8_t { x, y, z, turn_x, turn_y, turn_z };
+enum class JointAxis : std::uint8_t { x, y, z, rotation_x, rotation_y, rotation_z };
 struct AxisDesc {
   AxisMotion motion = AxisMotion::free;
   double lower = 0.0, upper = 0.0;  // if limited
@@ -118,12 +119,12 @@ struct PairRow {
 };
 
 // What a row may do.
-struct PairRowLaw {
+struct ConstraintRowDesc {
   double frequency = 0.0;      // of the spring that holds it at residual 0 [Hz]; 0: hard
   double damping_ratio = 1.0;  // of that spring
   // Of the row's force, dual to its residual: bounds that make one-sided (0 to kNoLimit) or
   // slipping rows.
-  double least_force = -kNoLimit, most_force = kNoLimit;
+  double min_force = -kNoLimit, max_force = kNoLimit;
 };
 
 // A constraint of one's own: derive from it, in one's own source file. It may be used by any number
@@ -131,8 +132,8 @@ struct PairRowLaw {
 class PairConstraint {
  public:
   virtual ~PairConstraint() = default;
-  virtual int rows() const = 0;           // 1 to 6, the same always
-  virtual PairRowLaw law(int row) const;  // asked once, when the joint is created
+  virtual int rows() const = 0;                       // 1 to 6, the same always
+  virtual ConstraintRowDesc row_desc(int row) const;  // asked once, when the joint is created
   // Called some times a step without allocating. All is zero at first. A row of zeros holds
   // nothing; rows that depend on others are fine. What is not finite counts as zero.
   virtual void evaluate(const SE3& T_world_a, const SE3& T_world_b, std::span<double> residual,

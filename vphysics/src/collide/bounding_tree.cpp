@@ -138,17 +138,17 @@ bool BoundingTree::insert(std::uint32_t item, const FloatBounds& bounds) {
   for (unsigned depth = 1; depth < kMaxDepth; ++depth) {
     const Node& n = nodes_[node];
     unsigned best = 8;
-    float least = 0.0f;
+    float smallest = 0.0f;
     for_each_bit(n.used, [&](unsigned i) {
       const FloatBounds b = n.bounds.lane(i);
       const float growth = half_area(merged(b, bounds)) - half_area(b);
-      if (best < 8 && !(growth < least)) return;
+      if (best < 8 && !(growth < smallest)) return;
       best = i;
-      least = growth;
+      smallest = growth;
     });
     const auto room = static_cast<unsigned>(std::countr_one(n.used));
     const bool into_leaf = best < 8 && ((n.leaves >> best) & 1u) != 0;
-    const bool growing = best == 8 || into_leaf || least > half_area(bounds);
+    const bool growing = best == 8 || into_leaf || smallest > half_area(bounds);
     if (room < 8 && growing) {
       set_child(8 * node + room, kLeaf | item, bounds);
       fit_above(node);
@@ -169,7 +169,7 @@ bool BoundingTree::insert(std::uint32_t item, const FloatBounds& bounds) {
   return false;
 }
 
-LaneSweep::LaneSweep(const Sweep& sweep) {
+BoxSweep::BoxSweep(const Sweep& sweep) {
   for (int axis = 0; axis < 3; ++axis) {
     const double d = sweep.displacement[axis];
     double lower = sweep.start.lower[axis], upper = sweep.start.upper[axis];
@@ -184,20 +184,20 @@ LaneSweep::LaneSweep(const Sweep& sweep) {
   }
 }
 
-unsigned LaneSweep::meets(const EightBounds& eight, float limit, float entry[8]) const {
+unsigned BoxSweep::overlaps(const EightBounds& eight, float limit, float entry[8]) const {
   // What the differences, the inverse and the products are rounded by, on both sides of the
   // comparison: 2 * 3 * 2^-24, and as much again.
   constexpr float kRounding = 1.0f + 8e-7f;
   unsigned bits = 0;
   for (unsigned h = 0; h < 2; ++h) {
-    Lanes4 in = all_lanes(0.0f), out = all_lanes(limit);
+    Lanes4 in = broadcast(0.0f), out = broadcast(limit);
     Mask4 within = in <= out;
     for (int axis = 0; axis < 3; ++axis) {
-      const Lanes4 low = eight.lower[axis][h] + all_lanes(add_to_lower_[axis]);
-      const Lanes4 high = eight.upper[axis][h] + all_lanes(add_to_upper_[axis]);
+      const Lanes4 low = eight.lower[axis][h] + broadcast(add_to_lower_[axis]);
+      const Lanes4 high = eight.upper[axis][h] + broadcast(add_to_upper_[axis]);
       const float inverse = inverse_[axis];
       if (inverse == 0.0f) {
-        within &= (low <= all_lanes(0.0f)) & (high >= all_lanes(0.0f));
+        within &= (low <= broadcast(0.0f)) & (high >= broadcast(0.0f));
         continue;
       }
       const Lanes4 near = (inverse > 0.0f ? low : high) * inverse;
@@ -212,11 +212,11 @@ unsigned LaneSweep::meets(const EightBounds& eight, float limit, float entry[8])
   return bits;
 }
 
-bool LaneSweep::meets(const FloatBounds& bounds, double limit, float& entry) const {
+bool BoxSweep::overlaps(const FloatBounds& bounds, double limit, float& entry) const {
   EightBounds eight;
   for (unsigned i = 0; i < 8; ++i) eight.set_lane(i, bounds);
   float entries[8];
-  if (!(limit >= 0.0) || meets(eight, beyond(limit), entries) == 0) return false;
+  if (!(limit >= 0.0) || overlaps(eight, beyond(limit), entries) == 0) return false;
   entry = entries[0];
   return true;
 }
@@ -226,8 +226,8 @@ float distance_between(const Bounds& box, const FloatBounds& other, const Vec3& 
   for (int axis = 0; axis < 3; ++axis) {
     const double below = static_cast<double>(other.lower[axis]) - box.upper[axis],
                  above = box.lower[axis] - static_cast<double>(other.upper[axis]);
-    const double apart = scale[axis] * std::max({0.0, below, above});
-    square += apart * apart;
+    const double separated = scale[axis] * std::max({0.0, below, above});
+    square += separated * separated;
   }
   return std::max(0.0f, rounded_down(std::sqrt(square)));
 }

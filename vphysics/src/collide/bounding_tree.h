@@ -162,12 +162,12 @@ class BoundingTree {
 
 // A sweep as the lanes' test wants it: where the fraction at which the box meets [lower, upper]
 // along an axis is (near - from) * inverse, all rounded so that nothing is missed.
-class LaneSweep {
+class BoxSweep {
  public:
-  explicit LaneSweep(const Sweep& sweep);
+  explicit BoxSweep(const Sweep& sweep);
   // Bit i: lane i is met at a fraction from 0 to limit. entry: the fractions.
-  unsigned meets(const EightBounds& eight, float limit, float entry[8]) const;
-  bool meets(const FloatBounds& bounds, double limit, float& entry) const;
+  unsigned overlaps(const EightBounds& eight, float limit, float entry[8]) const;
+  bool overlaps(const FloatBounds& bounds, double limit, float& entry) const;
   // Entries are rounded by some units of 2^-24: what lies beyond a fraction for sure.
   static float beyond(double limit) { return rounded_up(limit * (1.0 + 1e-6)); }
 
@@ -187,7 +187,7 @@ void BoundingTree::overlapping_below(std::uint32_t node, const SpreadBounds& box
   stack[depth++] = node;
   while (depth > 0) {
     const Node& n = nodes_[stack[--depth]];
-    const unsigned hit = overlapping_lanes(n.bounds, box);
+    const unsigned hit = overlap_mask(n.bounds, box);
     for_each_bit(hit & n.leaves, [&](unsigned i) { found(n.child[i] & ~kLeaf); });
     for_each_bit(hit & ~n.leaves, [&](unsigned i) { stack[depth++] = n.child[i]; });
   }
@@ -233,8 +233,8 @@ inline std::size_t BoundingTree::pairs_between(const Node& a, const BoundingTree
                                     ? SpreadBounds(other.bounds())
                                     : SpreadBounds(other.nodes_[slot / 8].bounds, slot % 8);
   std::size_t n = 0;
-  for_each_bit(overlapping_lanes(a.bounds, around_b), [&](unsigned i) {
-    const unsigned hit = overlapping_lanes(b.bounds, SpreadBounds(a.bounds, i));
+  for_each_bit(overlap_mask(a.bounds, around_b), [&](unsigned i) {
+    const unsigned hit = overlap_mask(b.bounds, SpreadBounds(a.bounds, i));
     n += append_chosen(hit, b.child, std::uint64_t{a.child[i]} << 32, out + n);
   });
   return n;
@@ -246,7 +246,7 @@ inline std::size_t BoundingTree::pairs_within(const Node& node, std::uint64_t* o
     out[n++] = (std::uint64_t{node.child[i]} << 32) | node.child[i];
   });
   for_each_bit(node.used, [&](unsigned i) {
-    const unsigned hit = overlapping_lanes(node.bounds, SpreadBounds(node.bounds, i));
+    const unsigned hit = overlap_mask(node.bounds, SpreadBounds(node.bounds, i));
     n += append_chosen(hit & ~((2u << i) - 1u), node.child, std::uint64_t{node.child[i]} << 32,
                        out + n);
   });
@@ -267,11 +267,11 @@ void BoundingTree::cast(const Sweep& sweep, double limit, CastScratch& scratch,
                         const F& hit) const {
   scratch.clear();
   if (size_ == 0 || !(limit >= 0.0)) return;
-  const LaneSweep lanes(sweep);
+  const BoxSweep lanes(sweep);
   scratch.push({0.0f, 0});
   while (!scratch.empty()) {
     const CastScratch::Entry next = scratch.pop();
-    const float farthest = LaneSweep::beyond(limit);
+    const float farthest = BoxSweep::beyond(limit);
     if (next.fraction > farthest) return;
     if (next.child & kLeaf) {
       limit = hit(next.child & ~kLeaf, next.fraction);
@@ -280,7 +280,7 @@ void BoundingTree::cast(const Sweep& sweep, double limit, CastScratch& scratch,
     }
     const Node& n = nodes_[next.child];
     float entry[8];
-    for_each_bit(lanes.meets(n.bounds, farthest, entry) & n.used, [&](unsigned i) {
+    for_each_bit(lanes.overlaps(n.bounds, farthest, entry) & n.used, [&](unsigned i) {
       scratch.push({entry[i], n.child[i]});
     });
   }

@@ -24,7 +24,7 @@ Vec3 disc_extents(const Vec3& axis) {
 }
 
 Bounds cylinder_bounds(const Geometry& g, const SE3& T) {
-  const Vec3 e = turned_extents(T.rotation(), g.half) + g.radius * disc_extents(T.rotation().cz);
+  const Vec3 e = rotated_extents(T.rotation(), g.half) + g.radius * disc_extents(T.rotation().cz);
   return {T.position() - e, T.position() + e};
 }
 
@@ -70,14 +70,14 @@ Bounds bounds_of(const Geometry& g, const SE3& T) {
     case Kind::box:
       break;
   }
-  const Vec3 e = turned_extents(T.rotation(), g.half) + Vec3{g.radius, g.radius, g.radius};
+  const Vec3 e = rotated_extents(T.rotation(), g.half) + Vec3{g.radius, g.radius, g.radius};
   return {T.position() - e, T.position() + e};
 }
 
 Bounds transformed(const SE3& T, const Bounds& inner) {
   if (empty(inner)) return inner;
   const Vec3 centre = T * (0.5 * (inner.lower + inner.upper));
-  const Vec3 e = turned_extents(T.rotation(), 0.5 * (inner.upper - inner.lower));
+  const Vec3 e = rotated_extents(T.rotation(), 0.5 * (inner.upper - inner.lower));
   return {centre - e, centre + e};
 }
 

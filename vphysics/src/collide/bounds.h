@@ -41,7 +41,7 @@ inline Bounds moved(const Bounds& a, const Vec3& by) {
   return {by + a.lower, by + a.upper};
 }
 // |R| h: half extents, in the outer axes, of a box turned by R.
-inline Vec3 turned_extents(const Mat3& R, const Vec3& h) {
+inline Vec3 rotated_extents(const Mat3& R, const Vec3& h) {
   return {std::fabs(R.cx.x) * h.x + std::fabs(R.cy.x) * h.y + std::fabs(R.cz.x) * h.z,
           std::fabs(R.cx.y) * h.x + std::fabs(R.cy.y) * h.y + std::fabs(R.cz.y) * h.z,
           std::fabs(R.cx.z) * h.x + std::fabs(R.cy.z) * h.y + std::fabs(R.cz.z) * h.z};

@@ -31,15 +31,15 @@ struct Boxes {
   }
 
   double towards_b(int j) const { return t.x * r[0][j] + t.y * r[1][j] + t.z * r[2][j]; }
-  double gap_of_a(int i) const {
+  double separation_of_a(int i) const {
     return std::fabs(t[i]) - (ha[i] + q[i][0] * hb.x + q[i][1] * hb.y + q[i][2] * hb.z);
   }
-  double gap_of_b(int j) const {
+  double separation_of_b(int j) const {
     return std::fabs(towards_b(j)) - (hb[j] + q[0][j] * ha.x + q[1][j] * ha.y + q[2][j] * ha.z);
   }
   double squared_sine(int i, int j) const { return 1.0 - r[i][j] * r[i][j]; }
   // Times the sine of the angle between the edges.
-  double edge_gap(int i, int j) const {
+  double edge_separation(int i, int j) const {
     const int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
     const double along = t[i2] * r[i1][j] - t[i1] * r[i2][j];
     return std::fabs(along) -
@@ -56,19 +56,19 @@ int axis_from_face(int face) {
 
 // The gap along the axis that separated them last time: no more than their distance. 0: there is
 // none.
-double gap_along_last(const Boxes& boxes, const CorePair& pair, const PairCache& cache) {
+double separation_along_last(const Boxes& boxes, const CorePair& pair, const PairCache& cache) {
   switch (cache.feature) {
     case PairCache::face_of_a:
-      return cache.i < 6 ? boxes.gap_of_a(axis_from_face(cache.i)) : 0.0;
+      return cache.i < 6 ? boxes.separation_of_a(axis_from_face(cache.i)) : 0.0;
     case PairCache::face_of_b:
-      return cache.i < 6 ? boxes.gap_of_b(axis_from_face(cache.i)) : 0.0;
+      return cache.i < 6 ? boxes.separation_of_b(axis_from_face(cache.i)) : 0.0;
     case PairCache::edges: {
       if (cache.i >= 3 || cache.j >= 3) return 0.0;
       const double sine2 = boxes.squared_sine(cache.i, cache.j);
-      return sine2 > kParallel ? boxes.edge_gap(cache.i, cache.j) / std::sqrt(sine2) : 0.0;
+      return sine2 > kParallel ? boxes.edge_separation(cache.i, cache.j) / std::sqrt(sine2) : 0.0;
     }
     default:
-      return gap_along(pair, first_direction(pair, cache));
+      return separation_along(pair, first_direction(pair, cache));
   }
 }
 
@@ -90,19 +90,19 @@ int facing(const Boxes& boxes, bool of_a, int axis) {
 
 // False as soon as a face separates by more than margin; that one is then the best.
 bool find_best_face(const ContactQuery& query, const Boxes& boxes, FaceAxis& best) {
-  best = {boxes.gap_of_a(0), {}, true, 0};
-  const auto consider = [&](bool of_a, int axis, double gap, double needed) {
-    if (gap > needed) best = {gap, {}, of_a, axis};
-    return gap <= query.margin;
+  best = {boxes.separation_of_a(0), {}, true, 0};
+  const auto consider = [&](bool of_a, int axis, double separation, double needed) {
+    if (separation > needed) best = {separation, {}, of_a, axis};
+    return separation <= query.margin;
   };
-  if (best.gap > query.margin) return false;
+  if (best.separation > query.margin) return false;
   for (int i = 1; i < 3; ++i) {
-    if (!consider(true, i, boxes.gap_of_a(i), best.gap)) return false;
+    if (!consider(true, i, boxes.separation_of_a(i), best.separation)) return false;
   }
-  double needed = best.gap + query.face_bias();
+  double needed = best.separation + query.face_bias();
   for (int j = 0; j < 3; ++j) {
-    if (!consider(false, j, boxes.gap_of_b(j), needed)) return false;
-    needed = std::max(needed, best.of_a ? needed : best.gap);
+    if (!consider(false, j, boxes.separation_of_b(j), needed)) return false;
+    needed = std::max(needed, best.of_a ? needed : best.separation);
   }
   return true;
 }
@@ -110,21 +110,21 @@ bool find_best_face(const ContactQuery& query, const Boxes& boxes, FaceAxis& bes
 // The best two edges, if better than the face; ends at once where they are apart by more than
 // margin.
 void find_better_edges(const Boxes& boxes, double margin, const FaceAxis& face, EdgeAxis& edge) {
-  edge.axis.gap = face.gap;
+  edge.axis.separation = face.separation;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
       // A gap below zero is no more than its part along the longer vector.
-      const double part = boxes.edge_gap(i, j);
-      if (part <= edge.axis.gap) continue;
+      const double part = boxes.edge_separation(i, j);
+      if (part <= edge.axis.separation) continue;
       const double sine2 = boxes.squared_sine(i, j);
       if (sine2 < kParallel) continue;
-      const double gap = part / std::sqrt(sine2);
-      if (gap <= edge.axis.gap) continue;
+      const double separation = part / std::sqrt(sine2);
+      if (separation <= edge.axis.separation) continue;
       edge.better = true;
-      edge.axis.gap = gap;
+      edge.axis.separation = separation;
       edge.i = i;
       edge.j = j;
-      if (gap > margin) return;
+      if (separation > margin) return;
     }
   }
 }
@@ -159,38 +159,38 @@ bool place_edges(const CorePair& pair, const Boxes& boxes, EdgeAxis& edge) {
 
 void collide_boxes(const CorePair& pair, double margin, PairCache& cache, Manifold& m) {
   const Boxes boxes(pair);
-  m.apart_by_at_least = gap_along_last(boxes, pair, cache);
-  if (m.apart_by_at_least > margin) return;
+  m.min_separation = separation_along_last(boxes, pair, cache);
+  if (m.min_separation > margin) return;
   const ContactQuery query(pair, margin);
   FaceAxis face;
   const bool near = find_best_face(query, boxes, face);
   face.normal = face_normal(pair, boxes, face.of_a, face.face);
   face.face = facing(boxes, face.of_a, face.face);
   EdgeAxis edge;
-  if (face.gap <= 0.0) find_better_edges(boxes, margin, face, edge);
-  const bool by_edges = edge.better && !query.face_suffices(face.gap, edge.axis.gap);
+  if (face.separation <= 0.0) find_better_edges(boxes, margin, face, edge);
+  const bool by_edges = edge.better && !query.face_suffices(face.separation, edge.axis.separation);
   if (!by_edges) {
     remember(cache, face.normal, face.of_a ? PairCache::face_of_a : PairCache::face_of_b,
              face.face);
-    m.apart_by_at_least = face.gap;
+    m.min_separation = face.separation;
     if (!near) return;
     Feature feature;
     face_feature(face.of_a ? pair.a : pair.b, face.of_a ? SE3{} : pair.T_a_b, face.face, feature);
     // A point of the patch proves how near they are.
-    const double best = edge.better ? edge.axis.gap : face.gap;
+    const double best = edge.better ? edge.axis.separation : face.separation;
     if (add_face_contact(query, face.of_a, feature, face.normal, best, m)) return;
   }
   if (edge.better) {
     const bool within = place_edges(pair, boxes, edge);
-    if (edge.axis.gap > margin || edge.axis.gap <= 0.0 || within) {
+    if (edge.axis.separation > margin || edge.axis.separation <= 0.0 || within) {
       remember(cache, edge.axis.normal, PairCache::edges, edge.i, edge.j);
-      m.apart_by_at_least = edge.axis.gap;
+      m.min_separation = edge.axis.separation;
       return add_contact_along(query, edge.axis, m);
     }
   }
   // Apart, but neither across a face nor between two edges.
   const GjkResult found = gjk(pair, face.normal, margin);
-  if (found.state != GjkResult::State::overlaps) return collide_apart(query, found, cache, m);
+  if (found.state != GjkResult::State::overlaps) return collide_separated(query, found, cache, m);
   add_contact_along(query, axis_of_face(pair, face), m);  // so near that it is rounding
 }
 

@@ -16,11 +16,11 @@ int BroadPhase::widest_axis(std::span<const Bounds> bounds) const {
     squares += Vec3{c.x * c.x, c.y * c.y, c.z * c.z};
   }
   int axis = 0;
-  double most = -1.0;
+  double largest = -1.0;
   for (int i = 0; i < 3; ++i) {
     const double variance = n > 0.0 ? squares[i] - sum[i] * sum[i] / n : 0.0;
-    if (variance > most) {
-      most = variance;
+    if (variance > largest) {
+      largest = variance;
       axis = i;
     }
   }

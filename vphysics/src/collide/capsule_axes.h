@@ -9,10 +9,10 @@
 namespace vp::collide {
 
 struct Axis {
-  Vec3 middle, direction;  // unit
+  Vec3 centre, direction;  // unit
   double half;             // length
 
-  Vec3 at(double s) const { return middle + s * direction; }
+  Vec3 at(double s) const { return centre + s * direction; }
 };
 
 struct AxisPair {
@@ -20,7 +20,7 @@ struct AxisPair {
 };
 // Where two segments are nearest to one another: s on a, t on b.
 inline AxisPair nearest_on_axes(const Axis& a, const Axis& b) {
-  const Vec3 r = a.middle - b.middle;
+  const Vec3 r = a.centre - b.centre;
   const double k = dot(a.direction, b.direction), ra = dot(a.direction, r),
                rb = dot(b.direction, r);
   const double parallel = 1.0 - k * k;
@@ -34,9 +34,9 @@ inline AxisPair nearest_on_axes(const Axis& a, const Axis& b) {
 inline Vec3 normal_between(const Axis& a, const Axis& b, const Vec3& d) {
   const double distance = norm(d);
   if (distance > 1e-12) return (1.0 / distance) * d;
-  const Vec3 across = cross(a.direction, b.direction);
-  const double sine = norm(across);
-  if (sine > 1e-9) return (1.0 / sine) * across;
+  const Vec3 perpendicular = cross(a.direction, b.direction);
+  const double sine = norm(perpendicular);
+  if (sine > 1e-9) return (1.0 / sine) * perpendicular;
   // Along one another: across the one, in whatever direction.
   const Vec3 e = std::fabs(a.direction.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
   const Vec3 n = cross(a.direction, e);

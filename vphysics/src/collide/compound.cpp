@@ -10,15 +10,15 @@
 namespace vp {
 namespace {
 
-constexpr std::size_t kMostParts = std::size_t{1} << 16;
-constexpr double kLeastPart = 1e-6, kLargestPart = 1e9;  // [m], as everywhere in the engine
+constexpr std::size_t kMaxParts = std::size_t{1} << 16;
+constexpr double kMinPart = 1e-6, kLargestPart = 1e9;  // [m], as everywhere in the engine
 
-tl::unexpected<Error> refused_compound(std::string message) {
+tl::unexpected<Error> invalid_compound(std::string message) {
   return tl::make_unexpected(Error{Errc::invalid_argument, "compound: " + std::move(message)});
 }
 
 bool is_size(double x) {
-  return x >= kLeastPart && x <= kLargestPart;
+  return x >= kMinPart && x <= kLargestPart;
 }
 bool has_size(const Vec3& a) {
   return is_size(a.x) && is_size(a.y) && is_size(a.z);
@@ -71,7 +71,7 @@ const char* problem_with_part(const Shape& shape) {
 Expected<void> append(std::span<const CompoundPart> parts, std::vector<CompoundPart>& all) {
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const auto refused = [&](const char* problem) {
-      return refused_compound("part " + std::to_string(i) + ": " + problem);
+      return invalid_compound("part " + std::to_string(i) + ": " + problem);
     };
     if (const char* problem = problem_with_part(parts[i].shape)) return refused(problem);
     if (!is_proper_pose(parts[i].T_compound_part)) {
@@ -84,8 +84,8 @@ Expected<void> append(std::span<const CompoundPart> parts, std::vector<CompoundP
     } else {
       all.push_back(parts[i]);
     }
-    if (all.size() > kMostParts) {
-      return refused_compound("more than 2^16 parts; split it into several compounds");
+    if (all.size() > kMaxParts) {
+      return invalid_compound("more than 2^16 parts; split it into several compounds");
     }
   }
   return {};
@@ -94,23 +94,23 @@ Expected<void> append(std::span<const CompoundPart> parts, std::vector<CompoundP
 }  // namespace
 
 Expected<Compound> Compound::of(std::span<const CompoundPart> parts) {
-  if (parts.empty()) return refused_compound("there are no parts; give at least one");
+  if (parts.empty()) return invalid_compound("there are no parts; give at least one");
   auto data = std::make_shared<collide::CompoundData>();
   if (const Expected<void> appended = append(parts, data->parts); !appended) {
     return tl::make_unexpected(appended.error());
   }
   std::vector<collide::TreeItem> items;
-  collide::Bounds whole;
+  collide::Bounds total_bounds;
   for (std::uint32_t i = 0; i < data->parts.size(); ++i) {
     const CompoundPart& part = data->parts[i];
     data->geometries.push_back(collide::make_geometry(part.shape));
     const collide::Bounds b = bounds_of(data->geometries.back(), part.T_compound_part);
-    items.push_back({collide::rounded_outwards(b), i});
-    whole = merged(whole, b);
+    items.push_back({collide::rounded_outward(b), i});
+    total_bounds = merged(total_bounds, b);
     data->unit = data->unit + solid_inertia(part.shape, 1.0).InvXform(part.T_compound_part);
   }
-  data->lower = whole.lower;
-  data->upper = whole.upper;
+  data->lower = total_bounds.lower;
+  data->upper = total_bounds.upper;
   data->tree.build(items, collide::BoundingTree::Effort::careful);
   return Compound(std::move(data));
 }

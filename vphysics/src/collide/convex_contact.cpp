@@ -15,9 +15,9 @@ bool find_face_axis(const ContactQuery& q, const Feature& a, const Feature& b, F
     const Feature& f = of_a ? a : b;
     if (f.count < 3) continue;
     const Vec3 n = of_a ? f.normal() : -f.normal();
-    const double gap = gap_along(q.pair, n);
-    if (found && !(gap > best.gap + q.face_bias())) continue;
-    best = {gap, n, of_a, 0};
+    const double separation = separation_along(q.pair, n);
+    if (found && !(separation > best.separation + q.face_bias())) continue;
+    best = {separation, n, of_a, 0};
     found = true;
   }
   return found;
@@ -38,7 +38,7 @@ void add_patch(const ContactQuery& q, const BestAxis& axis, const Feature& a, co
   PatchQuery patch = patch_query(q, a, b, axis.normal);
   patch.on_a = axis.on_a;
   patch.on_b = axis.on_b;
-  patch.core_separation = axis.gap;
+  patch.core_separation = axis.separation;
   m.normal = axis.normal;
   find_patch(patch, true, m);
 }
@@ -48,8 +48,8 @@ void add_contact(const ContactQuery& q, const BestAxis& axis, Manifold& m) {
   Feature a, b;
   features_along(q, axis.normal, a, b);
   FaceAxis face;
-  if (find_face_axis(q, a, b, face) && q.face_suffices(face.gap, axis.gap)) {
-    if (add_face_contact(q, face.of_a, face.of_a ? a : b, face.normal, axis.gap, m)) return;
+  if (find_face_axis(q, a, b, face) && q.face_suffices(face.separation, axis.separation)) {
+    if (add_face_contact(q, face.of_a, face.of_a ? a : b, face.normal, axis.separation, m)) return;
   }
   add_patch(q, axis, a, b, m);
 }
@@ -64,8 +64,8 @@ void collide_overlapping(const ContactQuery& q, const Simplex& simplex, const Ve
   const bool found = find_face_axis(q, a, b, face);
   if (found) {
     const double slack = kFaceAbsolute * q.pair.size + kFaceRelative * q.radii;
-    const Penetration p = epa(q.pair, simplex, (-face.gap - slack) / (1.0 + kFaceRelative));
-    if (q.face_suffices(face.gap, -p.at_least)) {
+    const Penetration p = epa(q.pair, simplex, (-face.separation - slack) / (1.0 + kFaceRelative));
+    if (q.face_suffices(face.separation, -p.at_least)) {
       remember(cache, face.normal);
       if (add_face_contact(q, face.of_a, face.of_a ? a : b, face.normal, -p.at_least, m)) return;
     }
@@ -79,8 +79,8 @@ void collide_polytopes(const ContactQuery& q, PairCache& cache, Manifold& m) {
   FaceAxis face;
   EdgeAxis edge;
   find_overlap_axes(q.pair, q.face_bias(), cache, face, edge);
-  const double best = edge.better ? edge.axis.gap : face.gap;
-  if (q.face_suffices(face.gap, best)) {
+  const double best = edge.better ? edge.axis.separation : face.separation;
+  if (q.face_suffices(face.separation, best)) {
     remember(cache, face.normal, face.of_a ? PairCache::face_of_a : PairCache::face_of_b,
              face.face);
     Feature feature;
@@ -104,7 +104,7 @@ bool is_direction(const Vec3& v) {
 }  // namespace
 
 bool add_face_contact(const ContactQuery& q, bool face_of_a, const Feature& face,
-                      const Vec3& normal, double best_gap, Manifold& m) {
+                      const Vec3& normal, double best_separation, Manifold& m) {
   Feature other;
   if (face_of_a) {
     find_feature(q.pair.b, q.pair.T_a_b, -q.pair.T_a_b.unrotate(normal), other);
@@ -113,19 +113,20 @@ bool add_face_contact(const ContactQuery& q, bool face_of_a, const Feature& face
   }
   m.normal = normal;
   find_patch(patch_query(q, face_of_a ? face : other, face_of_a ? other : face, normal), false, m);
-  if (q.tells(m, best_gap)) return true;
+  if (q.tells(m, best_separation)) return true;
   m.count = 0;
   return false;
 }
 
 BestAxis axis_of_face(const CorePair& pair, const FaceAxis& face) {
   const CorePoint p = support_of(pair, face.normal);
-  return face.of_a ? BestAxis{face.gap, face.normal, p.b() - face.gap * face.normal, p.b()}
-                   : BestAxis{face.gap, face.normal, p.a, p.a + face.gap * face.normal};
+  return face.of_a
+             ? BestAxis{face.separation, face.normal, p.b() - face.separation * face.normal, p.b()}
+             : BestAxis{face.separation, face.normal, p.a, p.a + face.separation * face.normal};
 }
 
 void add_contact_along(const ContactQuery& q, const BestAxis& axis, Manifold& m) {
-  if (axis.gap - q.radii > q.margin) return;
+  if (axis.separation - q.radii > q.margin) return;
   Feature a, b;
   features_along(q, axis.normal, a, b);
   add_patch(q, axis, a, b, m);
@@ -134,7 +135,7 @@ void add_contact_along(const ContactQuery& q, const BestAxis& axis, Manifold& m)
 Vec3 first_direction(const CorePair& pair, const PairCache& cache) {
   const Vec3 last{cache.normal[0], cache.normal[1], cache.normal[2]};
   if (is_direction(last)) return (1.0 / norm(last)) * last;
-  const Vec3 v = pair.T_a_b * core_middle(pair.b) - core_middle(pair.a);
+  const Vec3 v = pair.T_a_b * core_centre(pair.b) - core_centre(pair.a);
   const double length = norm(v);
   return length > 0.0 ? (1.0 / length) * v : Vec3{0, 0, 1};
 }
@@ -147,9 +148,10 @@ void remember(PairCache& cache, const Vec3& normal, PairCache::Feature feature, 
   cache.j = static_cast<std::uint16_t>(j);
 }
 
-void collide_apart(const ContactQuery& q, const GjkResult& found, PairCache& cache, Manifold& m) {
+void collide_separated(const ContactQuery& q, const GjkResult& found, PairCache& cache,
+                       Manifold& m) {
   remember(cache, found.normal);
-  m.apart_by_at_least = found.distance - q.radii;
+  m.min_separation = found.distance - q.radii;
   if (found.state == GjkResult::State::beyond) return;
   if (found.distance - q.radii > q.margin) return;
   add_contact(q, {found.distance, found.normal, found.on_a, found.on_b}, m);
@@ -160,7 +162,7 @@ void collide_convex(const CorePair& pair, double margin, PairCache& cache, Manif
   const Vec3 last = first_direction(pair, cache);
   const GjkResult found = gjk(pair, last, margin + q.radii);
   if (found.state != GjkResult::State::overlaps) {
-    collide_apart(q, found, cache, m);
+    collide_separated(q, found, cache, m);
   } else if (is_polytope(pair.a) && is_polytope(pair.b)) {
     collide_polytopes(q, cache, m);
   } else {

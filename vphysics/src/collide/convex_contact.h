@@ -21,8 +21,8 @@ struct ContactQuery {
       : pair(p), margin(m), radii(core_radius(p.a) + core_radius(p.b)) {}
 
   // Of the cores' gap along a face's normal, where the best is best.
-  bool face_suffices(double gap, double best) const {
-    return gap >= best - kFaceRelative * std::fabs(best - radii) - kFaceAbsolute * pair.size;
+  bool face_suffices(double separation, double best) const {
+    return separation >= best - kFaceRelative * std::fabs(best - radii) - kFaceAbsolute * pair.size;
   }
   // A manifold tells the separation if its deepest point is as little above it.
   bool tells(const Manifold& m, double best) const {
@@ -38,14 +38,14 @@ struct ContactQuery {
 
 // The axis along which the cores are farthest apart, or overlap least, and points of them there.
 struct BestAxis {
-  double gap;   // of the cores; less than 0: penetration
-  Vec3 normal;  // unit, from a to b
+  double separation;  // of the cores; less than 0: penetration
+  Vec3 normal;        // unit, from a to b
   Vec3 on_a, on_b;
 };
 
 // Two polytopes that overlap: the best face of both, and the best two edges, if better than it.
 struct FaceAxis {
-  double gap = 0.0;
+  double separation = 0.0;
   Vec3 normal;  // unit, from a to b
   bool of_a = true;
   int face = 0;
@@ -61,7 +61,7 @@ void find_overlap_axes(const CorePair& pair, double bias, const PairCache& cache
 // The patch over a face of a or of b; normal is from a to b. False, and nothing added, if what lies
 // over it is not as deep as the cores' gap along the best axis.
 bool add_face_contact(const ContactQuery& query, bool face_of_a, const Feature& face,
-                      const Vec3& normal, double best_gap, Manifold& manifold);
+                      const Vec3& normal, double best_separation, Manifold& manifold);
 // The foremost point of the other shape, and where it lies over the face.
 BestAxis axis_of_face(const CorePair& pair, const FaceAxis& face);
 // The patch around the nearest points, if these are within the margin.
@@ -70,8 +70,8 @@ void add_contact_along(const ContactQuery& query, const BestAxis& axis, Manifold
 // As find_manifold. Precondition: neither is a half-space.
 void collide_convex(const CorePair& pair, double margin, PairCache& cache, Manifold& manifold);
 // What to do about cores that gjk finds apart.
-void collide_apart(const ContactQuery& query, const GjkResult& found, PairCache& cache,
-                   Manifold& manifold);
+void collide_separated(const ContactQuery& query, const GjkResult& found, PairCache& cache,
+                       Manifold& manifold);
 // Two boxes (box_box.cpp).
 void collide_boxes(const CorePair& pair, double margin, PairCache& cache, Manifold& manifold);
 

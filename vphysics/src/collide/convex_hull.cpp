@@ -20,10 +20,10 @@ using collide::Loop;
 constexpr double kFarthestPoint = 1e9;    // of a coordinate [m], as everywhere in the engine
 constexpr double kSmallestExtent = 1e-6;  // [m], as of every shape
 constexpr double kThinnest = 1e-6;        // thickness, share of the extent
-constexpr int kMostHullVertices = 256;  // names of features and costs of pairs are made for so many
+constexpr int kMaxHullVertices = 256;  // names of features and costs of pairs are made for so many
 constexpr double kCoarsestTolerance = 0.01;  // tolerance
 
-tl::unexpected<Error> hull_refused(std::string message) {
+tl::unexpected<Error> invalid_hull(std::string message) {
   return tl::make_unexpected(Error{Errc::invalid_argument, "convex hull: " + std::move(message)});
 }
 
@@ -87,19 +87,21 @@ collide::Quickhull find_triangles(std::span<const Vec3> points, const Extent& ex
     const std::vector<std::uint32_t> flat =
         collide::flat_corners(points, found.triangles, found.tolerance / scale);
     if (flat.empty()) break;
-    std::vector<std::uint32_t> kept;  // the corners that are not
-    for (const collide::Triangle& t : found.triangles) kept.insert(kept.end(), t.begin(), t.end());
-    std::sort(kept.begin(), kept.end());
-    kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
-    std::erase_if(kept,
+    std::vector<std::uint32_t> kept_points;  // the corners that are not
+    for (const collide::Triangle& t : found.triangles)
+      kept_points.insert(kept_points.end(), t.begin(), t.end());
+    std::sort(kept_points.begin(), kept_points.end());
+    kept_points.erase(std::unique(kept_points.begin(), kept_points.end()), kept_points.end());
+    std::erase_if(kept_points,
                   [&](auto i) { return std::find(flat.begin(), flat.end(), i) != flat.end(); });
     std::vector<collide::GridPoint> fewer;
-    fewer.reserve(kept.size());
-    for (const std::uint32_t i : kept) fewer.push_back(grid[i]);
+    fewer.reserve(kept_points.size());
+    for (const std::uint32_t i : kept_points) fewer.push_back(grid[i]);
     collide::Quickhull next =
         collide::quickhull(fewer, options.max_vertices, found.tolerance, kThinnest * cells);
     if (next.result != collide::Quickhull::Result::hull) break;
-    for (collide::Triangle& t : next.triangles) t = {kept[t[0]], kept[t[1]], kept[t[2]]};
+    for (collide::Triangle& t : next.triangles)
+      t = {kept_points[t[0]], kept_points[t[1]], kept_points[t[2]]};
     found = std::move(next);
   }
   return found;
@@ -203,23 +205,23 @@ struct Moments {
 };
 
 void set_mass(HullData& hull) {
-  Vec3 middle;  // near the hull, so that one far from its frame's origin loses nothing
-  for (const Vec3& v : hull.vertices) middle += v;
-  middle *= 1.0 / static_cast<double>(hull.vertices.size());
+  Vec3 reference;  // near the hull, so that one far from its frame's origin loses nothing
+  for (const Vec3& v : hull.vertices) reference += v;
+  reference *= 1.0 / static_cast<double>(hull.vertices.size());
   Moments m;
   for (const ConvexHull::Face& face : hull.faces) {
     for (std::size_t i = 2; i < face.vertices.size(); ++i) {
-      m.add_tetrahedron(hull.vertices[face.vertices[0]] - middle,
-                        hull.vertices[face.vertices[i - 1]] - middle,
-                        hull.vertices[face.vertices[i]] - middle);
+      m.add_tetrahedron(hull.vertices[face.vertices[0]] - reference,
+                        hull.vertices[face.vertices[i - 1]] - reference,
+                        hull.vertices[face.vertices[i]] - reference);
     }
   }
   const Sym3& s = m.second;
-  const Sym3 about_middle{s.yy + s.zz, s.zz + s.xx, s.xx + s.yy, -s.xy, -s.yz, -s.zx};
+  const Sym3 about_centre{s.yy + s.zz, s.zz + s.xx, s.xx + s.yy, -s.xy, -s.yz, -s.zx};
   hull.volume = m.volume;
-  hull.centre = middle + (1.0 / m.volume) * m.first;
-  hull.unit = Inertia(m.volume, m.first, about_middle).about(-middle);
-  if (hull.vertices.size() <= collide::kMostSupport) {
+  hull.centre = reference + (1.0 / m.volume) * m.first;
+  hull.unit = Inertia(m.volume, m.first, about_centre).about(-reference);
+  if (hull.vertices.size() <= collide::kMaxSupport) {
     const std::size_t n = hull.vertices.size(), lanes = collide::kSupportLanes;
     for (std::size_t i = 0; i < (n + lanes - 1) / lanes * lanes; ++i) {
       const Vec3& v = hull.vertices[i < n ? i : 0];
@@ -235,24 +237,24 @@ void set_mass(HullData& hull) {
 }  // namespace
 
 Expected<ConvexHull> ConvexHull::of(std::span<const Vec3> points, const HullOptions& options) {
-  if (options.max_vertices < 4 || options.max_vertices > kMostHullVertices) {
-    return hull_refused("max_vertices must be from 4 to 256");
+  if (options.max_vertices < 4 || options.max_vertices > kMaxHullVertices) {
+    return invalid_hull("max_vertices must be from 4 to 256");
   }
   if (!(options.tolerance >= 0.0 && options.tolerance <= kCoarsestTolerance)) {
-    return hull_refused("the tolerance must be in [0, 0.01]");
+    return invalid_hull("the tolerance must be in [0, 0.01]");
   }
   for (const Vec3& p : points) {
     for (const double x : {p.x, p.y, p.z}) {
       if (!(std::fabs(x) <= kFarthestPoint)) {
-        return hull_refused("every coordinate must be finite and at most 1e9 in magnitude");
+        return invalid_hull("every coordinate must be finite and at most 1e9 in magnitude");
       }
     }
   }
   const std::vector<Vec3> distinct = sorted(points);
-  if (distinct.size() < 4) return hull_refused("at least four different points are needed");
+  if (distinct.size() < 4) return invalid_hull("at least four different points are needed");
   const Extent extent = extent_of(distinct);
   if (!(extent.largest >= kSmallestExtent)) {
-    return hull_refused("the points lie within a micrometre; give them in metres");
+    return invalid_hull("the points lie within a micrometre; give them in metres");
   }
   const double scale = grid_scale(extent.largest);
   const collide::Quickhull found = find_triangles(distinct, extent, scale, options);
@@ -261,17 +263,17 @@ Expected<ConvexHull> ConvexHull::of(std::span<const Vec3> points, const HullOpti
       break;
     case collide::Quickhull::Result::point:
     case collide::Quickhull::Result::line:
-      return hull_refused("the points lie on one line; a capsule has a thickness of its own");
+      return invalid_hull("the points lie on one line; a capsule has a thickness of its own");
     case collide::Quickhull::Result::plane:
-      return hull_refused(
+      return invalid_hull(
           "the points lie in one plane; give the body a thickness, or use a thin box");
   }
   auto hull = std::make_shared<HullData>();
   std::vector<Loop> loops = collide::faces_of(distinct, found.triangles, found.tolerance / scale);
   hull->vertices = renumber(distinct, loops);
-  const Extent kept = extent_of(hull->vertices);
-  hull->lower = kept.lower;
-  hull->upper = kept.upper;
+  const Extent kept_points = extent_of(hull->vertices);
+  hull->lower = kept_points.lower;
+  hull->upper = kept_points.upper;
   set_faces(*hull, loops);
   set_edges(*hull);
   set_surroundings(*hull);

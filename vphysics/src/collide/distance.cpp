@@ -13,7 +13,7 @@ namespace {
 // In the frame of a, between surfaces.
 ClosestPoints of_axis(const CorePair& pair, const BestAxis& axis) {
   const double ra = core_radius(pair.a), rb = core_radius(pair.b);
-  return {axis.gap - ra - rb, axis.normal, axis.on_a + ra * axis.normal,
+  return {axis.separation - ra - rb, axis.normal, axis.on_a + ra * axis.normal,
           axis.on_b - rb * axis.normal};
 }
 
@@ -59,7 +59,7 @@ ClosestPoints of_ordered(const CorePair& pair, PairCache& cache) {
   if (pair.a.kind == Kind::capsule && pair.b.kind == Kind::capsule) return of_capsules(pair);
   const GjkResult found =
       gjk(pair, first_direction(pair, cache), std::numeric_limits<double>::infinity());
-  const BestAxis axis = found.state == GjkResult::State::apart
+  const BestAxis axis = found.state == GjkResult::State::separated
                             ? BestAxis{found.distance, found.normal, found.on_a, found.on_b}
                             : deepest_axis(pair, found.simplex, cache);
   remember(cache, axis.normal);
@@ -92,7 +92,7 @@ bool shapes_overlap(const Geometry& a, const SE3& T_a, const Geometry& b, const 
   const GjkResult found = gjk(pair, first_direction(pair, cache), radii);
   if (found.state == GjkResult::State::overlaps) return true;
   remember(cache, found.normal);
-  return found.state == GjkResult::State::apart && found.distance <= radii;
+  return found.state == GjkResult::State::separated && found.distance <= radii;
 }
 
 }  // namespace vp::collide

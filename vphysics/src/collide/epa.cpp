@@ -68,22 +68,22 @@ class ExpandingPolytope {
 bool ExpandingPolytope::complete_to_tetrahedron(const Simplex& simplex) {
   vertex_count_ = simplex.count;
   for (int i = 0; i < simplex.count; ++i) vertices_[i] = simplex.p[i];
-  const double least = kEpaCoplanar * pair_.reach;
+  const double smallest = kEpaCoplanar * pair_.extent;
   const auto farthest = [&](auto&& measure, std::span<const Vec3> directions) {
-    double most = least;
+    double largest = smallest;
     CorePoint best{};
     for (const Vec3& d : directions) {
       for (const double sign : {1.0, -1.0}) {
         const CorePoint p = support_of(pair_, sign * d);
         const double m = measure(p.w);
-        if (m > most) {
-          most = m;
+        if (m > largest) {
+          largest = m;
           best = p;
         }
       }
     }
-    if (most > least) vertices_[vertex_count_++] = best;
-    return most > least;
+    if (largest > smallest) vertices_[vertex_count_++] = best;
+    return largest > smallest;
   };
   const Vec3 axes[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   const Vec3 &p = vertices_[0].w, &q = vertices_[1].w, &r = vertices_[2].w;
@@ -167,7 +167,7 @@ bool ExpandingPolytope::see(int face, const Vec3& w) {
   seen_count_ = horizon_count_ = 0;
   seen_[seen_count_++] = static_cast<std::uint16_t>(face);
   faces_[face].seen = true;
-  const double above = kEpaCoplanar * pair_.reach;
+  const double above = kEpaCoplanar * pair_.extent;
   for (int i = 0; i < seen_count_; ++i) {
     const EpaFace& f = faces_[seen_[i]];
     for (std::size_t k = 0; k < 3; ++k) {
@@ -216,7 +216,7 @@ bool ExpandingPolytope::add_vertex(const CorePoint& p, int face) {
 // those of its side.
 int preferred_near(const Geometry& g, const SE3& T, const Vec3& n, Vec3 (&found)[2]) {
   const Vec3 d = T.unrotate(n);
-  const double across = std::sqrt(d.x * d.x + d.y * d.y);
+  const double radial = std::sqrt(d.x * d.x + d.y * d.y);
   int count = 0;
   if (g.kind == Kind::cone) {
     const double h = 2.0 * g.half.z, length = std::sqrt(h * h + g.radius * g.radius);
@@ -224,7 +224,7 @@ int preferred_near(const Geometry& g, const SE3& T, const Vec3& n, Vec3 (&found)
     found[count++] = T.rotate(side);
     if (d.z < 0.0) found[count++] = -T.rotation().cz;
   } else if (g.kind == Kind::cylinder || g.kind == Kind::capsule) {
-    if (across > 0.0) found[count++] = T.rotate(rim_direction(d));
+    if (radial > 0.0) found[count++] = T.rotate(rim_direction(d));
     if (g.kind == Kind::cylinder) found[count++] = std::copysign(1.0, d.z) * T.rotation().cz;
   }
   return count;
@@ -233,7 +233,7 @@ int preferred_near(const Geometry& g, const SE3& T, const Vec3& n, Vec3 (&found)
 // What curves is closed in upon from many sides, and where it is as deep in many directions only
 // slowly. The directions that the shapes themselves suggest are better, or as good and steadier.
 void polish(const CorePair& pair, Penetration& best) {
-  const double as_good = kEpaClosed * pair.reach;
+  const double as_good = kEpaClosed * pair.extent;
   const auto consider = [&](const Vec3& n) {
     constexpr double kNear = 0.99;
     if (!(dot(n, best.normal) > kNear)) return;
@@ -245,7 +245,7 @@ void polish(const CorePair& pair, Penetration& best) {
     best.on_a = p.a;
     best.on_b = p.b();
   };
-  for (int round = 0; round < 2; ++round) {
+  for (int iteration = 0; iteration < 2; ++iteration) {
     Vec3 found[2];
     for (const bool of_a : {true, false}) {
       const SE3 T = of_a ? SE3{} : pair.T_a_b;
@@ -253,9 +253,9 @@ void polish(const CorePair& pair, Penetration& best) {
       const int count = preferred_near(of_a ? pair.a : pair.b, T, n, found);
       for (int i = 0; i < count; ++i) consider(of_a ? found[i] : -found[i]);
     }
-    const Vec3 across = cross(Vec3{0, 0, 1}, pair.T_a_b.rotation().cz);
-    const double sine = norm(across);
-    if (sine > 1e-6) consider((dot(across, best.normal) < 0.0 ? -1.0 / sine : 1.0 / sine) * across);
+    const Vec3 radial = cross(Vec3{0, 0, 1}, pair.T_a_b.rotation().cz);
+    const double sine = norm(radial);
+    if (sine > 1e-6) consider((dot(radial, best.normal) < 0.0 ? -1.0 / sine : 1.0 / sine) * radial);
   }
 }
 
@@ -263,18 +263,18 @@ void polish(const CorePair& pair, Penetration& best) {
 // another when it is moved a little farther.
 void set_witness(const CorePair& pair, Penetration& found) {
   constexpr double kFarther = 1e-3;  // share of the pair's reach
-  const Vec3 shift = (found.depth + kFarther * pair.reach) * found.normal;
+  const Vec3 shift = (found.depth + kFarther * pair.extent) * found.normal;
   const SE3& T = pair.T_a_b;
-  const CorePair apart(pair.a, pair.b, SE3(T.rotation(), T.position() + shift));
-  const GjkResult near = gjk(apart, found.normal, std::numeric_limits<double>::infinity());
-  if (near.state != GjkResult::State::apart) return;
+  const CorePair separated(pair.a, pair.b, SE3(T.rotation(), T.position() + shift));
+  const GjkResult near = gjk(separated, found.normal, std::numeric_limits<double>::infinity());
+  if (near.state != GjkResult::State::separated) return;
   found.on_a = near.on_a;
   found.on_b = near.on_a - found.depth * found.normal;
 }
 
 Penetration ExpandingPolytope::expand(double enough) {
   Penetration best{std::numeric_limits<double>::infinity(), 0.0, {}, {}, {}};
-  const double closed = kEpaClosed * pair_.reach;
+  const double closed = kEpaClosed * pair_.extent;
   for (;;) {
     const int f = nearest();
     const EpaFace face = faces_[f];
@@ -305,7 +305,7 @@ Penetration epa(const CorePair& pair, const Simplex& simplex, double enough) {
     return found;
   }
   // No volume between them: they touch in what is a point, a line or a plane to rounding.
-  Vec3 n = pair.T_a_b * core_middle(pair.b) - core_middle(pair.a);
+  Vec3 n = pair.T_a_b * core_centre(pair.b) - core_centre(pair.a);
   const double length = norm(n);
   n = length > 0.0 ? (1.0 / length) * n : Vec3{0, 0, 1};
   const CorePoint p = support_of(pair, n);

@@ -37,8 +37,8 @@ void disc_feature(double radius, double z, const SE3& T, const Vec3& d, Feature&
   const int base = up ? kUpper : kLower;
   f.count = 0;
   set_normal(f, T, {0, 0, up ? 1.0 : -1.0});
-  const double across = std::sqrt(d.x * d.x + d.y * d.y);
-  const double cos = across > 0.0 ? d.x / across : 1.0, sin = across > 0.0 ? d.y / across : 0.0;
+  const double radial = std::sqrt(d.x * d.x + d.y * d.y);
+  const double cos = radial > 0.0 ? d.x / radial : 1.0, sin = radial > 0.0 ? d.y / radial : 0.0;
   for (int k = 0; k < kRim; ++k) {
     const int i = up ? k : kRim - 1 - k, next = up ? (i + 1) % kRim : (i + kRim - 1) % kRim;
     add(f, T, {radius * kRimCos[i], radius * kRimSin[i], z}, base + i, base + (up ? i : next));
@@ -49,7 +49,7 @@ void disc_feature(double radius, double z, const SE3& T, const Vec3& d, Feature&
     const double before = cos * kRimSin[next] - sin * kRimCos[next];
     const bool between =
         up ? after > kClear && before > kClear : after < -kClear && before < -kClear;
-    if (across > kUpright * norm(d) && between) {
+    if (radial > kUpright * norm(d) && between) {
       add(f, T, {radius * cos, radius * sin, z}, base + kRim, base + kRim);
     }
   }
@@ -62,8 +62,8 @@ void segment_feature(const SE3& T, const Vec3& p, const Vec3& q, int name, Featu
 }
 
 void cylinder_feature(const Geometry& g, const SE3& T, const Vec3& d, Feature& f) {
-  const double across = std::sqrt(d.x * d.x + d.y * d.y);
-  if (std::fabs(d.z) > across) {
+  const double radial = std::sqrt(d.x * d.x + d.y * d.y);
+  if (std::fabs(d.z) > radial) {
     disc_feature(g.radius, std::copysign(g.half.z, d.z), T, d, f);
   } else {
     const Vec3 rim = g.radius * rim_direction(d);
@@ -72,9 +72,9 @@ void cylinder_feature(const Geometry& g, const SE3& T, const Vec3& d, Feature& f
 }
 
 void cone_feature(const Geometry& g, const SE3& T, const Vec3& d, Feature& f) {
-  const double across = std::sqrt(d.x * d.x + d.y * d.y), h = 2.0 * g.half.z, r = g.radius;
+  const double radial = std::sqrt(d.x * d.x + d.y * d.y), h = 2.0 * g.half.z, r = g.radius;
   // Alignment with the base's normal and with the side's.
-  const double base = -d.z, side = (h * across + r * d.z) / std::sqrt(h * h + r * r);
+  const double base = -d.z, side = (h * radial + r * d.z) / std::sqrt(h * h + r * r);
   if (base > side) {
     disc_feature(r, -g.half.z, T, d, f);
   } else {
@@ -105,11 +105,11 @@ int aligned_box_face(const Vec3& d) {
 int aligned_hull_face(const HullData& hull, const Vec3& d) {
   const auto v = static_cast<std::size_t>(support_vertex(hull, d, 0));
   int best = hull.faces_around[hull.first_around[v]];
-  double most = -2.0;
+  double largest = -2.0;
   for (std::size_t k = hull.first_around[v]; k < hull.first_around[v + 1]; ++k) {
     const double along = dot(hull.faces[hull.faces_around[k]].normal, d);
-    if (along > most) {
-      most = along;
+    if (along > largest) {
+      largest = along;
       best = hull.faces_around[k];
     }
   }
@@ -133,7 +133,7 @@ void face_feature(const Geometry& g, const SE3& T, int face, Feature& f) {
   const HullData& hull = *g.hull;
   set_normal(f, T, hull.faces[k].normal);
   const std::size_t first = hull.first_corner[k], n = hull.faces[k].vertices.size();
-  const std::size_t stride = (n + kMostCorners - 1) / kMostCorners;
+  const std::size_t stride = (n + kMaxCorners - 1) / kMaxCorners;
   for (std::size_t i = 0; i < n; i += stride) {
     const std::uint16_t v = hull.corners[first + i];
     add(f, T, hull.vertices[v], v, hull.corner_edges[first + i]);

@@ -7,7 +7,7 @@
 
 namespace vp::collide {
 
-inline constexpr int kMostCorners = 64;  // of a face with more, every second or fourth is used
+inline constexpr int kMaxCorners = 64;  // of a face with more, every second or fourth is used
 
 // No defaults: a feature is made thousands of times a step, and only its first corners are used.
 struct FeatureCorner {
@@ -23,7 +23,7 @@ struct FeatureCorner {
 struct Feature {
   int count;
   double normal_x, normal_y, normal_z;  // of three corners or more: unit, outward
-  FeatureCorner corners[kMostCorners];
+  FeatureCorner corners[kMaxCorners];
 
   Vec3 normal() const { return {normal_x, normal_y, normal_z}; }
 };

@@ -22,7 +22,7 @@ typedef float Lanes4 __attribute__((vector_size(16)));
 // NOLINTNEXTLINE(modernize-use-using)
 typedef int Mask4 __attribute__((vector_size(16)));
 
-inline Lanes4 all_lanes(float x) {
+inline Lanes4 broadcast(float x) {
   return Lanes4{x, x, x, x};
 }
 inline Lanes4 lesser(Lanes4 a, Lanes4 b) {
@@ -43,8 +43,8 @@ inline unsigned bits_of(Mask4 m) {
 
 // x, y, z and a lane that is not used.
 struct FloatBounds {
-  Lanes4 lower = all_lanes(std::numeric_limits<float>::infinity());
-  Lanes4 upper = all_lanes(-std::numeric_limits<float>::infinity());
+  Lanes4 lower = broadcast(std::numeric_limits<float>::infinity());
+  Lanes4 upper = broadcast(-std::numeric_limits<float>::infinity());
 
   bool operator==(const FloatBounds& b) const {
     return (bits_of((lower == b.lower) & (upper == b.upper)) & 7u) == 7u;
@@ -78,7 +78,7 @@ inline float rounded_down(double x) {
 inline float rounded_up(double x) {
   return -rounded_down(-x);
 }
-inline FloatBounds rounded_outwards(const Bounds& b) {
+inline FloatBounds rounded_outward(const Bounds& b) {
   return {Lanes4{rounded_down(b.lower.x), rounded_down(b.lower.y), rounded_down(b.lower.z), 0.0f},
           Lanes4{rounded_up(b.upper.x), rounded_up(b.upper.y), rounded_up(b.upper.z), 0.0f}};
 }
@@ -110,20 +110,20 @@ struct SpreadBounds {
   Lanes4 lower[3], upper[3];
   explicit SpreadBounds(const FloatBounds& b) {
     for (int axis = 0; axis < 3; ++axis) {
-      lower[axis] = all_lanes(b.lower[axis]);
-      upper[axis] = all_lanes(b.upper[axis]);
+      lower[axis] = broadcast(b.lower[axis]);
+      upper[axis] = broadcast(b.upper[axis]);
     }
   }
   SpreadBounds(const EightBounds& eight, unsigned lane) {
     for (int axis = 0; axis < 3; ++axis) {
-      lower[axis] = all_lanes(eight.lower[axis][lane / 4][lane % 4]);
-      upper[axis] = all_lanes(eight.upper[axis][lane / 4][lane % 4]);
+      lower[axis] = broadcast(eight.lower[axis][lane / 4][lane % 4]);
+      upper[axis] = broadcast(eight.upper[axis][lane / 4][lane % 4]);
     }
   }
 };
 
 // Bit i: lane i overlaps the box.
-inline unsigned overlapping_lanes(const EightBounds& eight, const SpreadBounds& box) {
+inline unsigned overlap_mask(const EightBounds& eight, const SpreadBounds& box) {
   unsigned bits = 0;
   for (unsigned h = 0; h < 2; ++h) {
     const Mask4 x = (eight.lower[0][h] <= box.upper[0]) & (box.lower[0] <= eight.upper[0][h]);
@@ -141,10 +141,10 @@ void for_each_bit(std::uint64_t bits, const F& f) {
 }
 
 // Where the bits that are set in a byte are, the rest 0, and how many they are.
-struct BitPlaces {
+struct BitPositions {
   std::array<std::array<std::uint8_t, 8>, 256> of{};
   std::array<std::uint8_t, 256> count{};
-  constexpr BitPlaces() {
+  constexpr BitPositions() {
     for (unsigned byte = 0; byte < 256; ++byte) {
       std::size_t n = 0;
       for (unsigned i = 0; i < 8; ++i) {
@@ -154,7 +154,7 @@ struct BitPlaces {
     }
   }
 };
-inline constexpr BitPlaces kBitPlaces;
+inline constexpr BitPositions kBitPositions;
 
 // Appends the children whose bit is set, with what is to be in the word's upper half, and returns
 // how many these are. Writes eight words whatever the bits: how many they are is never foreseen, so
@@ -162,9 +162,9 @@ inline constexpr BitPlaces kBitPlaces;
 template <class Word>
 std::size_t append_chosen(unsigned bits, const std::uint32_t child[8], std::uint64_t upper,
                           Word* out) {
-  const std::array<std::uint8_t, 8>& places = kBitPlaces.of[bits];
-  for (std::size_t k = 0; k < 8; ++k) out[k] = static_cast<Word>(upper | child[places[k]]);
-  return kBitPlaces.count[bits];
+  const std::array<std::uint8_t, 8>& positions = kBitPositions.of[bits];
+  for (std::size_t k = 0; k < 8; ++k) out[k] = static_cast<Word>(upper | child[positions[k]]);
+  return kBitPositions.count[bits];
 }
 
 }  // namespace vp::collide

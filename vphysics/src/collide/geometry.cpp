@@ -137,9 +137,9 @@ SignedDistance distance_to_hull(const HullData& hull, const Vec3& p) {
 
 // A sheet: nowhere negative.
 SignedDistance distance_to_triangle(const Vec3* corners, const Vec3& p) {
-  const Vec3 way = p - nearest_on_triangle(corners, p).point;
-  const double d = norm(way);
-  if (d > kDirectionNoise) return {d, (1.0 / d) * way};
+  const Vec3 offset = p - nearest_on_triangle(corners, p).point;
+  const double d = norm(offset);
+  if (d > kDirectionNoise) return {d, (1.0 / d) * offset};
   const Vec3 n = cross(corners[1] - corners[0], corners[2] - corners[0]);
   return {d, (1.0 / norm(n)) * n};
 }

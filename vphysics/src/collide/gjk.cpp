@@ -11,7 +11,7 @@
 namespace vp::collide {
 namespace {
 
-constexpr int kMaxRounds = 96;
+constexpr int kMaxIterations = 96;
 // Bounds this near to one another [share of the distance, squared] are one. Normals are good to the
 // root of it.
 constexpr double kRelative = 1e-14;
@@ -83,7 +83,7 @@ Nearest on_triangle(const Simplex& s, int i, int k, int l) {
 Nearest in_tetrahedron(const Simplex& s) {
   constexpr int kFaces[4][4] = {{0, 1, 2, 3}, {0, 3, 1, 2}, {0, 2, 3, 1}, {1, 3, 2, 0}};
   Nearest best;
-  double least = std::numeric_limits<double>::infinity();
+  double smallest = std::numeric_limits<double>::infinity();
   double largest = 0.0;
   for (int i = 0; i < 4; ++i) largest = std::max(largest, dot(s.p[i].w, s.p[i].w));
   for (const auto& f : kFaces) {
@@ -95,8 +95,8 @@ Nearest in_tetrahedron(const Simplex& s) {
     if ((opposite > doubt && origin > doubt) || (opposite < -doubt && origin < -doubt)) continue;
     const Nearest on_face = on_triangle(s, f[0], f[1], f[2]);
     const double d2 = dot(on_face.v, on_face.v);
-    if (d2 < least) {
-      least = d2;
+    if (d2 < smallest) {
+      smallest = d2;
       best = on_face;
     }
   }
@@ -120,13 +120,13 @@ Nearest nearest_of(const Simplex& s) {
 }
 
 void keep(Simplex& s, const Nearest& n) {
-  Simplex kept;
+  Simplex kept_points;
   for (int i = 0; i < n.count; ++i) {
-    kept.p[i] = s.p[n.index[i]];
-    kept.weight[i] = n.weight[i];
+    kept_points.p[i] = s.p[n.index[i]];
+    kept_points.weight[i] = n.weight[i];
   }
-  kept.count = n.count;
-  s = kept;
+  kept_points.count = n.count;
+  s = kept_points;
 }
 
 bool contains(const Simplex& s, const Vec3& w) {
@@ -136,8 +136,8 @@ bool contains(const Simplex& s, const Vec3& w) {
   return false;
 }
 
-void set_apart(GjkResult& r, const Vec3& v, double distance) {
-  r.state = GjkResult::State::apart;
+void set_separated(GjkResult& r, const Vec3& v, double distance) {
+  r.state = GjkResult::State::separated;
   r.distance = distance;
   r.normal = (-1.0 / distance) * v;
   r.on_a = r.on_b = {};
@@ -153,10 +153,10 @@ GjkResult gjk(const CorePair& pair, const Vec3& start, double limit) {
   GjkResult r;
   r.state = GjkResult::State::overlaps;
   CorePoint next = support_of(pair, start);
-  const double first_gap = -dot(start, next.w);
-  if (first_gap > limit) {
+  const double first_separation = -dot(start, next.w);
+  if (first_separation > limit) {
     r.state = GjkResult::State::beyond;
-    r.distance = first_gap;
+    r.distance = first_separation;
     r.normal = start;
     return r;
   }
@@ -165,28 +165,28 @@ GjkResult gjk(const CorePair& pair, const Vec3& start, double limit) {
   r.simplex.count = 1;
   Vec3 v = next.w;
   double v2 = dot(v, v);
-  const double touching = kTouching * pair.reach;
-  for (int round = 0; round < kMaxRounds; ++round) {
+  const double touching = kTouching * pair.extent;
+  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     if (v2 <= touching * touching) return r;
     const double length = std::sqrt(v2);
     const Vec3 n = (-1.0 / length) * v;
     next = support_of(pair, n);
-    const double gap = -dot(n, next.w);  // v . w / |v|
-    if (gap > limit) {
+    const double separation = -dot(n, next.w);  // v . w / |v|
+    if (separation > limit) {
       r.state = GjkResult::State::beyond;
-      r.distance = gap;
+      r.distance = separation;
       r.normal = n;
       return r;
     }
-    const double closed = kRelative * length + kRounding * pair.reach;
-    if (length - gap <= closed) {
-      set_apart(r, v, length);
+    const double closed = kRelative * length + kRounding * pair.extent;
+    if (length - separation <= closed) {
+      set_separated(r, v, length);
       return r;
     }
     // Where rounding ends the search, v is the nearest point as far as can be told; but only a gap
     // tells that they are apart.
     if (contains(r.simplex, next.w)) {
-      if (gap > 0.0) set_apart(r, v, length);
+      if (separation > 0.0) set_separated(r, v, length);
       return r;
     }
     r.simplex.p[r.simplex.count++] = next;
@@ -198,16 +198,16 @@ GjkResult gjk(const CorePair& pair, const Vec3& start, double limit) {
     const double n2 = dot(nearest.v, nearest.v);
     if (!(n2 < v2)) {
       --r.simplex.count;
-      if (gap > 0.0) set_apart(r, v, length);
+      if (separation > 0.0) set_separated(r, v, length);
       return r;
     }
     keep(r.simplex, nearest);
     v = nearest.v;
     v2 = n2;
   }
-  const double length = std::sqrt(v2), gap = gap_along(pair, (-1.0 / length) * v);
-  pair.rough |= length - gap > kRough * pair.size;
-  if (gap > 0.0) set_apart(r, v, length);
+  const double length = std::sqrt(v2), separation = separation_along(pair, (-1.0 / length) * v);
+  pair.rough |= length - separation > kRough * pair.size;
+  if (separation > 0.0) set_separated(r, v, length);
   return r;
 }
 

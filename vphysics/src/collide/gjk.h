@@ -14,17 +14,17 @@ struct CorePair {
   const Geometry& a;
   const Geometry& b;
   SE3 T_a_b;
-  double reach;  // by which rounding is measured: the size of both cores and their distance
-  double size;   // by which shapes are: that of the smaller one
+  double extent;  // by which rounding is measured: the size of both cores and their distance
+  double size;    // by which shapes are: that of the smaller one
   mutable int hint_a = 0, hint_b = 0;
   // A search ended before its bounds had met, so far apart that it matters (kRough).
   mutable bool rough = false;
 
   CorePair(const Geometry& shape_a, const Geometry& shape_b, const SE3& pose)
       : a(shape_a), b(shape_b), T_a_b(pose) {
-    const double reach_a = core_reach(a), reach_b = core_reach(b);
-    reach = reach_a + reach_b + norm(pose * core_middle(b) - core_middle(a));
-    size = std::min(reach_a + core_radius(a), reach_b + core_radius(b));
+    const double extent_a = core_extent(a), extent_b = core_extent(b);
+    extent = extent_a + extent_b + norm(pose * core_centre(b) - core_centre(a));
+    size = std::min(extent_a + core_radius(a), extent_b + core_radius(b));
   }
 
   Vec3 support_a(const Vec3& d) const { return core_support(a, d, hint_a); }
@@ -49,7 +49,7 @@ inline CorePoint support_of(const CorePair& pair, const Vec3& n) {
   return {a, a - pair.support_b(-n)};
 }
 // The gap between the projections on the unit vector n, from a to b: never more than the distance.
-inline double gap_along(const CorePair& pair, const Vec3& n) {
+inline double separation_along(const CorePair& pair, const Vec3& n) {
   return -dot(n, support_of(pair, n).w);
 }
 
@@ -61,9 +61,9 @@ struct Simplex {
 
 struct GjkResult {
   enum class State : unsigned char {
-    apart,     // normal, distance and points are set
-    beyond,    // farther apart than limit; normal separates them by at least separated
-    overlaps,  // or so near that the direction is rounding noise
+    separated,  // normal, distance and points are set
+    beyond,     // farther apart than limit; normal separates them by at least separated
+    overlaps,   // or so near that the direction is rounding noise
   };
   State state;
   double distance = 0.0;  // apart: of the cores; beyond: the gap along normal

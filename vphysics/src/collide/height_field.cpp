@@ -12,39 +12,38 @@ namespace {
 
 using collide::HeightData;
 
-constexpr std::uint32_t kMostSamples = 1u << 15;  // along an axis
-constexpr double kHighest = 1e9;                  // [m], as everywhere in the engine
-constexpr double kLeastSpacing = 1e-6, kMostSpacing = 1e6;
+constexpr std::uint32_t kMaxSamples = 1u << 15;  // along an axis
+constexpr double kHighest = 1e9;                 // [m], as everywhere in the engine
+constexpr double kMinSpacing = 1e-6, kMaxSpacing = 1e6;
 
-tl::unexpected<Error> refused_field(std::string message) {
+tl::unexpected<Error> invalid_field(std::string message) {
   return tl::make_unexpected(Error{Errc::invalid_argument, "height field: " + std::move(message)});
 }
 
 bool is_factor(double x) {
-  return x >= kLeastSpacing && x <= kMostSpacing;
+  return x >= kMinSpacing && x <= kMaxSpacing;
 }
 
 Expected<void> check(const HeightGrid& grid) {
-  if (grid.columns < 2 || grid.rows < 2 || grid.columns > kMostSamples ||
-      grid.rows > kMostSamples) {
-    return refused_field("there must be from 2 to 2^15 columns and rows; split a larger one");
+  if (grid.columns < 2 || grid.rows < 2 || grid.columns > kMaxSamples || grid.rows > kMaxSamples) {
+    return invalid_field("there must be from 2 to 2^15 columns and rows; split a larger one");
   }
   if (!is_factor(grid.spacing_x) || !is_factor(grid.spacing_y)) {
-    return refused_field("the spacing must be from 1e-6 to 1e6 m");
+    return invalid_field("the spacing must be from 1e-6 to 1e6 m");
   }
   if (grid.heights.size() != std::size_t{grid.columns} * grid.rows) {
-    return refused_field("give columns * rows heights, " +
+    return invalid_field("give columns * rows heights, " +
                          std::to_string(std::size_t{grid.columns} * grid.rows) + " of them, not " +
                          std::to_string(grid.heights.size()));
   }
   const std::size_t cells = std::size_t{grid.columns - 1} * (grid.rows - 1);
   if (!grid.holes.empty() && grid.holes.size() != cells) {
-    return refused_field("give a hole for each of the " + std::to_string(cells) +
+    return invalid_field("give a hole for each of the " + std::to_string(cells) +
                          " cells, (columns - 1) * (rows - 1), or none at all");
   }
   for (std::size_t k = 0; k < grid.heights.size(); ++k) {
     if (std::fabs(grid.heights[k]) <= kHighest) continue;
-    return refused_field("height " + std::to_string(k) +
+    return invalid_field("height " + std::to_string(k) +
                          " is not finite or beyond 1e9 m; make a hole where there is no ground");
   }
   return {};
@@ -70,12 +69,12 @@ Expected<HeightField> HeightField::of(const HeightGrid& grid) {
 }
 
 Expected<HeightField> HeightField::scaled(const Vec3& factors) const {
-  if (!data_) return refused_field("it was moved from; scale the one that it was moved to");
+  if (!data_) return invalid_field("it was moved from; scale the one that it was moved to");
   HeightField made = *this;
   for (int i = 0; i < 3; ++i) {
     made.scale_[i] *= factors[i];
     if (is_factor(factors[i]) && is_factor(made.scale_[i])) continue;
-    return refused_field("every factor of a scale, and what it gives, must be from 1e-6 to 1e6");
+    return invalid_field("every factor of a scale, and what it gives, must be from 1e-6 to 1e6");
   }
   return made;
 }

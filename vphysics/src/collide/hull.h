@@ -8,7 +8,7 @@
 
 namespace vp::collide {
 
-inline constexpr std::size_t kSupportLanes = 4, kMostSupport = 64;
+inline constexpr std::size_t kSupportLanes = 4, kMaxSupport = 64;
 
 // Between two vertices, v0 < v1. Seen from outside, the face on its left has v0 before v1.
 struct HullEdge {

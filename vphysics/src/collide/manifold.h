@@ -21,7 +21,7 @@ struct Manifold {
   int count = 0;
   bool rough = false;  // its depth is less certain than it should be: CorePair::rough
   // Without points: no more than the distance of the two, as far as it has come out [m].
-  double apart_by_at_least = 0.0;
+  double min_separation = 0.0;
   ManifoldPoint points[kMaxPoints];
 
   void add(const Vec3& position, double separation, std::uint32_t feature) {

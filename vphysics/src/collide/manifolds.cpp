@@ -47,7 +47,7 @@ class Finder {
     const CompoundData& compound = *of.compound;
     const Bounds near = grown(bounds_of(other, relative_pose(T_of, T_other)), margin_);
     const std::size_t begin = scratch_.parts.size();
-    compound.tree.overlapping(rounded_outwards(near),
+    compound.tree.overlapping(rounded_outward(near),
                               [&](std::uint32_t i) { scratch_.parts.push_back(i); });
     std::sort(scratch_.parts.begin() + static_cast<std::ptrdiff_t>(begin), scratch_.parts.end());
     const std::size_t end = scratch_.parts.size();
@@ -58,7 +58,7 @@ class Finder {
       const Geometry& part = compound.geometries[i];
       const double margin_of_all = margin_;
       margin_ = std::min(
-          margin_, search_.within(T * core_middle(part), core_reach(part) + core_radius(part)));
+          margin_, search_.within(T * core_centre(part), core_extent(part) + core_radius(part)));
       (swapped ? sub_b_ : sub_a_) = i;
       PairCache cache = known_cache();
       if (other.kind == Kind::compound) {

@@ -37,20 +37,20 @@ struct ManifoldScratch {
   std::vector<Contact> contacts;
   std::vector<ManifoldPoint> points;
   // Of each point, 1: a manifold has it, or points that stand for it.
-  std::vector<std::uint8_t> settled;
+  std::vector<std::uint8_t> converged;
   // For whoever wants to know: triangles, counted up; set, that there were more normals than
-  // kMostClusters, and that of a triangle CorePair::rough was set.
-  std::uint32_t looked_at = 0;
+  // kMaxClusters, and that of a triangle CorePair::rough was set.
+  std::uint32_t narrow_phase_pairs = 0;
   bool crowded = false, rough = false;
 
   // For more than one shape meets of a surface that is not far finer than the shape is big, so that
   // a step with more of it than any before takes nothing from the heap.
-  void make_room() {
+  void ensure_capacity() {
     triangles.reserve(512);
     near_triangles.reserve(512);
     contacts.reserve(128);
     points.reserve(256);
-    settled.reserve(256);
+    converged.reserve(256);
   }
 };
 
@@ -61,26 +61,26 @@ struct SearchMargin {
   SearchMargin(double everywhere) : largest(everywhere), at_rest(everywhere) {}
   // b goes against a by displacement + turn x (point - about), world frame [m], [rad].
   SearchMargin(double largest_of_all, double at_rest_of_all, const Vec3& displacement_of_b,
-               const Vec3& turn_of_b, const Vec3& about_point)
+               const Vec3& rotation_of_b, const Vec3& about_point)
       : largest(largest_of_all),
         at_rest(at_rest_of_all),
         displacement(displacement_of_b),
-        turn(turn_of_b),
+        rotation(rotation_of_b),
         about(about_point) {}
 
   // Where they meet within a ball, world frame.
   double within(const Vec3& centre, double radius) const {
-    const double moved = norm(displacement + cross(turn, centre - about)) +
-                         radius * std::min(norm(turn), 2.0);  // rotation keeps it in its ball
+    const double moved = norm(displacement + cross(rotation, centre - about)) +
+                         radius * std::min(norm(rotation), 2.0);  // rotation keeps it in its ball
     return std::min(largest, at_rest + moved);
   }
 
   double largest, at_rest;
-  Vec3 displacement, turn, about;
+  Vec3 displacement, rotation, about;
 };
 
 // More normals than that are never told apart of a surface and one convex shape.
-inline constexpr std::size_t kMostClusters = 12;
+inline constexpr std::size_t kMaxClusters = 12;
 
 // Appends the manifolds with points of a separation of at most margin, of a compound's parts each
 // its own, in an order that depends on the shapes and poses alone. Those of triangles that lie in

@@ -19,7 +19,7 @@ struct MeshData {
   std::vector<TriangleMesh::Triangle> opposite;
   // Edges that can be felt: bit e from the front, bit 3 + e from the back. Whether they can depends
   // on which side of a plane a corner lies, which no scale changes.
-  std::vector<std::uint8_t> felt;
+  std::vector<std::uint8_t> active;
   std::vector<std::uint8_t> degenerate;
   // Corners next to corner v: from first_around[v] up to first_around[v + 1].
   std::vector<std::uint32_t> first_around, around;
@@ -28,7 +28,7 @@ struct MeshData {
   std::size_t left_out = 0;
   bool two_sided = false, closed = false;
   // Integrals of 1, x and x x^T over the inside, x from middle.
-  Vec3 middle;
+  Vec3 centre;
   double volume = 0.0;
   Vec3 first_moment;
   Sym3 second_moment;
@@ -39,6 +39,6 @@ void set_topology(MeshData& mesh);
 
 // An edge seen from a triangle: from p to q, the triangle's own third corner, and the neighbour's.
 // Bit 0: it can be felt from the front; bit 1: from the back.
-unsigned felt_sides(const Vec3& p, const Vec3& q, const Vec3& third, const Vec3& opposite);
+unsigned active_sides(const Vec3& p, const Vec3& q, const Vec3& third, const Vec3& opposite);
 
 }  // namespace vp::collide

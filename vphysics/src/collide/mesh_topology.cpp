@@ -58,15 +58,15 @@ std::vector<std::uint32_t> partners(const MeshData& mesh, bool& closed) {
 }
 
 // Across an edge, and on across triangles without area: the third corner of the first that has one.
-std::uint32_t corner_across(const MeshData& mesh, const std::vector<std::uint32_t>& partner,
-                            std::uint32_t half_edge) {
+std::uint32_t opposite_corner(const MeshData& mesh, const std::vector<std::uint32_t>& partner,
+                              std::uint32_t half_edge) {
   std::uint32_t waiting[8] = {half_edge};
   std::size_t count = 1;
   // Triangles without area side by side are few: who has more has a border.
   for (std::size_t k = 0; k < count; ++k) {
-    const std::uint32_t across = partner[waiting[k]];
-    if (across == kNoVertex) continue;
-    const std::uint32_t t = across / 3, e = across % 3;
+    const std::uint32_t opposite = partner[waiting[k]];
+    if (opposite == kNoVertex) continue;
+    const std::uint32_t t = opposite / 3, e = opposite % 3;
     if (mesh.degenerate[t] == 0) return mesh.triangles[t][(e + 2) % 3];
     for (std::uint32_t i = 1; i < 3 && count < 8; ++i) waiting[count++] = 3 * t + (e + i) % 3;
   }
@@ -75,18 +75,19 @@ std::uint32_t corner_across(const MeshData& mesh, const std::vector<std::uint32_
 
 void set_edges(MeshData& mesh, const std::vector<std::uint32_t>& partner) {
   mesh.opposite.assign(mesh.triangles.size(), {kNoVertex, kNoVertex, kNoVertex});
-  mesh.felt.assign(mesh.triangles.size(), 0);
+  mesh.active.assign(mesh.triangles.size(), 0);
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     if (mesh.degenerate[t] != 0) continue;
     const TriangleMesh::Triangle& c = mesh.triangles[t];
     for (std::uint32_t e = 0; e < 3; ++e) {
-      const std::uint32_t across = corner_across(mesh, partner, 3 * t + e);
-      mesh.opposite[t][e] = across;
+      const std::uint32_t opposite = opposite_corner(mesh, partner, 3 * t + e);
+      mesh.opposite[t][e] = opposite;
       const Vec3 &p = mesh.vertices[c[e]], &q = mesh.vertices[c[(e + 1) % 3]];
-      const unsigned sides = across == kNoVertex ? 3
-                                                 : felt_sides(p, q, mesh.vertices[c[(e + 2) % 3]],
-                                                              mesh.vertices[across]);
-      mesh.felt[t] |= static_cast<std::uint8_t>((sides & 1u) << e | (sides >> 1) << (3 + e));
+      const unsigned sides =
+          opposite == kNoVertex
+              ? 3
+              : active_sides(p, q, mesh.vertices[c[(e + 2) % 3]], mesh.vertices[opposite]);
+      mesh.active[t] |= static_cast<std::uint8_t>((sides & 1u) << e | (sides >> 1) << (3 + e));
     }
   }
 }
@@ -117,13 +118,13 @@ void set_surroundings(MeshData& mesh) {
 
 }  // namespace
 
-unsigned felt_sides(const Vec3& p, const Vec3& q, const Vec3& third, const Vec3& opposite) {
-  const Vec3 along = q - p, own = third - p, other = opposite - p;
-  const Vec3 n = cross(along, own), inwards = cross(n, along);
+unsigned active_sides(const Vec3& p, const Vec3& q, const Vec3& third, const Vec3& opposite) {
+  const Vec3 along = q - p, this_side = third - p, other = opposite - p;
+  const Vec3 n = cross(along, this_side), inwards = cross(n, along);
   // Across the edge: how far the neighbour goes on outwards, and how far up.
   const double out = -dot(inwards, other) / norm(inwards), up = dot(n, other) / norm(n);
-  const double reach = std::sqrt(out * out + up * up);
-  const bool flat = std::fabs(up) <= kFlatSine * reach;
+  const double length = std::sqrt(out * out + up * up);
+  const bool flat = std::fabs(up) <= kFlatSine * length;
   if (flat) return out > 0.0 ? 0u : 3u;  // one plane, or folded onto itself
   return up < 0.0 ? 1u : 2u;
 }

@@ -23,7 +23,7 @@ void sphere_against(const Vec3& centre, double radius, const Posed& b, double ma
                     std::uint32_t feature, Manifold& m) {
   const SignedDistance d = signed_distance(b.g, inverse_times(b.T, centre));
   const double separation = d.distance - radius;
-  m.apart_by_at_least = separation;
+  m.min_separation = separation;
   if (separation > margin) return;
   m.normal = -b.T.rotate(d.normal);
   m.add(centre + (radius + 0.5 * separation) * m.normal, separation, feature);
@@ -40,7 +40,7 @@ void capsule_capsule(const Posed& a, const Posed& b, double margin, Manifold& m)
   const AxisPair nearest = nearest_on_axes(axis_a, axis_b);
   const Vec3 d = axis_b.at(nearest.t) - axis_a.at(nearest.s);
   const double separation = norm(d) - a.g.radius - b.g.radius;
-  m.apart_by_at_least = separation;
+  m.min_separation = separation;
   if (separation > margin) return;
   m.normal = normal_between(axis_a, axis_b, d);
   constexpr double kAlongside = 1e-3;  // sine of the angle below which two points are used
@@ -54,9 +54,10 @@ void capsule_capsule(const Posed& a, const Posed& b, double margin, Manifold& m)
         const double s = i == 0 ? lower : upper;
         const Vec3 pa = axis_a.at(s);
         const Vec3 pb = axis_b.at(std::clamp((s - centre) * along, -b.g.half.z, b.g.half.z));
-        const double gap = dot(m.normal, pb - pa) - a.g.radius - b.g.radius;
-        if (gap <= margin) {
-          m.add(pa + (a.g.radius + 0.5 * gap) * m.normal, gap, static_cast<std::uint32_t>(i + 1));
+        const double separation = dot(m.normal, pb - pa) - a.g.radius - b.g.radius;
+        if (separation <= margin) {
+          m.add(pa + (a.g.radius + 0.5 * separation) * m.normal, separation,
+                static_cast<std::uint32_t>(i + 1));
         }
       }
       return;
@@ -74,7 +75,7 @@ void box_half_space(const Posed& a, const Posed& b, double margin, Manifold& m) 
     if (std::fabs(n[i]) > std::fabs(n[axis])) axis = i;
   }
   m.normal = -up;
-  m.apart_by_at_least = kFar;
+  m.min_separation = kFar;
   for (std::uint32_t corner = 0; corner < 4; ++corner) {
     Vec3 p;
     p[axis] = n[axis] > 0.0 ? -a.g.half[axis] : a.g.half[axis];
@@ -83,7 +84,7 @@ void box_half_space(const Posed& a, const Posed& b, double margin, Manifold& m) 
     p[v] = corner & 2u ? a.g.half[v] : -a.g.half[v];
     const Vec3 world = a.T * p;
     const double separation = dot(up, world - b.T.position());
-    m.apart_by_at_least = std::min(m.apart_by_at_least, separation);
+    m.min_separation = std::min(m.min_separation, separation);
     const auto feature = static_cast<std::uint32_t>(8 * axis + (n[axis] > 0.0 ? 4 : 0)) + corner;
     if (separation <= margin) m.add(world - 0.5 * separation * up, separation, feature);
   }
@@ -96,19 +97,19 @@ void lowest_half_space(const Posed& a, const Posed& b, double margin, Manifold& 
   const double height = dot(up, a.T.position() - b.T.position()) - core_radius(a.g);
   Feature feature;
   find_feature(a.g, turned, -a.T.unrotate(up), feature);
-  PatchPoint found[kMostCorners];
+  PatchPoint found[kMaxCorners];
   int count = 0;
-  m.apart_by_at_least = kFar;
+  m.min_separation = kFar;
   for (int i = 0; i < feature.count; ++i) {
     const FeatureCorner& c = feature.corners[i];
     const double separation = height + dot(up, c.at());
-    m.apart_by_at_least = std::min(m.apart_by_at_least, separation);
+    m.min_separation = std::min(m.min_separation, separation);
     if (separation > margin) continue;
     const Vec3 p = c.at() - (core_radius(a.g) + 0.5 * separation) * up;
     found[count++] = {p.x, p.y, p.z, separation, c.name};
   }
   m.normal = -up;
-  reduce_patch(found, count, up, core_reach(a.g), m);
+  reduce_patch(found, count, up, core_extent(a.g), m);
   for (int i = 0; i < m.count; ++i) m.points[i].position += a.T.position();
 }
 
@@ -143,7 +144,7 @@ void find_manifold(const Geometry& a, const SE3& T_a, const Geometry& b, const S
                    double margin, PairCache& cache, Manifold& manifold) {
   manifold.count = 0;
   manifold.rough = false;
-  manifold.apart_by_at_least = 0.0;
+  manifold.min_separation = 0.0;
   if (a.kind <= b.kind) {
     collide_ordered({a, T_a}, {b, T_b}, margin, cache, manifold);
   } else {

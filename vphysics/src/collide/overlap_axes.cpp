@@ -15,8 +15,8 @@
 namespace vp::collide {
 namespace {
 
-constexpr int kMostCornersOf = 256;
-constexpr int kMostEdgesOf = 3 * kMostCornersOf;
+constexpr int kMaxCornersOf = 256;
+constexpr int kMaxEdgesOf = 3 * kMaxCornersOf;
 // Squared sine between edges that give no axis.
 constexpr double kParallelEdges = 1e-16;
 
@@ -29,8 +29,8 @@ struct View {
 class FaceSearch {
  public:
   explicit FaceSearch(const View& view) : v_(view) {
-    middle_a_ = core_middle(v_.pair.a);
-    middle_b_ = v_.pair.T_a_b * core_middle(v_.pair.b);
+    centre_a_ = core_centre(v_.pair.a);
+    centre_b_ = v_.pair.T_a_b * core_centre(v_.pair.b);
   }
 
   // Along the normal the other's middle is at least as far as its nearest point.
@@ -41,19 +41,19 @@ class FaceSearch {
     const double offset = of_a ? face.offset : face.offset + dot(n, T.position());
     FaceAxis& best = of_a ? best_a : best_b;
     bool& found = of_a ? found_a : found_b;
-    if (found && dot(n, of_a ? middle_b_ : middle_a_) - offset <= best.gap) return;
+    if (found && dot(n, of_a ? centre_b_ : centre_a_) - offset <= best.separation) return;
     const Vec3 nearest = of_a ? v_.pair.support_b(-n) : v_.pair.support_a(-n);
-    const double gap = dot(n, nearest) - offset;
-    if (found && !(gap > best.gap)) return;
+    const double separation = dot(n, nearest) - offset;
+    if (found && !(separation > best.separation)) return;
     found = true;
-    best = {gap, of_a ? n : -n, of_a, f};
+    best = {separation, of_a ? n : -n, of_a, f};
   }
 
   FaceAxis best_a, best_b;
 
  private:
   const View& v_;
-  Vec3 middle_a_, middle_b_;
+  Vec3 centre_a_, centre_b_;
   bool found_a = false, found_b = false;
 };
 
@@ -65,17 +65,17 @@ FaceAxis best_face(const View& v, double bias, const PairCache& cache) {
   if (cache.feature == PairCache::face_of_b && cache.i < faces_b) search.try_face(false, cache.i);
   for (int f = 0; f < faces_a; ++f) search.try_face(true, f);
   for (int f = 0; f < faces_b; ++f) search.try_face(false, f);
-  return search.best_b.gap > search.best_a.gap + bias ? search.best_b : search.best_a;
+  return search.best_b.separation > search.best_a.separation + bias ? search.best_b : search.best_a;
 }
 
 struct EdgeList {
   int count = 0;
-  std::uint16_t edges[kMostEdgesOf];
+  std::uint16_t edges[kMaxEdgesOf];
 };
 
 // Edges that reach within depth of the foremost corner along n.
 void find_near_edges(const Polytope& p, const Vec3& n, double depth, EdgeList& list) {
-  double height[kMostCornersOf];
+  double height[kMaxCornersOf];
   double foremost = -1e300;
   for (std::size_t i = 0; i < p.vertices.size(); ++i) {
     height[i] = dot(n, p.vertices[i]);
@@ -117,11 +117,11 @@ void set_nearest_points(const EdgeLine& a, const EdgeLine& b, BestAxis& axis) {
 }
 
 void find_edge_axis(const View& v, const FaceAxis& face, EdgeAxis& best) {
-  const double depth = 2.0 * std::fabs(face.gap) + 1e-9 * v.pair.reach;
+  const double depth = 2.0 * std::fabs(face.separation) + 1e-9 * v.pair.extent;
   EdgeList near_a, near_b;
   find_near_edges(v.a, face.normal, depth, near_a);
   find_near_edges(v.b, -v.pair.T_a_b.unrotate(face.normal), depth, near_b);
-  double most = face.gap;
+  double largest = face.separation;
   for (int k = 0; k < near_b.count; ++k) {
     const EdgeLine b = line_of(v.b, near_b.edges[k], &v.pair.T_a_b);
     for (int i = 0; i < near_a.count; ++i) {
@@ -132,11 +132,12 @@ void find_edge_axis(const View& v, const FaceAxis& face, EdgeAxis& best) {
       if (!(c2 > kParallelEdges * dot(a.d, a.d) * dot(b.d, b.d))) continue;
       const double sign = dot(c, a.left + a.right) < 0.0 ? -1.0 : 1.0;
       const Vec3 n = (sign / std::sqrt(c2)) * c;
-      if (!(dot(n, b.p - a.p) > most)) continue;
-      const double gap = gap_along(v.pair, n);  // as it is, should the arcs cross by rounding alone
-      if (!(gap > most)) continue;
-      most = gap;
-      best = {true, near_a.edges[i], near_b.edges[k], {gap, n, {}, {}}};
+      if (!(dot(n, b.p - a.p) > largest)) continue;
+      const double separation =
+          separation_along(v.pair, n);  // as it is, should the arcs cross by rounding alone
+      if (!(separation > largest)) continue;
+      largest = separation;
+      best = {true, near_a.edges[i], near_b.edges[k], {separation, n, {}, {}}};
       set_nearest_points(a, b, best.axis);
     }
   }

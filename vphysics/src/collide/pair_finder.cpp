@@ -8,7 +8,7 @@ namespace vp::collide {
 namespace {
 
 // A query for each that has moved costs as much as comparing all with all when one in so many has.
-constexpr std::size_t kJoinAtShare = 6;
+constexpr std::size_t kRebuildFraction = 6;
 
 [[maybe_unused]] bool is_ordered(const Bounds& b) {  // false of NaN
   return b.lower.x <= b.upper.x && b.lower.y <= b.upper.y && b.lower.z <= b.upper.z;
@@ -20,24 +20,24 @@ FloatBounds enlarged(const Bounds& b, double margin, const Vec3& displacement) {
     e.lower[axis] += std::min(displacement[axis], 0.0);
     e.upper[axis] += std::max(displacement[axis], 0.0);
   }
-  return rounded_outwards(e);
+  return rounded_outward(e);
 }
 
 }  // namespace
 
-PairFinder::Place PairFinder::place_of(const FloatBounds& enlarged, Mobility mobility) {
+PairFinder::TreeKind PairFinder::tree_kind_of(const FloatBounds& enlarged, Mobility mobility) {
   bool far = false;
   for (int axis = 0; axis < 3; ++axis) {
     far = far || enlarged.lower[axis] < -kUnbounded || enlarged.upper[axis] > kUnbounded;
   }
-  if (mobility == Mobility::fixed) return far ? Place::unbounded_fixed : Place::fixed;
-  return far ? Place::unbounded_moving : Place::moving;
+  if (mobility == Mobility::fixed) return far ? TreeKind::unbounded_fixed : TreeKind::fixed;
+  return far ? TreeKind::unbounded_moving : TreeKind::moving;
 }
 
 void PairFinder::resize(std::size_t proxies) {
   bounds_.resize(proxies);
   filters_.resize(proxies);
-  places_.resize(proxies, Place::none);
+  places_.resize(proxies, TreeKind::none);
   pair_counts_.resize(proxies, 0);
   moved_.resize(proxies);
   pending_.resize(proxies);
@@ -76,28 +76,28 @@ void PairFinder::remove(std::uint32_t proxy) {
 }
 
 void PairFinder::take_out(std::uint32_t proxy) {
-  const Place place = places_[proxy];
-  if (place == Place::unbounded_fixed || place == Place::unbounded_moving) {
+  const TreeKind tree_kind = places_[proxy];
+  if (tree_kind == TreeKind::unbounded_fixed || tree_kind == TreeKind::unbounded_moving) {
     unbounded_.erase(std::lower_bound(unbounded_.begin(), unbounded_.end(), proxy));
-  } else if (place != Place::none && tree(place).contains(proxy)) {
-    tree(place).remove(proxy);
+  } else if (tree_kind != TreeKind::none && tree(tree_kind).contains(proxy)) {
+    tree(tree_kind).remove(proxy);
   }
   pending_.reset(proxy);
-  places_[proxy] = Place::none;
+  places_[proxy] = TreeKind::none;
 }
 
 void PairFinder::put(std::uint32_t proxy, const FloatBounds& bounds, Mobility mobility) {
-  const Place place = place_of(bounds, mobility);
+  const TreeKind tree_kind = tree_kind_of(bounds, mobility);
   bounds_[proxy] = bounds;
   moved_.set(proxy);
-  if (place != places_[proxy]) {
+  if (tree_kind != places_[proxy]) {
     take_out(proxy);
-    places_[proxy] = place;
-    if (place == Place::unbounded_fixed || place == Place::unbounded_moving) {
+    places_[proxy] = tree_kind;
+    if (tree_kind == TreeKind::unbounded_fixed || tree_kind == TreeKind::unbounded_moving) {
       unbounded_.insert(std::lower_bound(unbounded_.begin(), unbounded_.end(), proxy), proxy);
     }
   }
-  if (place == Place::fixed || place == Place::moving) pending_.set(proxy);
+  if (tree_kind == TreeKind::fixed || tree_kind == TreeKind::moving) pending_.set(proxy);
 }
 
 bool PairFinder::enlarge(std::uint32_t proxy, const Bounds& bounds, double margin,
@@ -129,25 +129,25 @@ bool PairFinder::remove_pair(std::uint32_t i, std::uint32_t j) {
   return true;
 }
 
-void PairFinder::rebuild(Place place) {
+void PairFinder::rebuild(TreeKind tree_kind) {
   items_.clear();
   for (std::uint32_t i = 0; i < places_.size(); ++i) {
-    if (places_[i] == place) items_.push_back({bounds_[i], i});
+    if (places_[i] == tree_kind) items_.push_back({bounds_[i], i});
   }
-  tree(place).build(items_);
+  tree(tree_kind).build(items_);
 }
 
-void PairFinder::refresh(Place place, std::size_t pending) {
-  BoundingTree& t = tree(place);
+void PairFinder::refresh(TreeKind tree_kind, std::size_t pending) {
+  BoundingTree& t = tree(tree_kind);
   // Half of them changed since the tree was built: it is about as costly to change on, and worse.
   bool anew = 2 * (t.changes() + pending) > t.size();
   for (std::size_t k = 0; k < pending_list_.size() && !anew; ++k) {
     const std::uint32_t i = pending_list_[k];
-    if (places_[i] != place) continue;
+    if (places_[i] != tree_kind) continue;
     const FloatBounds& b = bounds_[i];
     anew = !(t.contains(i) ? t.move(i, b) : t.insert(i, b));
   }
-  if (anew) rebuild(place);
+  if (anew) rebuild(tree_kind);
 }
 
 void PairFinder::refresh() {
@@ -157,9 +157,9 @@ void PairFinder::refresh() {
   pending_.clear();
   std::size_t pending[2] = {0, 0};
   for (const std::uint32_t i : pending_list_) ++pending[static_cast<std::size_t>(places_[i])];
-  for (const Place place : {Place::fixed, Place::moving}) {
-    if (pending[static_cast<std::size_t>(place)] > 0) {
-      refresh(place, pending[static_cast<std::size_t>(place)]);
+  for (const TreeKind tree_kind : {TreeKind::fixed, TreeKind::moving}) {
+    if (pending[static_cast<std::size_t>(tree_kind)] > 0) {
+      refresh(tree_kind, pending[static_cast<std::size_t>(tree_kind)]);
     }
   }
 }
@@ -186,9 +186,9 @@ void PairFinder::find_by_queries() {
       if (i != j) consider(i, j);
     };
     const FloatBounds& b = bounds_[i];
-    if (places_[i] == Place::moving) tree(Place::fixed).overlapping(b, found);
-    if (places_[i] == Place::moving || places_[i] == Place::fixed) {
-      tree(Place::moving).overlapping(b, found);
+    if (places_[i] == TreeKind::moving) tree(TreeKind::fixed).overlapping(b, found);
+    if (places_[i] == TreeKind::moving || places_[i] == TreeKind::fixed) {
+      tree(TreeKind::moving).overlapping(b, found);
     }
   }
 }
@@ -197,8 +197,8 @@ void PairFinder::find_by_join() {
   const auto found = [&](std::uint32_t i, std::uint32_t j) {
     if (moved_.test(i) || moved_.test(j)) consider(i, j);
   };
-  tree(Place::moving).overlapping_pairs(found);
-  tree(Place::moving).overlapping_pairs(tree(Place::fixed), found);
+  tree(TreeKind::moving).overlapping_pairs(found);
+  tree(TreeKind::moving).overlapping_pairs(tree(TreeKind::fixed), found);
 }
 
 void PairFinder::find_unbounded() {
@@ -212,7 +212,7 @@ void PairFinder::find_unbounded() {
       continue;
     }
     for (std::uint32_t i = 0; i < places_.size(); ++i) {
-      if (places_[i] != Place::none) found(i);
+      if (places_[i] != TreeKind::none) found(i);
     }
   }
 }
@@ -224,7 +224,7 @@ void PairFinder::update(std::vector<ProxyPair>& found) {
   if (moved_list_.empty()) return;
   candidates_.clear();
   new_keys_.clear();
-  if (kJoinAtShare * moved_list_.size() > tree(Place::moving).size()) {
+  if (kRebuildFraction * moved_list_.size() > tree(TreeKind::moving).size()) {
     find_by_join();
   } else {
     find_by_queries();
@@ -237,7 +237,7 @@ void PairFinder::update(std::vector<ProxyPair>& found) {
 }
 
 void PairFinder::overlapping(const Bounds& box, std::vector<std::uint32_t>& found) const {
-  const FloatBounds b = rounded_outwards(box);
+  const FloatBounds b = rounded_outward(box);
   const auto first = static_cast<std::ptrdiff_t>(found.size());
   const auto append = [&](std::uint32_t i) { found.push_back(i); };
   for (const std::uint32_t u : unbounded_) {
@@ -249,11 +249,11 @@ void PairFinder::overlapping(const Bounds& box, std::vector<std::uint32_t>& foun
 
 bool PairFinder::incoming_fits() const {
   const State& s = incoming_;
-  if (s.places.size() != places_.size() || s.free != free_) return false;
+  if (s.tree_kinds.size() != places_.size() || s.free != free_) return false;
   for (std::size_t i = 0; i < places_.size(); ++i) {
-    if ((s.places[i] == Place::none) != (places_[i] == Place::none)) return false;
-    if (places_[i] == Place::none) continue;
-    if (is_moving(s.places[i]) != is_moving(places_[i]) || s.filters[i] != filters_[i])
+    if ((s.tree_kinds[i] == TreeKind::none) != (places_[i] == TreeKind::none)) return false;
+    if (places_[i] == TreeKind::none) continue;
+    if (is_moving(s.tree_kinds[i]) != is_moving(places_[i]) || s.filters[i] != filters_[i])
       return false;
   }
   return true;
@@ -262,22 +262,22 @@ bool PairFinder::incoming_fits() const {
 // A rollback by some steps changes few bounds: then the trees are changed, not built.
 void PairFinder::adopt() {
   State& s = incoming_;
-  const bool same = s.places == places_;
+  const bool same = s.tree_kinds == places_;
   if (!same) {
     for (BoundingTree& t : trees_) t.clear();
     unbounded_.clear();
     places_.clear();  // and with them what the bits say
-    resize(s.places.size());
+    resize(s.tree_kinds.size());
     pending_.clear();
   }
-  for (std::uint32_t i = 0; i < s.places.size(); ++i) {
-    const bool bounded = s.places[i] == Place::fixed || s.places[i] == Place::moving;
+  for (std::uint32_t i = 0; i < s.tree_kinds.size(); ++i) {
+    const bool bounded = s.tree_kinds[i] == TreeKind::fixed || s.tree_kinds[i] == TreeKind::moving;
     if (bounded && !(same && s.bounds[i] == bounds_[i])) pending_.set(i);
-    if (!same && !bounded && s.places[i] != Place::none) unbounded_.push_back(i);
+    if (!same && !bounded && s.tree_kinds[i] != TreeKind::none) unbounded_.push_back(i);
   }
   bounds_.swap(s.bounds);
   filters_.swap(s.filters);
-  places_.swap(s.places);
+  places_.swap(s.tree_kinds);
   free_.swap(s.free);
   moved_.clear();
   for (const std::uint32_t i : s.moved) moved_.set(i);

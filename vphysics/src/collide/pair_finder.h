@@ -76,7 +76,7 @@ class PairFinder {
   std::size_t pairs() const { return pairs_.size(); }
 
   bool exists(std::uint32_t proxy) const {
-    return proxy < places_.size() && places_[proxy] != Place::none;
+    return proxy < places_.size() && places_[proxy] != TreeKind::none;
   }
   std::uint32_t user(std::uint32_t proxy) const { return filters_[proxy].user; }
   std::uint32_t owner(std::uint32_t proxy) const { return filters_[proxy].owner; }
@@ -108,7 +108,7 @@ class PairFinder {
 
  private:
   // Which tree or list it is in.
-  enum class Place : std::uint8_t { fixed, moving, unbounded_fixed, unbounded_moving, none };
+  enum class TreeKind : std::uint8_t { fixed, moving, unbounded_fixed, unbounded_moving, none };
 
   struct Filter {
     std::uint32_t category = 0, mask = 0, owner = 0, user = 0;
@@ -120,15 +120,15 @@ class PairFinder {
   struct State {
     std::vector<FloatBounds> bounds;
     std::vector<Filter> filters;
-    std::vector<Place> places;
+    std::vector<TreeKind> tree_kinds;
     std::vector<std::uint32_t> free, moved;
     std::vector<std::uint64_t> pairs;
   };
 
   static constexpr double kUnbounded = 1e9;  // [m]
-  static Place place_of(const FloatBounds& enlarged, Mobility mobility);
-  static bool is_moving(Place place) {
-    return place == Place::moving || place == Place::unbounded_moving;
+  static TreeKind tree_kind_of(const FloatBounds& enlarged, Mobility mobility);
+  static bool is_moving(TreeKind tree_kind) {
+    return tree_kind == TreeKind::moving || tree_kind == TreeKind::unbounded_moving;
   }
   static bool fits(const FloatBounds& enlarged, const Bounds& b, double margin, const Vec3& d);
   bool enlarge(std::uint32_t proxy, const Bounds& bounds, double margin, const Vec3& displacement);
@@ -139,9 +139,9 @@ class PairFinder {
     return (a.owner != b.owner || a.owner == kNoOwner) && (a.category & b.mask) != 0 &&
            (b.category & a.mask) != 0;
   }
-  BoundingTree& tree(Place place) { return trees_[static_cast<std::size_t>(place)]; }
-  void rebuild(Place place);
-  void refresh(Place place, std::size_t pending);
+  BoundingTree& tree(TreeKind tree_kind) { return trees_[static_cast<std::size_t>(tree_kind)]; }
+  void rebuild(TreeKind tree_kind);
+  void refresh(TreeKind tree_kind, std::size_t pending);
   void consider(std::uint32_t i, std::uint32_t j);
   void take_candidates();
   void find_by_queries();
@@ -154,7 +154,7 @@ class PairFinder {
   // Of each proxy.
   std::vector<FloatBounds> bounds_;  // enlarged
   std::vector<Filter> filters_;
-  std::vector<Place> places_;
+  std::vector<TreeKind> places_;
   std::vector<std::uint32_t> pair_counts_;
   std::vector<std::uint32_t> free_;       // the last is used next
   std::vector<std::uint32_t> unbounded_;  // ascending
@@ -190,11 +190,11 @@ inline bool PairFinder::fits(const FloatBounds& enlarged, const Bounds& b, doubl
 
 template <class F>
 void PairFinder::cast(const Sweep& sweep, double limit, CastScratch& scratch, const F& hit) const {
-  const LaneSweep lanes(sweep);
+  const BoxSweep lanes(sweep);
   const auto carried = [&](std::uint32_t proxy, float entry) { return limit = hit(proxy, entry); };
   for (const std::uint32_t proxy : unbounded_) {
     float entry = 0.0f;
-    if (!lanes.meets(bounds_[proxy], limit, entry)) continue;
+    if (!lanes.overlaps(bounds_[proxy], limit, entry)) continue;
     if (carried(proxy, entry) < 0.0) return;
   }
   for (const BoundingTree& tree : trees_) {
@@ -227,89 +227,93 @@ void PairFinder::write(Sink& sink) const {
   const auto both = [](std::uint32_t high, std::uint32_t low) {
     return (std::uint64_t{high} << 32) | low;
   };
-  sink.word(places_.size());
+  sink.u64(places_.size());
   for (std::uint32_t i = 0; i < places_.size(); ++i) {
     const Filter& f = filters_[i];
-    sink.word(both(static_cast<std::uint32_t>(places_[i]), moved_.test(i) ? 1u : 0u));
-    if (places_[i] == Place::none) continue;
-    sink.word(both(f.category, f.mask));
-    sink.word(both(f.owner, f.user));
+    sink.u64(both(static_cast<std::uint32_t>(places_[i]), moved_.test(i) ? 1u : 0u));
+    if (places_[i] == TreeKind::none) continue;
+    sink.u64(both(f.category, f.mask));
+    sink.u64(both(f.owner, f.user));
     for (int axis = 0; axis < 3; ++axis) {
-      sink.word(both(std::bit_cast<std::uint32_t>(bounds_[i].lower[axis]),
-                     std::bit_cast<std::uint32_t>(bounds_[i].upper[axis])));
+      sink.u64(both(std::bit_cast<std::uint32_t>(bounds_[i].lower[axis]),
+                    std::bit_cast<std::uint32_t>(bounds_[i].upper[axis])));
     }
   }
-  sink.word(free_.size());
-  for (const std::uint32_t i : free_) sink.word(i);
+  sink.u64(free_.size());
+  for (const std::uint32_t i : free_) sink.u64(i);
   written_keys_.clear();
   pairs_.append_keys(written_keys_);
   sort_keys(written_keys_, key_scratch_);
-  sink.word(written_keys_.size());
-  for (const std::uint64_t key : written_keys_) sink.word(key);
+  sink.u64(written_keys_.size());
+  for (const std::uint64_t key : written_keys_) sink.u64(key);
 }
 
 template <class Reader>
 void PairFinder::read_slot(Reader& in) {
-  const std::uint64_t state = in.word();
-  in.check((state >> 32) <= static_cast<std::uint64_t>(Place::none) && (state & 0xfffffffeu) == 0);
+  const std::uint64_t state = in.u64();
+  in.check((state >> 32) <= static_cast<std::uint64_t>(TreeKind::none) &&
+           (state & 0xfffffffeu) == 0);
   if (!in.ok()) return;
-  const auto place = static_cast<Place>(state >> 32);
-  const auto index = static_cast<std::uint32_t>(incoming_.places.size());
+  const auto tree_kind = static_cast<TreeKind>(state >> 32);
+  const auto index = static_cast<std::uint32_t>(incoming_.tree_kinds.size());
   const float limit = rounded_up(kFloatFar);
   FloatBounds b{Lanes4{}, Lanes4{}};
   Filter f;
-  if (place != Place::none) {
+  if (tree_kind != TreeKind::none) {
     const auto high = [](std::uint64_t w) { return static_cast<std::uint32_t>(w >> 32); };
     const auto low = [](std::uint64_t w) { return static_cast<std::uint32_t>(w); };
-    const std::uint64_t filter = in.word(), names = in.word();
+    const std::uint64_t filter = in.u64(), names = in.u64();
     f.category = high(filter), f.mask = low(filter);
     f.owner = high(names), f.user = low(names);
     for (int axis = 0; axis < 3; ++axis) {
-      const std::uint64_t w = in.word();
+      const std::uint64_t w = in.u64();
       const float lower = std::bit_cast<float>(high(w)), upper = std::bit_cast<float>(low(w));
       b.lower[axis] = lower;
       b.upper[axis] = upper;
       in.check(-lower <= limit && lower <= upper && upper <= limit);  // no NaN passes
     }
-    in.check(place == place_of(b, is_moving(place) ? Mobility::moving : Mobility::fixed));
+    in.check(tree_kind ==
+             tree_kind_of(b, is_moving(tree_kind) ? Mobility::moving : Mobility::fixed));
   }
   if ((state & 1u) != 0) {
-    in.check(place != Place::none);
+    in.check(tree_kind != TreeKind::none);
     incoming_.moved.push_back(index);
   }
   incoming_.bounds.push_back(b);
   incoming_.filters.push_back(f);
-  incoming_.places.push_back(place);
+  incoming_.tree_kinds.push_back(tree_kind);
 }
 
 template <class Reader>
 void PairFinder::read(Reader& in) {
   State& s = incoming_;
-  s.bounds.clear(), s.filters.clear(), s.places.clear(), s.free.clear(), s.moved.clear(),
+  s.bounds.clear(), s.filters.clear(), s.tree_kinds.clear(), s.free.clear(), s.moved.clear(),
       s.pairs.clear();
   // Memory grows with the bytes that there are, not with what they announce.
-  const std::uint64_t proxies = in.word();
+  const std::uint64_t proxies = in.u64();
   for (std::uint64_t i = 0; i < proxies && in.ok(); ++i) read_slot(in);
-  const std::uint64_t free = in.word();
-  in.check(free ==
-           static_cast<std::uint64_t>(std::count(s.places.begin(), s.places.end(), Place::none)));
-  seen_.resize(s.places.size());
+  const std::uint64_t free = in.u64();
+  in.check(free == static_cast<std::uint64_t>(
+                       std::count(s.tree_kinds.begin(), s.tree_kinds.end(), TreeKind::none)));
+  seen_.resize(s.tree_kinds.size());
   seen_.clear();
   for (std::uint64_t i = 0; i < free && in.ok(); ++i) {
-    const std::uint64_t w = in.word();
-    in.check(w < s.places.size() && s.places[static_cast<std::size_t>(w)] == Place::none);
+    const std::uint64_t w = in.u64();
+    in.check(w < s.tree_kinds.size() &&
+             s.tree_kinds[static_cast<std::size_t>(w)] == TreeKind::none);
     if (!in.ok()) return;
     const auto index = static_cast<std::uint32_t>(w);
     in.check(!seen_.test(index));
     seen_.set(index);
     s.free.push_back(index);
   }
-  const std::uint64_t pairs = in.word();
+  const std::uint64_t pairs = in.u64();
   for (std::uint64_t i = 0; i < pairs && in.ok(); ++i) {
-    const std::uint64_t key = in.word();
+    const std::uint64_t key = in.u64();
     const ProxyPair pair = ProxyPair::of_key(key);
-    in.check(pair.a < pair.b && pair.b < s.places.size() && s.places[pair.a] != Place::none &&
-             s.places[pair.b] != Place::none && (s.pairs.empty() || s.pairs.back() < key));
+    in.check(pair.a < pair.b && pair.b < s.tree_kinds.size() &&
+             s.tree_kinds[pair.a] != TreeKind::none && s.tree_kinds[pair.b] != TreeKind::none &&
+             (s.pairs.empty() || s.pairs.back() < key));
     s.pairs.push_back(key);
   }
 }

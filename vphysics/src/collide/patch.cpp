@@ -13,7 +13,7 @@ namespace {
 
 // So near to an edge or to one another [share of the size], a corner is on it: equal faces on one
 // another would else gain and lose corners with every rounding error.
-constexpr double kSamePlace = 1e-6;
+constexpr double kCoincident = 1e-6;
 // Depths that differ by less [the same] are one.
 constexpr double kSameDepth = 1e-6;
 // Sine of the angle between two edges below which they touch along a stretch.
@@ -34,9 +34,9 @@ struct ClipCorner {
 
 struct ClipPolygon {
   int count;
-  ClipCorner corners[kMostPatch];
+  ClipCorner corners[kMaxPatch];
   void add(const ClipCorner& c) {
-    if (count < kMostPatch) corners[count++] = c;
+    if (count < kMaxPatch) corners[count++] = c;
   }
 };
 
@@ -46,13 +46,13 @@ struct Axes {
   Vec3 at(double pu, double pv, double ph) const { return origin + pu * u + pv * v + ph * n; }
 };
 
-Axes axes_across(const Vec3& n, const Vec3& origin) {
-  int least = 0;
+Axes tangent_axes(const Vec3& n, const Vec3& origin) {
+  int smallest = 0;
   for (int i = 1; i < 3; ++i) {
-    if (std::fabs(n[i]) < std::fabs(n[least])) least = i;
+    if (std::fabs(n[i]) < std::fabs(n[smallest])) smallest = i;
   }
   Vec3 e;
-  e[least] = 1.0;
+  e[smallest] = 1.0;
   Vec3 u = cross(e, n);
   u = (1.0 / norm(u)) * u;
   return {origin, u, cross(n, u), n};
@@ -92,11 +92,11 @@ class Clipper {
   const Axes& axes_;
   bool ref_is_a_ = true;
   int edges_ = 0;
-  double ref_u_[kMostCorners], ref_v_[kMostCorners];
-  double rise_u_[kMostCorners], rise_v_[kMostCorners];  // outward, as long as the edge
-  double same_place_[kMostCorners];
+  double ref_u_[kMaxCorners], ref_v_[kMaxCorners];
+  double rise_u_[kMaxCorners], rise_v_[kMaxCorners];  // outward, as long as the edge
+  double coincident_[kMaxCorners];
   double plane_u_ = 0.0, plane_v_ = 0.0, plane_0_ = 0.0;  // the reference's height
-  PatchPoint points_[kMostPatch];
+  PatchPoint points_[kMaxPatch];
   int count_ = 0;
 };
 
@@ -115,17 +115,17 @@ void Clipper::project_reference() {
     ref_u_[k] = c.u;
     ref_v_[k] = c.v;
   }
-  const double turn = ref_is_a_ ? 1.0 : -1.0;  // b's faces look the other way
+  const double sign = ref_is_a_ ? 1.0 : -1.0;  // b's faces look the other way
   for (int k = 0; k < edges_; ++k) {
     const int next = k + 1 < edges_ ? k + 1 : 0;
-    rise_u_[k] = turn * (ref_v_[next] - ref_v_[k]);
-    rise_v_[k] = -turn * (ref_u_[next] - ref_u_[k]);
-    same_place_[k] = kSamePlace * q_.size * (std::fabs(rise_u_[k]) + std::fabs(rise_v_[k]));
+    rise_u_[k] = sign * (ref_v_[next] - ref_v_[k]);
+    rise_v_[k] = -sign * (ref_u_[next] - ref_u_[k]);
+    coincident_[k] = kCoincident * q_.size * (std::fabs(rise_u_[k]) + std::fabs(rise_v_[k]));
   }
   const Vec3 n = f.normal();
-  const double slope = 1.0 / dot(axes_.n, n);
-  plane_u_ = -slope * dot(axes_.u, n);
-  plane_v_ = -slope * dot(axes_.v, n);
+  const double inverse_cosine = 1.0 / dot(axes_.n, n);
+  plane_u_ = -inverse_cosine * dot(axes_.u, n);
+  plane_v_ = -inverse_cosine * dot(axes_.v, n);
   plane_0_ = first.h - plane_u_ * first.u - plane_v_ * first.v;
 }
 
@@ -161,7 +161,7 @@ ClipCorner Clipper::cut(const ClipCorner& from, const ClipCorner& to, double d_f
 
 void Clipper::cut_by_edge(int k, const ClipPolygon& in, ClipPolygon& out) const {
   out.count = 0;
-  const double on = same_place_[k];
+  const double on = coincident_[k];
   double d = in.count > 0 ? outside(k, in.corners[0]) : 0.0;
   for (int i = 0; i < in.count; ++i) {
     const ClipCorner& here = in.corners[i];
@@ -182,7 +182,7 @@ void Clipper::cut_by_edge(int k, const ClipPolygon& in, ClipPolygon& out) const 
 
 void Clipper::keep(double u, double v, double h_a, double h_b, std::uint32_t name) {
   const double separation = h_b - h_a - q_.radius_a - q_.radius_b;
-  if (separation > q_.margin || count_ == kMostPatch) return;
+  if (separation > q_.margin || count_ == kMaxPatch) return;
   const Vec3 p = axes_.at(u, v, h_a + q_.radius_a + 0.5 * separation);
   points_[count_++] = {p.x, p.y, p.z, separation, name};
 }
@@ -222,7 +222,7 @@ void Clipper::clip_segment(bool ref_is_a) {
   double first = 0.0, last = 1.0;
   int first_edge = -1, last_edge = -1;
   for (int k = 0; k < edges_; ++k) {
-    const double on = same_place_[k];
+    const double on = coincident_[k];
     const double dp = outside(k, p), dq = outside(k, q);
     if (dp > on && dq > on) return;
     if (dp > on) {
@@ -263,10 +263,10 @@ void Clipper::along_segments() {
     const double h_b = b0.h + t * (b1.h - b0.h);
     keep(a0.u + s * au, a0.v + s * av, a0.h + s * (a1.h - a0.h), h_b, name);
   };
-  const bool same_way = cosine > 0.0;
-  const double low = same_way ? s0 : s1, high = same_way ? s1 : s0;
-  const FeatureCorner& b_low = q_.b.corners[same_way ? 0 : 1];
-  const FeatureCorner& b_high = q_.b.corners[same_way ? 1 : 0];
+  const bool same_direction = cosine > 0.0;
+  const double low = same_direction ? s0 : s1, high = same_direction ? s1 : s0;
+  const FeatureCorner& b_low = q_.b.corners[same_direction ? 0 : 1];
+  const FeatureCorner& b_high = q_.b.corners[same_direction ? 1 : 0];
   if (!(low < 1.0) || !(high > 0.0)) return;
   low > 0.0 ? point(low, corner_name(false, b_low.name))
             : point(0.0, corner_name(true, q_.a.corners[0].name));
@@ -276,29 +276,29 @@ void Clipper::along_segments() {
 
 // Leaves out, one by one, the flattest corner, until eight are left, but never the last of the
 // deepest.
-int thin_out(const PatchPoint* points, int count, const Vec3& n, double deep, int* kept) {
+int thin_out(const PatchPoint* points, int count, const Vec3& n, double deep, int* kept_points) {
   int deep_ones = 0;
   for (int i = 0; i < count; ++i) {
-    kept[i] = i;
+    kept_points[i] = i;
     deep_ones += points[i].separation <= deep ? 1 : 0;
   }
   constexpr double kClearlyFlatter = 1.0 - 1e-3;
   for (; count > 8; --count) {
     int flattest = -1;
-    double least = 0.0;
+    double smallest = 0.0;
     for (int i = 0; i < count; ++i) {
-      const PatchPoint& here = points[kept[i]];
+      const PatchPoint& here = points[kept_points[i]];
       if (here.separation <= deep && deep_ones == 1) continue;
-      const Vec3 before = points[kept[(i + count - 1) % count]].at(),
-                 after = points[kept[(i + 1) % count]].at();
+      const Vec3 before = points[kept_points[(i + count - 1) % count]].at(),
+                 after = points[kept_points[(i + 1) % count]].at();
       const double area = std::fabs(dot(n, cross(here.at() - before, after - before)));
-      if (flattest < 0 || area < least * kClearlyFlatter) {
+      if (flattest < 0 || area < smallest * kClearlyFlatter) {
         flattest = i;
-        least = area;
+        smallest = area;
       }
     }
-    deep_ones -= points[kept[flattest]].separation <= deep ? 1 : 0;
-    std::copy(kept + flattest + 1, kept + count, kept + flattest);
+    deep_ones -= points[kept_points[flattest]].separation <= deep ? 1 : 0;
+    std::copy(kept_points + flattest + 1, kept_points + count, kept_points + flattest);
   }
   return count;
 }
@@ -317,22 +317,22 @@ void reduce_patch(const PatchPoint* points, int count, const Vec3& n, double siz
   double deep = points[0].separation;
   for (int i = 1; i < count; ++i) deep = std::min(deep, points[i].separation);
   deep += kSameDepth * size;
-  int kept[kMostPatch];
-  count = thin_out(points, count, n, deep, kept);
+  int kept_points[kMaxPatch];
+  count = thin_out(points, count, n, deep, kept_points);
   // The widest four of which one is deep; of equally wide ones the first. Twice their area is the
   // product of the diagonals.
   constexpr double kClearlyWider = 1.0 + 1e-3;
   double widest = -1.0;
   int best[4] = {0, 1, 2, 3};
-  const auto at = [&](int i) -> const PatchPoint& { return points[kept[i]]; };
+  const auto at = [&](int i) -> const PatchPoint& { return points[kept_points[i]]; };
   for (int i = 0; i < count; ++i) {
     for (int k = i + 2; k < count; ++k) {
-      const Vec3 across = cross(n, at(k).at() - at(i).at());
+      const Vec3 perpendicular = cross(n, at(k).at() - at(i).at());
       for (int j = i + 1; j < k; ++j) {
         for (int l = k + 1; l < count; ++l) {
           const bool has_deep = at(i).separation <= deep || at(j).separation <= deep ||
                                 at(k).separation <= deep || at(l).separation <= deep;
-          const double area = std::fabs(dot(across, at(l).at() - at(j).at()));
+          const double area = std::fabs(dot(perpendicular, at(l).at() - at(j).at()));
           if (!has_deep || !(area > widest * kClearlyWider)) continue;
           widest = area;
           best[0] = i, best[1] = j, best[2] = k, best[3] = l;
@@ -344,7 +344,7 @@ void reduce_patch(const PatchPoint* points, int count, const Vec3& n, double siz
 }
 
 void find_patch(const PatchQuery& q, bool with_nearest, Manifold& m) {
-  const Axes axes = axes_across(q.normal, q.on_a);
+  const Axes axes = tangent_axes(q.normal, q.on_a);
   Clipper clipper(q, axes);
   const double flat_a = q.a.count >= 3 ? dot(q.a.normal(), q.normal) : 0.0;
   const double flat_b = q.b.count >= 3 ? -dot(q.b.normal(), q.normal) : 0.0;

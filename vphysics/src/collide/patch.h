@@ -22,7 +22,7 @@ struct PatchQuery {
 // deeper than what the features give, they are one of them.
 void find_patch(const PatchQuery& query, bool with_nearest, Manifold& manifold);
 
-inline constexpr int kMostPatch = 2 * kMostCorners;
+inline constexpr int kMaxPatch = 2 * kMaxCorners;
 
 // No defaults, as of FeatureCorner.
 struct PatchPoint {
@@ -33,7 +33,7 @@ struct PatchPoint {
 };
 
 // Appends four of the corners of a convex patch, in their order around it, that keep its extent;
-// one of them is one of the deepest. At most kMostPatch.
+// one of them is one of the deepest. At most kMaxPatch.
 void reduce_patch(const PatchPoint* points, int count, const Vec3& normal, double size,
                   Manifold& manifold);
 

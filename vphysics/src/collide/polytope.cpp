@@ -28,21 +28,22 @@ using Four [[gnu::vector_size(32)]] = double;
 // The first of those that are farthest along d.
 int farthest_vertex(const HullData& hull, const Vec3& d) {
   const std::size_t n = hull.support_x.size();
-  Four most{-kFar, -kFar, -kFar, -kFar}, found{}, at{0.0, 1.0, 2.0, 3.0};
+  Four largest{-kFar, -kFar, -kFar, -kFar}, found{}, at{0.0, 1.0, 2.0, 3.0};
   for (std::size_t i = 0; i < n; i += kSupportLanes) {
     Four x, y, z;
     std::memcpy(&x, &hull.support_x[i], sizeof x);
     std::memcpy(&y, &hull.support_y[i], sizeof y);
     std::memcpy(&z, &hull.support_z[i], sizeof z);
     const Four along = d.x * x + d.y * y + d.z * z;
-    const auto farther = along > most;
-    most = farther ? along : most;
+    const auto farther = along > largest;
+    largest = farther ? along : largest;
     found = farther ? at : found;
     at += static_cast<double>(kSupportLanes);
   }
   int best = 0;
   for (int lane = 1; lane < static_cast<int>(kSupportLanes); ++lane) {
-    if (most[lane] > most[best] || (most[lane] == most[best] && found[lane] < found[best]))
+    if (largest[lane] > largest[best] ||
+        (largest[lane] == largest[best] && found[lane] < found[best]))
       best = lane;
   }
   return static_cast<int>(found[best]);
@@ -55,14 +56,14 @@ int support_vertex(const HullData& hull, const Vec3& d, int hint) {
   const int n = static_cast<int>(hull.vertices.size());
   int best = 0;
   if (hint > 0 && hint < n) best = hint;
-  double most = dot(d, hull.vertices[static_cast<std::size_t>(best)]);
+  double largest = dot(d, hull.vertices[static_cast<std::size_t>(best)]);
   for (int from = -1; from != best;) {
     from = best;
     const auto v = static_cast<std::size_t>(from);
     for (std::size_t k = hull.first_around[v]; k < hull.first_around[v + 1]; ++k) {
       const double along = dot(d, hull.vertices[hull.neighbours[k]]);
-      if (along > most) {
-        most = along;
+      if (along > largest) {
+        largest = along;
         best = hull.neighbours[k];
       }
     }

@@ -128,17 +128,17 @@ void QuickhullBuilder::put(std::uint32_t p, Facet& f, double d) {
 // be seen by another; if not, it is within the tolerance of the hull and left out.
 void QuickhullBuilder::assign(std::uint32_t p, std::span<const std::uint32_t> candidates) {
   std::uint32_t best = kNoFacet;
-  double most = 0.0;
+  double largest = 0.0;
   for (const std::uint32_t f : candidates) {
     const double d = distance(facets_[f], p);
-    if (d > most) {
-      most = d;
+    if (d > largest) {
+      largest = d;
       best = f;
     }
   }
   if (best == kNoFacet) return;
-  if (most > tolerance_) {
-    put(p, facets_[best], most);
+  if (largest > tolerance_) {
+    put(p, facets_[best], largest);
   } else {
     assign_to_any(p);
   }
@@ -172,13 +172,13 @@ Quickhull::Result QuickhullBuilder::start(double thinnest) {
     }
   }
   if (longest <= thinnest) return Result::point;
-  const auto farthest = [&](auto&& measure, double& most) {
+  const auto farthest = [&](auto&& measure, double& largest) {
     std::uint32_t best = 0;
-    most = 0.0;
+    largest = 0.0;
     for (std::uint32_t i = 0; i < n; ++i) {
       const double d = measure(i);
-      if (d > most) {
-        most = d;
+      if (d > largest) {
+        largest = d;
         best = i;
       }
     }

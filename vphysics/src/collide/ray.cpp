@@ -222,13 +222,13 @@ class RayFrame {
     shear_y_ = d[y_] / along_;
   }
   // A triangle's front turns counter-clockwise to who comes along the ray.
-  bool meets(const SurfaceTriangle& t, bool two_sided, double& distance) const {
+  bool overlaps(const SurfaceTriangle& t, bool two_sided, double& distance) const {
     const Corner a = seen(t.p[0]), b = seen(t.p[1]), c = seen(t.p[2]);
     const double u = c.x * b.y - c.y * b.x, v = a.x * c.y - a.y * c.x, w = b.x * a.y - b.y * a.x;
     const bool front = u >= 0.0 && v >= 0.0 && w >= 0.0, back = u <= 0.0 && v <= 0.0 && w <= 0.0;
-    const double whole = u + v + w;
-    if (whole == 0.0 || !(front || (back && two_sided))) return false;
-    distance = ((u / whole) * a.z + (v / whole) * b.z + (w / whole) * c.z) / along_;
+    const double sum = u + v + w;
+    if (sum == 0.0 || !(front || (back && two_sided))) return false;
+    distance = ((u / sum) * a.z + (v / sum) * b.z + (w / sum) * c.z) / along_;
     return true;
   }
 
@@ -258,7 +258,7 @@ bool cast_at_surface(const Surface& surface, const Ray& ray, double limit, CastS
   const auto hit = [&](std::uint32_t id, double) {
     const SurfaceTriangle t = surface.triangle(id);
     double distance = 0.0;
-    if (frame.meets(t, surface.two_sided(), distance) && distance >= 0.0 && distance <= limit &&
+    if (frame.overlaps(t, surface.two_sided(), distance) && distance >= 0.0 && distance <= limit &&
         is_first(best, distance, id)) {
       const bool from_behind = dot(t.normal, ray.direction) > 0.0;
       best = {distance, from_behind ? -t.normal : t.normal, id};

@@ -27,7 +27,7 @@ bool part_touches(const Geometry& a, const SE3& T_a, const Geometry& b, const SE
   if (b.kind == Kind::compound) {
     bool touches = false;
     const Bounds box = bounds_of(a, relative_pose(T_b, T_a));
-    b.compound->tree.overlapping(rounded_outwards(box), [&](std::uint32_t i) {
+    b.compound->tree.overlapping(rounded_outward(box), [&](std::uint32_t i) {
       if (touches) return;
       fresh = {};
       touches = shapes_overlap(a, T_a, b.compound->geometries[i],
@@ -81,7 +81,7 @@ class NearestFinder {
     surface.nearest(box, limit_, scratch_.cast, [&](std::uint32_t id) {
       const SurfaceTriangle t = surface.triangle(id);
       const Geometry triangle = triangle_geometry(t.p);
-      const FloatBounds around = rounded_outwards(bounds_of(triangle, SE3{}));
+      const FloatBounds around = rounded_outward(bounds_of(triangle, SE3{}));
       if (static_cast<double>(distance_between(box, around, {1.0, 1.0, 1.0})) > limit_) {
         return limit_;
       }
@@ -113,22 +113,23 @@ class NearestFinder {
 // --- the first impact ----------------------------------------------------------------------------
 
 // No point of the shape is farther from what it turns about.
-double reach_of(const MovingShape& m) {
-  return norm(m.T * core_middle(*m.shape) - m.motion.x) + core_reach(*m.shape) +
+double bounding_radius_of(const MovingShape& m) {
+  return norm(m.T * core_centre(*m.shape) - m.motion.x) + core_extent(*m.shape) +
          core_radius(*m.shape);
 }
 // As far as a turn takes a point that is at most reach away.
-double turn_of(const MovingShape& m, double reach, double duration) {
-  return std::min(norm(m.motion.w) * duration, 2.0) * reach;
+double rotation_bound(const MovingShape& m, double radius, double duration) {
+  return std::min(norm(m.motion.w) * duration, 2.0) * radius;
 }
 
 // What the first shape passes, seen from the second.
 Sweep sweep_of(const ImpactQuery& q, double more) {
-  const Vec3 way = q.duration * (q.a.motion.v - q.b.motion.v);
-  const double reach = reach_of(q.a);
-  const double far = norm(q.a.motion.x - q.b.motion.x) + norm(way) + reach;
-  const double grow = more + turn_of(q.a, reach, q.duration) + turn_of(q.b, far, q.duration);
-  return {grown(bounds_of(*q.a.shape, relative_pose(q.b.T, q.a.T)), grow), q.b.T.unrotate(way)};
+  const Vec3 offset = q.duration * (q.a.motion.v - q.b.motion.v);
+  const double radius = bounding_radius_of(q.a);
+  const double far = norm(q.a.motion.x - q.b.motion.x) + norm(offset) + radius;
+  const double grow =
+      more + rotation_bound(q.a, radius, q.duration) + rotation_bound(q.b, far, q.duration);
+  return {grown(bounds_of(*q.a.shape, relative_pose(q.b.T, q.a.T)), grow), q.b.T.unrotate(offset)};
 }
 
 class ImpactFinder {
@@ -186,8 +187,8 @@ class ImpactFinder {
     const bool first = part_a < best_.part_a || (part_a == best_.part_a && part_b < best_.part_b);
     if (t == best_.time && !first) return;
     if (one_sided != nullptr) {
-      const Vec3 middle = pose_at(q.a, t) * core_middle(*q.a.shape);
-      const Vec3 local = inverse_times(pose_at(q.b, t), middle);
+      const Vec3 centre = pose_at(q.a, t) * core_centre(*q.a.shape);
+      const Vec3 local = inverse_times(pose_at(q.b, t), centre);
       if (dot(one_sided->normal, local - one_sided->p[0]) < 0.0) return;
     }
     best_ = {t, closest_points(*q.a.shape, pose_at(q.a, t), *q.b.shape, pose_at(q.b, t), cache),

@@ -26,23 +26,23 @@ Inertia solid_inertia(const Shape& shape, double density) {
     const double cylinder = density * kPi * r * r * 2.0 * l;
     const double ball = density * (4.0 / 3.0) * kPi * r * r * r;
     const double axial = 0.5 * cylinder * r * r + 0.4 * ball * r * r;
-    const double across =
+    const double radial =
         cylinder * (r * r / 4.0 + l * l / 3.0) + ball * (0.4 * r * r + l * l + 0.75 * l * r);
-    return {cylinder + ball, Vec3{across, across, axial}};
+    return {cylinder + ball, Vec3{radial, radial, axial}};
   }
   if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
     const double r = cylinder->radius, l = cylinder->half_length;
     const double m = density * kPi * r * r * 2.0 * l;
-    const double across = m * (r * r / 4.0 + l * l / 3.0);
-    return {m, Vec3{across, across, 0.5 * m * r * r}};
+    const double radial = m * (r * r / 4.0 + l * l / 3.0);
+    return {m, Vec3{radial, radial, 0.5 * m * r * r}};
   }
   if (const auto* cone = std::get_if<Cone>(&shape)) {
     // Of height 2 h, its centre of mass h / 2 above the base; about that, across the axis,
     // 3/20 m r^2 + 3/80 m (2 h)^2.
     const double r = cone->radius, h = cone->half_height;
     const double m = density * kPi * r * r * 2.0 * h / 3.0;
-    const double across = m * (0.15 * r * r + 0.15 * h * h);
-    return Inertia(m, Vec3{across, across, 0.3 * m * r * r}).about({0, 0, 0.5 * h});
+    const double radial = m * (0.15 * r * r + 0.15 * h * h);
+    return Inertia(m, Vec3{radial, radial, 0.3 * m * r * r}).about({0, 0, 0.5 * h});
   }
   if (const auto* hull = std::get_if<ConvexHull>(&shape)) return hull->inertia(density);
   if (const auto* mesh = std::get_if<TriangleMesh>(&shape)) {
@@ -54,9 +54,9 @@ Inertia solid_inertia(const Shape& shape, double density) {
 
 namespace {
 
-constexpr double kLeastScale = 1e-6, kMostScale = 1e6;
+constexpr double kMinScale = 1e-6, kMaxScale = 1e6;
 
-tl::unexpected<Error> scale_refused(const char* message) {
+tl::unexpected<Error> invalid_scale(const char* message) {
   return tl::make_unexpected(Error{Errc::invalid_argument, message});
 }
 
@@ -68,9 +68,9 @@ Expected<Shape> as_shape(Expected<T> made) {
 
 // Parts that are turned would be sheared by unequal factors.
 Expected<Shape> scaled_compound(const Compound& compound, const Vec3& scale) {
-  if (!compound.data()) return scale_refused("scaled: the compound was moved from");
+  if (!compound.data()) return invalid_scale("scaled: the compound was moved from");
   if (scale.x != scale.y || scale.y != scale.z) {
-    return scale_refused("scaled: a compound takes equal factors only; scale its parts");
+    return invalid_scale("scaled: a compound takes equal factors only; scale its parts");
   }
   std::vector<CompoundPart> parts;
   for (const CompoundPart& part : compound.parts()) {
@@ -86,14 +86,14 @@ Expected<Shape> scaled_compound(const Compound& compound, const Vec3& scale) {
 
 Expected<Shape> scaled(const Shape& shape, const Vec3& scale) {
   for (const double s : {scale.x, scale.y, scale.z}) {
-    if (!(s >= kLeastScale && s <= kMostScale)) {
-      return scale_refused("scaled: every factor must be from 1e-6 to 1e6");
+    if (!(s >= kMinScale && s <= kMaxScale)) {
+      return invalid_scale("scaled: every factor must be from 1e-6 to 1e6");
     }
   }
-  const bool round = scale.x == scale.y, uniform = round && scale.y == scale.z;
+  const bool circular = scale.x == scale.y, uniform = circular && scale.y == scale.z;
   if (const auto* sphere = std::get_if<Sphere>(&shape)) {
     if (!uniform) {
-      return scale_refused(
+      return invalid_scale(
           "scaled: a sphere keeps its shape by equal factors only; use a convex hull");
     }
     return Sphere{scale.x * sphere->radius};
@@ -104,24 +104,24 @@ Expected<Shape> scaled(const Shape& shape, const Vec3& scale) {
   }
   if (const auto* capsule = std::get_if<Capsule>(&shape)) {
     if (!uniform) {
-      return scale_refused(
+      return invalid_scale(
           "scaled: a capsule keeps its shape by equal factors only; use a convex hull");
     }
     return Capsule{scale.x * capsule->radius, scale.x * capsule->half_length};
   }
   if (const auto* cylinder = std::get_if<Cylinder>(&shape)) {
-    if (!round) {
-      return scale_refused("scaled: a cylinder needs equal factors of x and y; use a convex hull");
+    if (!circular) {
+      return invalid_scale("scaled: a cylinder needs equal factors of x and y; use a convex hull");
     }
     return Cylinder{scale.x * cylinder->radius, scale.z * cylinder->half_length};
   }
   if (const auto* cone = std::get_if<Cone>(&shape)) {
-    if (!round)
-      return scale_refused("scaled: a cone needs equal factors of x and y; use a convex hull");
+    if (!circular)
+      return invalid_scale("scaled: a cone needs equal factors of x and y; use a convex hull");
     return Cone{scale.x * cone->radius, scale.z * cone->half_height};
   }
   if (const auto* hull = std::get_if<ConvexHull>(&shape)) {
-    if (!hull->data()) return scale_refused("scaled: the convex hull was moved from");
+    if (!hull->data()) return invalid_scale("scaled: the convex hull was moved from");
     std::vector<Vec3> points(hull->vertices().begin(), hull->vertices().end());
     for (Vec3& p : points) p = {scale.x * p.x, scale.y * p.y, scale.z * p.z};
     HullOptions all;

@@ -15,15 +15,15 @@ inline double core_radius(const Geometry& g) {
   return g.kind == Kind::sphere || g.kind == Kind::capsule ? g.radius : 0.0;
 }
 
-// A point of the core from which no other point of it is farther than core_reach.
-inline Vec3 core_middle(const Geometry& g) {
+// A point of the core from which no other point of it is farther than core_extent.
+inline Vec3 core_centre(const Geometry& g) {
   if (g.kind == Kind::hull) return g.hull->centre;
   if (g.kind == Kind::triangle) {
     return (1.0 / 3.0) * (g.corners[0] + g.corners[1] + g.corners[2]);
   }
   return {};
 }
-inline double core_reach(const Geometry& g) {
+inline double core_extent(const Geometry& g) {
   switch (g.kind) {
     case Kind::sphere:
       return 0.0;
@@ -33,7 +33,7 @@ inline double core_reach(const Geometry& g) {
     case Kind::cone:
       return std::sqrt(g.radius * g.radius + g.half.z * g.half.z);
     case Kind::triangle: {
-      const Vec3 m = core_middle(g);
+      const Vec3 m = core_centre(g);
       return std::max({norm(g.corners[0] - m), norm(g.corners[1] - m), norm(g.corners[2] - m)});
     }
     case Kind::capsule:
@@ -51,9 +51,9 @@ inline double core_reach(const Geometry& g) {
 int support_vertex(const HullData& hull, const Vec3& d, int hint);
 
 inline Vec3 rim_direction(const Vec3& d) {
-  const double across = std::sqrt(d.x * d.x + d.y * d.y);
-  if (!(across > 1e-150)) return {1, 0, 0};
-  return {d.x / across, d.y / across, 0};
+  const double radial = std::sqrt(d.x * d.x + d.y * d.y);
+  if (!(radial > 1e-150)) return {1, 0, 0};
+  return {d.x / radial, d.y / radial, 0};
 }
 
 // In the shape's frame; d need not be of unit length. hint: a vertex of a hull to begin with, and
@@ -80,8 +80,8 @@ inline Vec3 core_support(const Geometry& g, const Vec3& d, int& hint) {
       return g.radius * rim_direction(d) + Vec3{0, 0, std::copysign(g.half.z, d.z)};
     case Kind::cone: {
       // The apex is farther than the base's rim if 2 h d_z > r |(d_x, d_y)|.
-      const double across = std::sqrt(d.x * d.x + d.y * d.y);
-      if (2.0 * g.half.z * d.z > g.radius * across) return {0, 0, g.half.z};
+      const double radial = std::sqrt(d.x * d.x + d.y * d.y);
+      if (2.0 * g.half.z * d.z > g.radius * radial) return {0, 0, g.half.z};
       return g.radius * rim_direction(d) - Vec3{0, 0, g.half.z};
     }
     case Kind::hull:

@@ -13,15 +13,15 @@ void set_normal(SurfaceTriangle& t) {
 }
 
 bool is_above(const Vec3& from, const Vec3& corner, const Vec3& d) {
-  const Vec3 way = corner - from;
-  const double height = dot(way, d);
-  return height > 0.0 && height * height > kInPlane * kInPlane * dot(way, way);
+  const Vec3 offset = corner - from;
+  const double height = dot(offset, d);
+  return height > 0.0 && height * height > kInPlane * kInPlane * dot(offset, offset);
 }
 
 // Corners and neighbours of the two triangles of a cell, as steps of columns and rows from its
 // first sample: the corners, and what is across each edge, with the cell that has it.
 struct CellTriangle {
-  int corner[3][2], across[3][2], cell[3][2];
+  int corner[3][2], opposite[3][2], cell[3][2];
 };
 constexpr CellTriangle kLowerCell{
     {{0, 0}, {1, 0}, {1, 1}}, {{0, -1}, {2, 1}, {0, 1}}, {{0, -1}, {1, 0}, {0, 0}}};
@@ -44,12 +44,12 @@ Bounds Surface::bounds() const {
 }
 
 Bounds Surface::unscaled(const Bounds& b) const {
-  Bounds own;
+  Bounds local;
   for (int i = 0; i < 3; ++i) {
-    own.lower[i] = b.lower[i] / scale_[i];
-    own.upper[i] = b.upper[i] / scale_[i];
+    local.lower[i] = b.lower[i] / scale_[i];
+    local.upper[i] = b.upper[i] / scale_[i];
   }
-  return own;
+  return local;
 }
 
 void Surface::append_overlapping(const Bounds& box, std::vector<std::uint32_t>& ids) const {
@@ -82,11 +82,11 @@ SurfaceTriangle Surface::of_mesh(std::uint32_t id) const {
   for (std::size_t i = 0; i < 3; ++i) {
     t.corners[i] = mesh_->triangles[id][i];
     t.p[i] = scaled(mesh_->vertices[t.corners[i]]);
-    const std::uint32_t across = mesh_->opposite[id][i];
-    t.has_across[i] = across != kNoVertex;
-    if (t.has_across[i]) t.across[i] = scaled(mesh_->vertices[across]);
+    const std::uint32_t opposite = mesh_->opposite[id][i];
+    t.has_opposite[i] = opposite != kNoVertex;
+    if (t.has_opposite[i]) t.opposite[i] = scaled(mesh_->vertices[opposite]);
   }
-  t.felt = mesh_->felt[id];
+  t.active = mesh_->active[id];
   set_normal(t);
   return t;
 }
@@ -101,20 +101,21 @@ SurfaceTriangle Surface::of_field(std::uint32_t id) const {
   };
   SurfaceTriangle t;
   t.id = id;
-  t.felt = 0;
+  t.active = 0;
   for (int k = 0; k < 3; ++k) {
     const int(&c)[2] = shape.corner[k];
     t.corners[k] =
         (j + static_cast<std::uint32_t>(c[1])) * f.columns + i + static_cast<std::uint32_t>(c[0]);
     t.p[k] = sample(c);
-    t.has_across[k] =
+    t.has_opposite[k] =
         !f.is_hole(std::int64_t{i} + shape.cell[k][0], std::int64_t{j} + shape.cell[k][1]);
-    if (t.has_across[k]) t.across[k] = sample(shape.across[k]);
+    if (t.has_opposite[k]) t.opposite[k] = sample(shape.opposite[k]);
   }
   for (int k = 0; k < 3; ++k) {
     const unsigned sides =
-        t.has_across[k] ? felt_sides(t.p[k], t.p[(k + 1) % 3], t.p[(k + 2) % 3], t.across[k]) : 3;
-    t.felt |= (sides & 1u) << k | (sides >> 1) << (3 + k);
+        t.has_opposite[k] ? active_sides(t.p[k], t.p[(k + 1) % 3], t.p[(k + 2) % 3], t.opposite[k])
+                          : 3;
+    t.active |= (sides & 1u) << k | (sides >> 1) << (3 + k);
   }
   set_normal(t);
   return t;

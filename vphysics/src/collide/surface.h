@@ -17,9 +17,9 @@ struct SurfaceTriangle {
   Vec3 p[3];
   Vec3 normal;               // unit, of the front
   std::uint32_t corners[3];  // names of vertices
-  Vec3 across[3];            // the neighbour's third corner beyond the edge from p[i]
-  bool has_across[3];
-  unsigned felt;  // as of MeshData
+  Vec3 opposite[3];          // the neighbour's third corner beyond the edge from p[i]
+  bool has_opposite[3];
+  unsigned active;  // as of MeshData
 };
 
 class Surface {
@@ -71,7 +71,7 @@ class Surface {
 template <class F>
 void Surface::overlapping(const Bounds& box, const F& found) const {
   if (field_ != nullptr) return for_cells(unscaled(box), found);
-  mesh_->tree.overlapping(rounded_outwards(unscaled(box)), found);
+  mesh_->tree.overlapping(rounded_outward(unscaled(box)), found);
 }
 
 // Of the field, unscaled.
@@ -97,11 +97,11 @@ void Surface::for_cells(const Bounds& box, const F& found) const {
       if (f.is_hole(i, j)) continue;
       const double l0 = std::min(row[i], next[i + 1]), h0 = std::max(row[i], next[i + 1]);
       const std::uint32_t id = 2 * (j * (f.columns - 1) + i);
-      const auto meets = [&](double third) {
+      const auto overlaps = [&](double third) {
         return std::min(l0, third) <= box.upper.z && std::max(h0, third) >= box.lower.z;
       };
-      if (meets(row[i + 1])) found(id);
-      if (meets(next[i])) found(id + 1);
+      if (overlaps(row[i + 1])) found(id);
+      if (overlaps(next[i])) found(id + 1);
     }
   }
 }
@@ -116,7 +116,7 @@ void Surface::cast_field(const Sweep& sweep, double limit, const F& hit) const {
   const double spacing = by_columns ? f.spacing_x : f.spacing_y, d = sweep.displacement[axis];
   const std::uint32_t rows = (by_columns ? f.columns : f.rows) - 1;
   const double lower = sweep.start.lower[axis], upper = sweep.start.upper[axis];
-  const auto reach = [&](double from, double to) {  // of the box between two fractions
+  const auto box_between = [&](double from, double to) {  // of the box between two fractions
     const Vec3 a = from * sweep.displacement, b = to * sweep.displacement;
     return merged(Bounds{sweep.start.lower + a, sweep.start.upper + a},
                   Bounds{sweep.start.lower + b, sweep.start.upper + b});
@@ -124,8 +124,8 @@ void Surface::cast_field(const Sweep& sweep, double limit, const F& hit) const {
   const auto row_at = [&](double x) {
     return static_cast<std::uint32_t>(std::clamp(std::floor(x / spacing), 0.0, rows - 1.0));
   };
-  const Bounds whole = reach(0.0, std::min(limit, 1.0));
-  const std::uint32_t low = row_at(whole.lower[axis]), high = row_at(whole.upper[axis]);
+  const Bounds all_box = box_between(0.0, std::min(limit, 1.0));
+  const std::uint32_t low = row_at(all_box.lower[axis]), high = row_at(all_box.upper[axis]);
   for (std::uint32_t k = 0; k <= high - low; ++k) {
     const std::uint32_t row = d < 0.0 ? high - k : low + k;
     const double from = row * spacing, to = from + spacing;
@@ -135,7 +135,7 @@ void Surface::cast_field(const Sweep& sweep, double limit, const F& hit) const {
       out = std::clamp((d > 0.0 ? to - lower : from - upper) / d + 1e-9, 0.0, 1.0);
     }
     if (in > limit) return;
-    Bounds box = reach(in, out);
+    Bounds box = box_between(in, out);
     box.lower[axis] = from + 0.5 * spacing;  // this row alone
     box.upper[axis] = from + 0.5 * spacing;
     for_cells(box, [&](std::uint32_t id) {
@@ -147,15 +147,15 @@ void Surface::cast_field(const Sweep& sweep, double limit, const F& hit) const {
 
 template <class F>
 void Surface::cast(const Sweep& sweep, double limit, CastScratch& scratch, const F& hit) const {
-  const Sweep own{unscaled(sweep.start),
-                  {sweep.displacement.x / scale_.x, sweep.displacement.y / scale_.y,
-                   sweep.displacement.z / scale_.z}};
+  const Sweep local{unscaled(sweep.start),
+                    {sweep.displacement.x / scale_.x, sweep.displacement.y / scale_.y,
+                     sweep.displacement.z / scale_.z}};
   if (mesh_ != nullptr) {
-    mesh_->tree.cast(own, limit, scratch, [&](std::uint32_t id, float entry) {
+    mesh_->tree.cast(local, limit, scratch, [&](std::uint32_t id, float entry) {
       return hit(id, static_cast<double>(entry));
     });
   } else if (limit >= 0.0) {
-    cast_field(own, limit, hit);
+    cast_field(local, limit, hit);
   }
 }
 
@@ -164,15 +164,15 @@ template <class F>
 void Surface::nearest_of_field(const Bounds& box, double limit, const F& near) const {
   const HeightData& f = *field_;
   const Bounds all = bounds();
-  double reach = std::max(f.spacing_x * scale_.x, f.spacing_y * scale_.y);
+  double box_between = std::max(f.spacing_x * scale_.x, f.spacing_y * scale_.y);
   for (;;) {
-    const Bounds within = grown(box, std::min(reach, limit));
+    const Bounds within = grown(box, std::min(box_between, limit));
     for_cells(unscaled(within), [&](std::uint32_t id) { limit = near(id); });
     const auto covers = [&](int i) {
       return within.lower[i] <= all.lower[i] && within.upper[i] >= all.upper[i];
     };
-    if (reach >= limit || (covers(0) && covers(1) && covers(2))) return;
-    reach *= 2.0;
+    if (box_between >= limit || (covers(0) && covers(1) && covers(2))) return;
+    box_between *= 2.0;
   }
 }
 

@@ -31,10 +31,10 @@ constexpr int kMaxManifoldsOfCluster = 4;
 // An edge or a corner that is felt is found by each triangle that has it: the one that needs less
 // counts.
 void add_contact(const Contact& contact, std::vector<Contact>& contacts) {
-  if (contact.contact.felt_part != TriangleContact::kFace) {
+  if (contact.contact.active_part != TriangleContact::kFace) {
     for (Contact& c : contacts) {
-      if (c.contact.felt_part != contact.contact.felt_part) continue;
-      if (contact.contact.gap > c.contact.gap) c = contact;
+      if (c.contact.active_part != contact.contact.active_part) continue;
+      if (contact.contact.separation > c.contact.separation) c = contact;
       return;
     }
   }
@@ -47,20 +47,20 @@ void find_contacts(const Surface& surface, const Geometry& shape, const SE3& T, 
   scratch.near_triangles.clear();
   scratch.contacts.clear();
   scratch.points.clear();
-  scratch.settled.clear();
+  scratch.converged.clear();
   const TriangleCull cull(shape, T, margin);
   surface.overlapping(grown(bounds_of(shape, T), margin), [&](std::uint32_t id) {
     scratch.triangles.push_back(id);
     Vec3 p[3];
     surface.corners(id, p);
-    if (cull.may_meet(p)) scratch.near_triangles.push_back(id);
+    if (cull.may_overlap(p)) scratch.near_triangles.push_back(id);
   });
   std::sort(scratch.near_triangles.begin(), scratch.near_triangles.end());
-  scratch.looked_at += static_cast<std::uint32_t>(scratch.triangles.size());
-  const Vec3 middle = T * core_middle(shape);
+  scratch.narrow_phase_pairs += static_cast<std::uint32_t>(scratch.triangles.size());
+  const Vec3 centre = T * core_centre(shape);
   for (const std::uint32_t id : scratch.near_triangles) {
     SurfaceTriangle t = surface.triangle(id);
-    if (!face_towards(t, middle, surface.two_sided())) continue;
+    if (!face_towards(t, centre, surface.two_sided())) continue;
     const TriangleContact found = collide_triangle(surface, t, shape, T, margin, scratch.points);
     scratch.rough |= found.rough;
     if (found.count > 0) add_contact({found, id, 0}, scratch.contacts);
@@ -79,7 +79,7 @@ class Pruning {
   void prune() {
     std::vector<Contact>& contacts = scratch_.contacts;
     for (Contact& longer : contacts) {
-      if (!(longer.contact.gap < -same_)) continue;
+      if (!(longer.contact.separation < -same_)) continue;
       const bool resolved =
           std::any_of(contacts.begin(), contacts.end(),
                       [&](const Contact& shorter) { return resolves(shorter, longer); });
@@ -110,11 +110,13 @@ const ManifoldPoint& Pruning::deepest(const Contact& c) const {
 bool Pruning::resolves(const Contact& shorter, const Contact& longer) const {
   if (shorter.triangle == ManifoldScratch::kNoTriangle) return false;
   const TriangleContact &s = shorter.contact, &l = longer.contact;
-  if (!(s.gap < -same_) || s.gap <= l.gap || dot(s.normal, l.normal) > kSameNormal) return false;
-  const Vec3 way = deepest(shorter).position - deepest(longer).position;
-  if (dot(way, way) > kNear * kNear * l.gap * l.gap) return false;
-  const SE3 moved(T_.rotation(), T_.position() + (same_ - s.gap) * s.normal);
-  if (l.felt_part != TriangleContact::kFace) {
+  if (!(s.separation < -same_) || s.separation <= l.separation ||
+      dot(s.normal, l.normal) > kSameNormal)
+    return false;
+  const Vec3 offset = deepest(shorter).position - deepest(longer).position;
+  if (dot(offset, offset) > kNear * kNear * l.separation * l.separation) return false;
+  const SE3 moved(T_.rotation(), T_.position() + (same_ - s.separation) * s.normal);
+  if (l.active_part != TriangleContact::kFace) {
     return !overlaps_triangle(surface_.triangle(longer.triangle), shape_, moved);
   }
   // A face goes on over the edges that are not felt: none of its triangles may be left.
@@ -127,19 +129,19 @@ bool Pruning::resolves(const Contact& shorter, const Contact& longer) const {
 // Each contact to the first cluster with nearly its normal; past the last cluster, to that which
 // comes nearest.
 std::uint32_t find_clusters(std::vector<Contact>& contacts, bool& crowded) {
-  Vec3 normals[kMostClusters];
+  Vec3 normals[kMaxClusters];
   std::uint32_t count = 0;
   for (Contact& c : contacts) {
     c.cluster = count;
-    double most = count < kMostClusters ? kSameNormal : -2.0;
+    double largest = count < kMaxClusters ? kSameNormal : -2.0;
     for (std::uint32_t k = 0; k < count; ++k) {
       const double along = dot(normals[k], c.contact.normal);
-      if (along <= most) continue;
-      most = along;
+      if (along <= largest) continue;
+      largest = along;
       c.cluster = k;
     }
     if (c.cluster == count) normals[count++] = c.contact.normal;
-    crowded |= most < kSameNormal;
+    crowded |= largest < kSameNormal;
   }
   return count;
 }
@@ -151,7 +153,7 @@ class Cluster {
  public:
   Cluster(ManifoldScratch& scratch, std::uint32_t cluster, double size)
       : scratch_(scratch), cluster_(cluster), same_(kSamePoint * size), level_(kLevel * size) {
-    scratch_.settled.resize(scratch_.points.size());
+    scratch_.converged.resize(scratch_.points.size());
   }
 
   // Appends one manifold after the other, until all points are there or stood for.
@@ -165,7 +167,7 @@ class Cluster {
       if (c.cluster != cluster_) continue;
       for (std::size_t i = 0; i < c.contact.count; ++i) {
         const std::size_t index = c.contact.first_point + i;
-        if (scratch_.settled[index] == 0) f(scratch_.points[index], c);
+        if (scratch_.converged[index] == 0) f(scratch_.points[index], c);
       }
     }
   }
@@ -174,8 +176,8 @@ class Cluster {
   // Returns whether any point is left.
   bool settle(const Manifold& manifold);
   const ManifoldPoint* farthest_from(const Vec3& from) const;
-  void span_most(const ManifoldPoint& deepest, const Vec3& normal,
-                 const ManifoldPoint* (&chosen)[4]) const;
+  void span_farthest(const ManifoldPoint& deepest, const Vec3& normal,
+                     const ManifoldPoint* (&chosen)[4]) const;
 
   ManifoldScratch& scratch_;
   std::uint32_t cluster_;
@@ -191,7 +193,7 @@ void Cluster::reduce(std::vector<SubManifold>& manifolds) {
 }
 
 // The plane of a manifold's points, seen along the normal.
-Vec3 across(const Manifold& m, const Vec3& v) {
+Vec3 tangential(const Manifold& m, const Vec3& v) {
   return v - dot(v, m.normal) * m.normal;
 }
 
@@ -221,16 +223,16 @@ std::optional<InPlane> in_plane_of(const Manifold& m, const int (&corner)[3], co
 
 // The separation at the place nearest to it on the lines between a manifold's points.
 double beside_all(const Manifold& m, const Vec3& at) {
-  double separation = m.points[0].separation, least = kFar;
+  double separation = m.points[0].separation, smallest = kFar;
   for (int i = 0; i < m.count; ++i) {
     for (int j = i; j < m.count; ++j) {
-      const Vec3 along = across(m, m.points[j].position - m.points[i].position);
-      const Vec3 way = across(m, at - m.points[i].position);
+      const Vec3 along = tangential(m, m.points[j].position - m.points[i].position);
+      const Vec3 offset = tangential(m, at - m.points[i].position);
       const double length = dot(along, along);
-      const double t = length > 0.0 ? std::clamp(dot(along, way) / length, 0.0, 1.0) : 0.0;
-      const Vec3 beside = way - t * along;
-      if (dot(beside, beside) >= least) continue;
-      least = dot(beside, beside);
+      const double t = length > 0.0 ? std::clamp(dot(along, offset) / length, 0.0, 1.0) : 0.0;
+      const Vec3 beside = offset - t * along;
+      if (dot(beside, beside) >= smallest) continue;
+      smallest = dot(beside, beside);
       separation = (1.0 - t) * m.points[i].separation + t * m.points[j].separation;
     }
   }
@@ -258,10 +260,10 @@ bool Cluster::settle(const Manifold& manifold) {
     if (c.cluster != cluster_) continue;
     for (std::size_t i = 0; i < c.contact.count; ++i) {
       const std::size_t index = c.contact.first_point + i;
-      if (scratch_.settled[index] != 0) continue;
+      if (scratch_.converged[index] != 0) continue;
       const ManifoldPoint& p = scratch_.points[index];
       const bool deeper = p.separation < stood_for_at(manifold, p.position, same_) - level_;
-      scratch_.settled[index] = deeper ? 0 : 1;
+      scratch_.converged[index] = deeper ? 0 : 1;
       left |= deeper;
     }
   }
@@ -270,11 +272,11 @@ bool Cluster::settle(const Manifold& manifold) {
 
 const ManifoldPoint* Cluster::farthest_from(const Vec3& from) const {
   const ManifoldPoint* best = nullptr;
-  double most = same_ * same_;
+  double largest = same_ * same_;
   for_each([&](const ManifoldPoint& p, const Contact&) {
-    const Vec3 way = p.position - from;
-    if (dot(way, way) <= most * kClearly) return;
-    most = dot(way, way);
+    const Vec3 offset = p.position - from;
+    if (dot(offset, offset) <= largest * kClearly) return;
+    largest = dot(offset, offset);
     best = &p;
   });
   return best;
@@ -282,8 +284,8 @@ const ManifoldPoint* Cluster::farthest_from(const Vec3& from) const {
 
 // The farthest from the deepest, the farthest from that, and the farthest to either side of the
 // line between these.
-void Cluster::span_most(const ManifoldPoint& deepest, const Vec3& normal,
-                        const ManifoldPoint* (&chosen)[4]) const {
+void Cluster::span_farthest(const ManifoldPoint& deepest, const Vec3& normal,
+                            const ManifoldPoint* (&chosen)[4]) const {
   chosen[0] = farthest_from(deepest.position);
   if (!chosen[0]) {
     chosen[0] = &deepest;
@@ -310,17 +312,17 @@ SubManifold Cluster::reduced() const {
     found.manifold.normal = c.contact.normal;
   });
   const ManifoldPoint* chosen[4] = {};
-  span_most(*deepest, found.manifold.normal, chosen);
+  span_farthest(*deepest, found.manifold.normal, chosen);
   const ManifoldPoint** nearest = nullptr;  // to the deepest: gives way to it
-  double least = 0.0;
+  double smallest = 0.0;
   bool told = false;
   for (const ManifoldPoint*& p : chosen) {
     if (!p) continue;
     told = told || p->separation <= deepest->separation + same_;
-    const Vec3 way = p->position - deepest->position;
-    if (nearest && dot(way, way) >= least) continue;
+    const Vec3 offset = p->position - deepest->position;
+    if (nearest && dot(offset, offset) >= smallest) continue;
     nearest = &p;
-    least = dot(way, way);
+    smallest = dot(offset, offset);
   }
   if (!told) *nearest = deepest;
   for (const ManifoldPoint* p : chosen) {
@@ -333,8 +335,8 @@ SubManifold Cluster::reduced() const {
 
 void collide_surface(const Surface& surface, const Geometry& shape, const SE3& T, double margin,
                      ManifoldScratch& scratch, std::vector<SubManifold>& manifolds) {
-  const double size = core_reach(shape) + core_radius(shape);
-  scratch.make_room();
+  const double size = core_extent(shape) + core_radius(shape);
+  scratch.ensure_capacity();
   find_contacts(surface, shape, T, margin, scratch);
   if (scratch.contacts.size() > 1) {
     Pruning(surface, shape, T, size, scratch).prune();

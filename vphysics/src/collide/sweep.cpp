@@ -54,8 +54,8 @@ double acceleration_bound(const SweepQuery& q) {
   const double rho = norm(q.centre - q.sphere.x);
   const double ws = norm(q.sphere.w), w = norm(q.other.w);
   const double v = norm(q.sphere.v - q.other.v) + ws * rho;
-  const double reach = norm(q.centre - q.other.x) + v * q.duration;
-  return ws * ws * rho + w * (2.0 * v + w * reach);
+  const double distance_bound = norm(q.centre - q.other.x) + v * q.duration;
+  return ws * ws * rho + w * (2.0 * v + w * distance_bound);
 }
 
 // Smallest positive s with f + df s - A s^2 / 2 = 0, f > 0.
@@ -102,15 +102,15 @@ double time_to_parts(const SweepQuery& q, double A, double target) {
     part.T_shape = q.T_shape * compound.parts[i].T_compound_part;
     first = earlier(first, time_of_impact(part, target));
   };
-  compound.tree.overlapping(rounded_outwards(bounds_of_sweep(q, A, target)), look_at);
+  compound.tree.overlapping(rounded_outward(bounds_of_sweep(q, A, target)), look_at);
   return first;
 }
 
 SignedDistance distance_to_segment(const Vec3& a, const Vec3& b, const Vec3& p) {
   const Vec3 ab = b - a;
-  const Vec3 way = p - a - std::clamp(dot(p - a, ab) / dot(ab, ab), 0.0, 1.0) * ab;
-  const double d = norm(way);
-  return {d, d > 0.0 ? (1.0 / d) * way : Vec3{0, 0, 1}};
+  const Vec3 offset = p - a - std::clamp(dot(p - a, ab) / dot(ab, ab), 0.0, 1.0) * ab;
+  const double d = norm(offset);
+  return {d, d > 0.0 ? (1.0 / d) * offset : Vec3{0, 0, 1}};
 }
 
 // A triangle's face is met when its plane is, an edge that can be felt when its segment is, if that
@@ -118,20 +118,20 @@ SignedDistance distance_to_segment(const Vec3& a, const Vec3& b, const Vec3& p) 
 // later.
 double time_to_triangle(const SweepQuery& q, double A, double target, const Surface& surface,
                         const SurfaceTriangle& t) {
-  const auto felt = [&](double time) {
+  const auto active = [&](double time) {
     if (time < 0.0) return time;
-    const double distance = felt_distance(surface, t, local_at(q, time).centre);
+    const double distance = active_distance(surface, t, local_at(q, time).centre);
     return distance - q.radius - target <= 1.01 * q.tolerance ? time : -1.0;
   };
-  double first = felt(first_time(q, A, target, [&](const Vec3& p) {
+  double first = active(first_time(q, A, target, [&](const Vec3& p) {
     return SignedDistance{dot(t.normal, p - t.p[0]), t.normal};
   }));
   for (int e = 0; e < 3; ++e) {
-    if (!is_felt(t, e)) continue;
+    if (!is_active_edge(t, e)) continue;
     const double time = first_time(q, A, target, [&](const Vec3& p) {
       return distance_to_segment(t.p[e], t.p[(e + 1) % 3], p);
     });
-    first = earlier(first, felt(time));
+    first = earlier(first, active(time));
   }
   return first;
 }

@@ -31,7 +31,7 @@
 namespace vp::collide {
 namespace {
 
-constexpr int kMostAdvances = 200;
+constexpr int kMaxAdvances = 200;
 // Of the tolerance: where steps aim at, and how much less will do.
 constexpr double kAim = 0.5, kSlack = 0.25;
 
@@ -44,7 +44,7 @@ MovingShape shifted(const MovingShape& m, const Vec3& origin) {
   MovingShape s{m.shape, SE3(m.T.rotation(), m.T.position() - origin), m.motion};
   s.motion.x = m.motion.x - origin;
   // What does not turn may as well do so about its middle, from which it reaches least far.
-  if (!is_turning(m.motion.w)) s.motion.x = s.T * core_middle(*m.shape);
+  if (!is_turning(m.motion.w)) s.motion.x = s.T * core_centre(*m.shape);
   return s;
 }
 
@@ -64,11 +64,11 @@ struct TurningShape {
         w(m.motion.w),
         rate(norm(w)) {
     if (is_turning(w)) {
-      const Mat3 turn = Exp(time * w).matrix();
-      R = turn * R;
-      arm = turn * arm;
+      const Mat3 rotation = Exp(time * w).matrix();
+      R = rotation * R;
+      arm = rotation * arm;
     }
-    reach = norm(arm + R * core_middle(*shape)) + core_reach(*shape);
+    reach = norm(arm + R * core_centre(*shape)) + core_extent(*shape);
   }
   Vec3 support(const Vec3& d) const {
     return arm + R * core_support(*shape, transposed_times(R, d), hint);
@@ -89,15 +89,15 @@ struct Pair {
 };
 
 // What is above the gap's lower bound, along n turning at a rate.
-class GapBound {
+class SeparationBound {
  public:
-  GapBound(const Pair& pair, const Vec3& n, const Vec3& rate, double horizon)
+  SeparationBound(const Pair& pair, const Vec3& n, const Vec3& rate, double horizon)
       : pair_(pair),
         n_(n),
-        turn_a_(cross(n, pair.a.w - rate)),
-        turn_b_(cross(n, pair.b.w - rate)),
-        gap_(dot(n, pair.D) - pair.radii),
-        slope_(dot(n, pair.v) + dot(pair.D, cross(rate, n))) {
+        angular_a_(cross(n, pair.a.w - rate)),
+        angular_b_(cross(n, pair.b.w - rate)),
+        separation_(dot(n, pair.D) - pair.radii),
+        derivative_(dot(n, pair.v) + dot(pair.D, cross(rate, n))) {
     const double turning = norm(cross(rate, n)), speed = norm(pair.v);
     const auto bend = [&](const TurningShape& s) {
       const double across = is_turning(rate) ? norm(s.w - rate) : norm(cross(s.w, n));
@@ -108,13 +108,14 @@ class GapBound {
   }
 
   struct Value {
-    double gap, slope;
+    double separation, slope;
   };
   Value at(double s) const {
-    const Vec3 towards_b = n_ + s * turn_a_, towards_a = -n_ - s * turn_b_;
+    const Vec3 towards_b = n_ + s * angular_a_, towards_a = -n_ - s * angular_b_;
     const Vec3 on_a = pair_.a.support(towards_b), on_b = pair_.b.support(towards_a);
-    return {gap_ + s * (slope_ - 0.5 * bend_ * s) - dot(on_b, towards_a) - dot(on_a, towards_b),
-            slope_ - bend_ * s + dot(on_b, turn_b_) - dot(on_a, turn_a_)};
+    return {separation_ + s * (derivative_ - 0.5 * bend_ * s) - dot(on_b, towards_a) -
+                dot(on_a, towards_b),
+            derivative_ - bend_ * s + dot(on_b, angular_b_) - dot(on_a, angular_a_)};
   }
   // A time not above the horizon up to which the gap stays above goal - slack. Preconditions: now
   // it is above goal.
@@ -122,33 +123,33 @@ class GapBound {
 
  private:
   const Pair& pair_;
-  Vec3 n_, turn_a_, turn_b_;
-  double gap_, slope_, bend_;
+  Vec3 n_, angular_a_, angular_b_;
+  double separation_, derivative_, bend_;
 };
 
-double GapBound::safe_time(double goal, double slack, double horizon) const {
+double SeparationBound::safe_time(double goal, double slack, double horizon) const {
   double left = 0.0;
   Value at_left = at(0.0);
   // The parabola of the bodies' foremost points of now lies above the bound: where it comes down to
   // the goal is an end, and the answer as long as these stay foremost.
-  const double f = at_left.gap - goal, b = at_left.slope;
+  const double f = at_left.separation - goal, b = at_left.slope;
   if (!(f > 0.0)) return 0.0;  // GJK's rounding
   const double root = std::sqrt(b * b + 2.0 * bend_ * f);
   const double down = b < 0.0 ? 2.0 * f / (root - b) : bend_ > 0.0 ? (b + root) / bend_ : horizon;
   double right = std::min(down, horizon);
   Value at_right = at(right);
-  constexpr int kRounds = 12;
+  constexpr int kMaxIterations = 12;
   constexpr double kNear = 0.02;  // share of the step
-  for (int round = 0; round < kRounds; ++round) {
-    if (at_right.gap >= goal - slack) return right;
+  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
+    if (at_right.separation >= goal - slack) return right;
     if (right - left <= kNear * right) break;
     // A concave function lies above its chord and below its tangent.
-    const double chord =
-        left + (right - left) * (at_left.gap - goal) / (at_left.gap - at_right.gap);
+    const double chord = left + (right - left) * (at_left.separation - goal) /
+                                    (at_left.separation - at_right.separation);
     left = std::clamp(chord, left, right);
     at_left = at(left);
     if (at_right.slope < 0.0) {
-      right = std::clamp(right - (at_right.gap - goal) / at_right.slope, left, right);
+      right = std::clamp(right - (at_right.separation - goal) / at_right.slope, left, right);
       at_right = at(right);
     }
   }
@@ -157,18 +158,18 @@ double GapBound::safe_time(double goal, double slack, double horizon) const {
 
 double longest_step(const Pair& pair, const Vec3& n, double goal, double slack, double horizon) {
   double step = 0.0;
-  const auto turn_with = [&](const Vec3& rate) {
-    step = std::max(step, GapBound(pair, n, rate, horizon).safe_time(goal, slack, horizon));
+  const auto rotation_at = [&](const Vec3& rate) {
+    step = std::max(step, SeparationBound(pair, n, rate, horizon).safe_time(goal, slack, horizon));
   };
   // A half-space has no support but along its normal.
   if (pair.a.shape->kind == Kind::half_space) {
-    turn_with(pair.a.w);
+    rotation_at(pair.a.w);
   } else if (pair.b.shape->kind == Kind::half_space) {
-    turn_with(pair.b.w);
+    rotation_at(pair.b.w);
   } else {
-    turn_with({});
-    if (is_turning(pair.a.w)) turn_with(pair.a.w);
-    if (is_turning(pair.b.w) && pair.b.w != pair.a.w) turn_with(pair.b.w);
+    rotation_at({});
+    if (is_turning(pair.a.w)) rotation_at(pair.a.w);
+    if (is_turning(pair.b.w) && pair.b.w != pair.a.w) rotation_at(pair.b.w);
   }
   return step;
 }
@@ -178,8 +179,8 @@ double longest_step(const Pair& pair, const Vec3& n, double goal, double slack, 
 SE3 pose_at(const MovingShape& m, double time) {
   const Vec3 arm = m.T.position() - m.motion.x, x = m.motion.x + time * m.motion.v;
   if (!is_turning(m.motion.w)) return {m.T.rotation(), x + arm};
-  const Mat3 turn = Exp(time * m.motion.w).matrix();
-  return {turn * m.T.rotation(), x + turn * arm};
+  const Mat3 rotation = Exp(time * m.motion.w).matrix();
+  return {rotation * m.T.rotation(), x + rotation * arm};
 }
 
 double time_of_impact(const ImpactQuery& query, double target, PairCache& cache, double latest) {
@@ -188,7 +189,7 @@ double time_of_impact(const ImpactQuery& query, double target, PairCache& cache,
                       query.tolerance};
   const double goal = target + kAim * q.tolerance, slack = kSlack * q.tolerance;
   double t = 0.0;
-  for (int i = 0; i < kMostAdvances; ++i) {
+  for (int i = 0; i < kMaxAdvances; ++i) {
     const ClosestPoints near =
         closest_points(*q.a.shape, pose_at(q.a, t), *q.b.shape, pose_at(q.b, t), cache);
     if (near.distance <= target + q.tolerance) return t;

@@ -22,7 +22,7 @@ struct ImpactQuery {
 
 // The first time at which the separation has come down to target [m], or a negative number if it
 // does not within the duration. Never later than the true time; earlier by what the tolerance
-// allows, and where the two pass so near to one another that kMostAdvances do not lead past.
+// allows, and where the two pass so near to one another that kMaxAdvances do not lead past.
 // Precondition: convex shapes or triangles, of which one may be a half-space instead.
 //
 // latest: what comes later is not looked for. Unlike a shorter duration it changes no bit of what

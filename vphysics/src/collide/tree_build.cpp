@@ -55,8 +55,8 @@ FloatBounds bounds_of_centres(std::span<const TreeItem> items) {
 }
 
 std::size_t median_cut(std::span<TreeItem> items, int axis) {
-  const auto middle = items.begin() + static_cast<std::ptrdiff_t>(items.size() / 2);
-  std::nth_element(items.begin(), middle, items.end(), [&](const TreeItem& a, const TreeItem& b) {
+  const auto centre = items.begin() + static_cast<std::ptrdiff_t>(items.size() / 2);
+  std::nth_element(items.begin(), centre, items.end(), [&](const TreeItem& a, const TreeItem& b) {
     const float ca = doubled_centre(a)[axis], cb = doubled_centre(b)[axis];
     return ca < cb || (ca == cb && a.item < b.item);
   });
@@ -83,13 +83,13 @@ int cheapest_plane(const std::array<Bin, kBins>& bins) {
     cost_right[static_cast<std::size_t>(k - 1)] = right.cost();
   }
   int best = 0;
-  float least = 0.0f;
+  float smallest = 0.0f;
   for (int k = 0; k + 1 < kBins; ++k) {
     left.add(bins[static_cast<std::size_t>(k)]);
     const float cost = left.cost() + cost_right[static_cast<std::size_t>(k)];
-    if (k == 0 || cost < least) {
+    if (k == 0 || cost < smallest) {
       best = k;
-      least = cost;
+      smallest = cost;
     }
   }
   return best;
@@ -102,17 +102,17 @@ struct Grid {
   explicit Grid(std::span<const TreeItem> items) {
     std::array<float, kSample> sample{};
     const std::size_t n = std::min(items.size(), kSample);
-    float middle[3], widest = 0.0f;
+    float centre[3], widest = 0.0f;
     for (int axis = 0; axis < 3; ++axis) {
       for (std::size_t k = 0; k < n; ++k) {
         sample[k] = doubled_centre(items[k * items.size() / n])[axis];
       }
       std::sort(sample.begin(), sample.begin() + static_cast<std::ptrdiff_t>(n));
-      middle[axis] = sample[n / 2];
+      centre[axis] = sample[n / 2];
       widest = std::max(widest, sample[n - 1 - n / 4] - sample[n / 4]);
     }
     const float side = 4.0f * widest;
-    for (int axis = 0; axis < 3; ++axis) from[axis] = middle[axis] - 0.5f * side;
+    for (int axis = 0; axis < 3; ++axis) from[axis] = centre[axis] - 0.5f * side;
     if (side > 0.0f) scale = static_cast<float>(1 << kCodeBits) / side;
     if (!(scale < 1e30f)) scale = 0.0f;
   }
@@ -162,8 +162,8 @@ std::size_t cut(std::span<TreeItem> items, unsigned depth, bool quick) {
   if (!(width > 0.0f) || !(scale < 1e30f)) return items.size() / 2;  // all in one place
   if (depth > kBinnedDepth) return median_cut(items, axis);
   if (quick) {
-    const float middle = from + 0.5f * width;
-    const auto is_left = [&](const TreeItem& i) { return doubled_centre(i)[axis] < middle; };
+    const float centre = from + 0.5f * width;
+    const auto is_left = [&](const TreeItem& i) { return doubled_centre(i)[axis] < centre; };
     const std::size_t left = divide(items, is_left);
     // The middle of two neighbouring numbers is one of them.
     return left > 0 && left < items.size() ? left : items.size() / 2;

@@ -12,7 +12,7 @@ namespace {
 
 // Bounds this near to one another [share of the pair's reach] are one.
 constexpr double kClosed = 1e-9;
-constexpr int kMostCuts = 64;
+constexpr int kMaxCuts = 64;
 
 // In the plane across an edge: outwards of the triangle, and up along its normal.
 struct Flat {
@@ -25,13 +25,13 @@ double dot(const Flat& a, const Flat& b) {
 class ArcSearch {
  public:
   // at: a point of the edge; outwards, up: unit vectors.
-  ArcSearch(const CorePair& pair, const Vec3& at, const Vec3& outwards, const Vec3& up)
-      : pair_(pair), at_(at), outwards_(outwards), up_(up), closed_(kClosed * pair.reach) {}
+  ArcSearch(const CorePair& pair, const Vec3& at, const Vec3& outward, const Vec3& up)
+      : pair_(pair), at_(at), outward_(outward), up_(up), closed_(kClosed * pair.extent) {}
 
   // From the one direction to the other, less than half a turn apart.
   void search(const Flat& from, const Flat& to);
 
-  double best_gap = -1e300;
+  double best_separation = -1e300;
   Flat best{0.0, 1.0};
 
  private:
@@ -39,26 +39,26 @@ class ArcSearch {
     Flat from, to, s_from, s_to;
   };
   Flat support(const Flat& d) {
-    const Vec3 s = pair_.support_b(-(d.out * outwards_ + d.up * up_)) - at_;
-    const Flat flat{vp::dot(outwards_, s), vp::dot(up_, s)};
-    const double gap = dot(d, flat);
-    if (gap > best_gap) {
-      best_gap = gap;
+    const Vec3 s = pair_.support_b(-(d.out * outward_ + d.up * up_)) - at_;
+    const Flat flat{vp::dot(outward_, s), vp::dot(up_, s)};
+    const double separation = dot(d, flat);
+    if (separation > best_separation) {
+      best_separation = separation;
       best = d;
     }
     return flat;
   }
 
   const CorePair& pair_;
-  Vec3 at_, outwards_, up_;
+  Vec3 at_, outward_, up_;
   double closed_;
 };
 
 void ArcSearch::search(const Flat& from, const Flat& to) {
-  Arc waiting[kMostCuts];
+  Arc waiting[kMaxCuts];
   int count = 0;
   waiting[count++] = {from, to, support(from), support(to)};
-  for (int cut = 0; cut < kMostCuts && count > 0; ++cut) {
+  for (int cut = 0; cut < kMaxCuts && count > 0; ++cut) {
     const Arc arc = waiting[--count];
     const Flat chord{arc.s_to.out - arc.s_from.out, arc.s_to.up - arc.s_from.up};
     const double length = std::sqrt(dot(chord, chord));
@@ -66,13 +66,13 @@ void ArcSearch::search(const Flat& from, const Flat& to) {
     // Across the chord, on the side of the arc.
     Flat d{chord.up / length, -chord.out / length};
     if (dot(d, arc.from) + dot(d, arc.to) < 0.0) d = {-d.out, -d.up};
-    const auto turn = [](const Flat& a, const Flat& b) { return a.out * b.up - a.up * b.out; };
-    const double way = turn(arc.from, arc.to);
-    if (turn(arc.from, d) * way <= 0.0 || turn(d, arc.to) * way <= 0.0) continue;
+    const auto cross_2d = [](const Flat& a, const Flat& b) { return a.out * b.up - a.up * b.out; };
+    const double offset = cross_2d(arc.from, arc.to);
+    if (cross_2d(arc.from, d) * offset <= 0.0 || cross_2d(d, arc.to) * offset <= 0.0) continue;
     const double bound = dot(d, arc.s_from);
-    if (bound <= best_gap + closed_) continue;
+    if (bound <= best_separation + closed_) continue;
     const Flat s = support(d);
-    if (bound - dot(d, s) <= closed_ || count + 2 > kMostCuts) continue;
+    if (bound - dot(d, s) <= closed_ || count + 2 > kMaxCuts) continue;
     waiting[count++] = {arc.from, d, arc.s_from, s};
     waiting[count++] = {d, arc.to, s, arc.s_to};
   }
@@ -82,40 +82,42 @@ void ArcSearch::search(const Flat& from, const Flat& to) {
 void try_edge(const SurfaceTriangle& t, const Vec3 p[3], const CorePair& pair, int e,
               TriangleAxis& best) {
   const Vec3 along = p[(e + 1) % 3] - p[e];
-  const Vec3 c = cross(along, t.normal), outwards = (1.0 / norm(c)) * c;
+  const Vec3 c = cross(along, t.normal), outward = (1.0 / norm(c)) * c;
   Flat last{1.0, 0.0};  // at a border
-  if (t.has_across[e]) {
-    const Vec3 way = t.across[e] - t.p[e];
-    const double out = vp::dot(outwards, way), up = vp::dot(t.normal, way);
+  if (t.has_opposite[e]) {
+    const Vec3 offset = t.opposite[e] - t.p[e];
+    const double out = vp::dot(outward, offset), up = vp::dot(t.normal, offset);
     const double length = std::sqrt(out * out + up * up);
     last = {-up / length, out / length};
   }
-  ArcSearch arc(pair, p[e], outwards, t.normal);
+  ArcSearch arc(pair, p[e], outward, t.normal);
   arc.search({0.0, 1.0}, last);
-  if (!(arc.best_gap > best.gap)) return;
-  best = {arc.best_gap, arc.best.out * outwards + arc.best.up * t.normal, {TrianglePart::edge, e}};
+  if (!(arc.best_separation > best.separation)) return;
+  best = {arc.best_separation,
+          arc.best.out * outward + arc.best.up * t.normal,
+          {TrianglePart::edge, e}};
 }
 
 // A corner inside the shape leaves it where its surface is nearest.
 void try_corner(const Surface& surface, const SurfaceTriangle& t, const Vec3 p[3],
                 const CorePair& pair, int i, TriangleAxis& best) {
-  if (!is_felt(t, i) && !is_felt(t, (i + 2) % 3)) return;
+  if (!is_active_edge(t, i) && !is_active_edge(t, (i + 2) % 3)) return;
   const SignedDistance inside = signed_distance(pair.b, inverse_times(pair.T_a_b, p[i]));
   if (!(inside.distance < 0.0)) return;
   const Vec3 d = -pair.T_a_b.rotate(inside.normal);
-  const double gap = gap_along(pair, d);
-  if (!(gap > best.gap)) return;
+  const double separation = separation_along(pair, d);
+  if (!(separation > best.separation)) return;
   const TrianglePart part = foremost_part(p, d);
-  if (may_touch_along(surface, t, part, d)) best = {gap, d, part};
+  if (may_touch_along(surface, t, part, d)) best = {separation, d, part};
 }
 
 }  // namespace
 
-TriangleAxis best_way_out(const Surface& surface, const SurfaceTriangle& t, const Vec3 p[3],
-                          const CorePair& pair) {
-  TriangleAxis best{gap_along(pair, t.normal), t.normal, {}};
+TriangleAxis best_exit_axis(const Surface& surface, const SurfaceTriangle& t, const Vec3 p[3],
+                            const CorePair& pair) {
+  TriangleAxis best{separation_along(pair, t.normal), t.normal, {}};
   for (int e = 0; e < 3; ++e) {
-    if (is_felt(t, e)) try_edge(t, p, pair, e, best);
+    if (is_active_edge(t, e)) try_edge(t, p, pair, e, best);
   }
   for (int i = 0; i < 3; ++i) try_corner(surface, t, p, pair, i, best);
   return best;

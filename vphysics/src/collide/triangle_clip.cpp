@@ -17,19 +17,19 @@ struct TrimCorner {
 constexpr std::uint32_t kTriangleSide = 1u << 15, kCrossed = 1u << 19, kCornerOfTriangle = 1u << 20;
 
 // Each side adds one corner at most.
-constexpr int kMostTrimmed = kMostCorners + 3;
+constexpr int kMaxTrimmed = kMaxCorners + 3;
 
 struct Trimmed {
   int count = 0;
-  TrimCorner corners[kMostTrimmed];
+  TrimCorner corners[kMaxTrimmed];
   void add(const TrimCorner& c) {
-    if (count < kMostTrimmed) corners[count++] = c;
+    if (count < kMaxTrimmed) corners[count++] = c;
   }
 };
 
 struct SidePlane {
-  Vec3 outwards, on;
-  double above(const Vec3& q) const { return dot(outwards, q - on); }
+  Vec3 outward, on;
+  double above(const Vec3& q) const { return dot(outward, q - on); }
 };
 
 SidePlane side(const ClipQuery& q, int k) {

@@ -18,7 +18,7 @@ constexpr double kNoDirection = 1e-12;
 // felt, rounding might else put it beside both neighbours.
 constexpr double kBeside = 1e-9;
 
-std::uint64_t felt_part(const SurfaceTriangle& t, const TrianglePart& part) {
+std::uint64_t active_part(const SurfaceTriangle& t, const TrianglePart& part) {
   if (part.kind == TrianglePart::face) return TriangleContact::kFace;
   const std::uint64_t v = t.corners[part.index];
   const std::uint64_t w =
@@ -28,8 +28,8 @@ std::uint64_t felt_part(const SurfaceTriangle& t, const TrianglePart& part) {
 
 std::uint32_t part_name(const SurfaceTriangle& t, const TrianglePart& part, std::uint32_t feature) {
   if (part.kind == TrianglePart::face) return mixed_name(t.id, kNoVertex, feature);
-  const std::uint64_t felt = felt_part(t, part);
-  return mixed_name(static_cast<std::uint32_t>(felt >> 32), static_cast<std::uint32_t>(felt),
+  const std::uint64_t active = active_part(t, part);
+  return mixed_name(static_cast<std::uint32_t>(active >> 32), static_cast<std::uint32_t>(active),
                     feature);
 }
 
@@ -41,13 +41,13 @@ struct NearSphere {
 };
 NearSphere near_sphere(const SurfaceTriangle& t, const Vec3& centre) {
   const NearestOnTriangle nearest = nearest_on_triangle(t.p, centre);
-  const Vec3 way = centre - nearest.point;
-  const double distance = norm(way), height = dot(t.normal, way);
-  const double beside = norm(way - height * t.normal);
+  const Vec3 offset = centre - nearest.point;
+  const double distance = norm(offset), height = dot(t.normal, offset);
+  const double beside = norm(offset - height * t.normal);
   const bool on_face = nearest.part.kind == TrianglePart::face || distance < kNoDirection ||
                        beside <= kBeside * norm(t.p[1] - t.p[0]);
   if (on_face) return {nearest.point, t.normal, height, {}};
-  return {nearest.point, (1.0 / distance) * way, distance, nearest.part};
+  return {nearest.point, (1.0 / distance) * offset, distance, nearest.part};
 }
 
 void collide_sphere(const Surface& surface, const SurfaceTriangle& t, const Vec3& centre,
@@ -61,8 +61,8 @@ void collide_sphere(const Surface& surface, const SurfaceTriangle& t, const Vec3
       !may_touch_along(surface, t, near.part, near.normal)) {
     return;
   }
-  contact.gap = near.distance - radius;
-  points.push_back({near.point + 0.5 * contact.gap * contact.normal, contact.gap,
+  contact.separation = near.distance - radius;
+  points.push_back({near.point + 0.5 * contact.separation * contact.normal, contact.separation,
                     part_name(t, contact.part, 0)});
 }
 
@@ -84,11 +84,12 @@ class TriangleCollider {
   bool rough() const { return pair_.rough; }
 
  private:
-  void along_face(double gap, TriangleContact& contact);
+  void along_face(double separation, TriangleContact& contact);
   void along(const BestAxis& axis, const TrianglePart& part, bool nearest_known,
              TriangleContact& contact);
-  void finish(TriangleContact& contact, const TrianglePart& part, const Vec3& normal, double gap);
-  bool tells(std::size_t first, double gap) const;
+  void finish(TriangleContact& contact, const TrianglePart& part, const Vec3& normal,
+              double separation);
+  bool tells(std::size_t first, double separation) const;
   bool find_witness(BestAxis& axis) const;
 
   const Surface& surface_;
@@ -101,9 +102,9 @@ class TriangleCollider {
 };
 
 void TriangleCollider::find(TriangleContact& contact) {
-  const double gap = gap_along(pair_, t_.normal);
-  if (gap - query_.radii > query_.margin) return;
-  if ((t_.felt & 7u) == 0) return along_face(gap, contact);
+  const double separation = separation_along(pair_, t_.normal);
+  if (separation - query_.radii > query_.margin) return;
+  if ((t_.active & 7u) == 0) return along_face(separation, contact);
   const GjkResult found = gjk(pair_, t_.normal, query_.margin + query_.radii);
   if (found.state == GjkResult::State::beyond) return;
   BestAxis best{found.distance, found.normal, found.on_a, found.on_b};
@@ -115,16 +116,17 @@ void TriangleCollider::find(TriangleContact& contact) {
   TrianglePart part = foremost_part(p_, best.normal);
   bool allowed = may_touch_along(surface_, t_, part, best.normal);
   if (!allowed && found.state == GjkResult::State::overlaps) {
-    const TriangleAxis out = best_way_out(surface_, t_, p_, pair_);
-    best = {out.gap, out.normal, {}, {}};
+    const TriangleAxis out = best_exit_axis(surface_, t_, p_, pair_);
+    best = {out.separation, out.normal, {}, {}};
     part = out.part;
     allowed = true;
     nearest_known = find_witness(best);
   }
   const std::size_t first = points_.size();
-  if (part.kind == TrianglePart::face || !allowed || query_.face_suffices(gap, best.gap)) {
-    along_face(gap, contact);
-    if (part.kind == TrianglePart::face || !allowed || tells(first, best.gap)) return;
+  if (part.kind == TrianglePart::face || !allowed ||
+      query_.face_suffices(separation, best.separation)) {
+    along_face(separation, contact);
+    if (part.kind == TrianglePart::face || !allowed || tells(first, best.separation)) return;
     points_.resize(first);
   }
   along(best, part, nearest_known, contact);
@@ -136,32 +138,32 @@ bool TriangleCollider::find_witness(BestAxis& axis) const {
   constexpr double kFarther = 1e-3;  // share of the pair's size
   const double farther = kFarther * pair_.size;
   const SE3& T = pair_.T_a_b;
-  const Vec3 shift = (farther - axis.gap) * axis.normal;
-  const CorePair apart(own_, pair_.b, SE3(T.rotation(), T.position() + shift));
-  const GjkResult near = gjk(apart, axis.normal, 2.0 * farther);
-  if (near.state != GjkResult::State::apart) return false;
+  const Vec3 shift = (farther - axis.separation) * axis.normal;
+  const CorePair separated(own_, pair_.b, SE3(T.rotation(), T.position() + shift));
+  const GjkResult near = gjk(separated, axis.normal, 2.0 * farther);
+  if (near.state != GjkResult::State::separated) return false;
   axis.on_a = near.on_a;
-  axis.on_b = near.on_a + axis.gap * axis.normal;
+  axis.on_b = near.on_a + axis.separation * axis.normal;
   return true;
 }
 
 // Whether the points since the first are as deep as the cores' gap says.
-bool TriangleCollider::tells(std::size_t first, double gap) const {
+bool TriangleCollider::tells(std::size_t first, double separation) const {
   Manifold deepest;
   for (std::size_t i = first; i < points_.size(); ++i) {
     if (deepest.count > 0 && points_[i].separation >= deepest.points[0].separation) continue;
     deepest.count = 0;
     deepest.add({}, points_[i].separation, 0);
   }
-  return deepest.count > 0 && query_.tells(deepest, gap);
+  return deepest.count > 0 && query_.tells(deepest, separation);
 }
 
 // What of the shape lies over the triangle.
-void TriangleCollider::along_face(double gap, TriangleContact& contact) {
+void TriangleCollider::along_face(double separation, TriangleContact& contact) {
   Feature other;
   find_feature(pair_.b, pair_.T_a_b, -pair_.T_a_b.unrotate(t_.normal), other);
   append_clipped({p_, t_.normal, other, query_.radii, query_.margin, pair_.size}, points_);
-  finish(contact, {}, t_.normal, gap - query_.radii);
+  finish(contact, {}, t_.normal, separation - query_.radii);
 }
 
 // An edge, from the corner with the lower name, or a corner.
@@ -169,24 +171,24 @@ void TriangleCollider::along(const BestAxis& axis, const TrianglePart& part, boo
                              TriangleContact& contact) {
   int i = part.index, k = (part.index + 1) % 3;
   if (part.kind == TrianglePart::edge && t_.corners[i] > t_.corners[k]) std::swap(i, k);
-  Feature own, other;
-  own.count = part.kind == TrianglePart::edge ? 2 : 1;
-  own.corners[0] = {p_[i].x, p_[i].y, p_[i].z, 0, 0};
-  own.corners[1] = {p_[k].x, p_[k].y, p_[k].z, 1, 0};
+  Feature local, other;
+  local.count = part.kind == TrianglePart::edge ? 2 : 1;
+  local.corners[0] = {p_[i].x, p_[i].y, p_[i].z, 0, 0};
+  local.corners[1] = {p_[k].x, p_[k].y, p_[k].z, 1, 0};
   find_feature(pair_.b, pair_.T_a_b, -pair_.T_a_b.unrotate(axis.normal), other);
-  const PatchQuery patch{own,           other,      axis.normal, 0.0,       query_.radii,
-                         query_.margin, pair_.size, axis.on_a,   axis.on_b, axis.gap};
+  const PatchQuery patch{local,         other,      axis.normal, 0.0,       query_.radii,
+                         query_.margin, pair_.size, axis.on_a,   axis.on_b, axis.separation};
   Manifold m;
   find_patch(patch, nearest_known, m);
   for (int j = 0; j < m.count; ++j) points_.push_back(m.points[j]);
-  finish(contact, part, axis.normal, axis.gap - query_.radii);
+  finish(contact, part, axis.normal, axis.separation - query_.radii);
 }
 
 void TriangleCollider::finish(TriangleContact& contact, const TrianglePart& part,
-                              const Vec3& normal, double gap) {
+                              const Vec3& normal, double separation) {
   contact.part = part;
   contact.normal = normal;
-  contact.gap = gap;
+  contact.separation = separation;
   for (std::size_t i = contact.first_point; i < points_.size(); ++i) {
     points_[i].position += t_.p[0];
     points_[i].feature = part_name(t_, part, points_[i].feature);
@@ -207,24 +209,24 @@ TriangleContact collide_triangle(const Surface& surface, const SurfaceTriangle& 
     contact.rough = collider.rough();
   }
   contact.count = points.size() - contact.first_point;
-  contact.felt_part = felt_part(t, contact.part);
+  contact.active_part = active_part(t, contact.part);
   return contact;
 }
 
-double felt_distance(const Surface& surface, const SurfaceTriangle& t, const Vec3& centre) {
+double active_distance(const Surface& surface, const SurfaceTriangle& t, const Vec3& centre) {
   const NearSphere near = near_sphere(t, centre);
-  const bool felt =
+  const bool active =
       near.part.kind == TrianglePart::face || may_touch_along(surface, t, near.part, near.normal);
-  return felt ? near.distance : kFar;
+  return active ? near.distance : kFar;
 }
 
 bool overlaps_triangle(const SurfaceTriangle& t, const Geometry& shape, const SE3& T) {
   const Vec3 p[3] = {{}, t.p[1] - t.p[0], t.p[2] - t.p[0]};
-  const Geometry own = triangle_geometry(p);
-  const CorePair pair(own, shape, SE3(T.rotation(), T.position() - t.p[0]));
+  const Geometry local = triangle_geometry(p);
+  const CorePair pair(local, shape, SE3(T.rotation(), T.position() - t.p[0]));
   const GjkResult found = gjk(pair, t.normal, core_radius(shape));
   return found.state == GjkResult::State::overlaps ||
-         (found.state == GjkResult::State::apart && found.distance < core_radius(shape));
+         (found.state == GjkResult::State::separated && found.distance < core_radius(shape));
 }
 
 }  // namespace vp::collide

@@ -17,11 +17,11 @@ namespace vp::collide {
 struct TriangleContact {
   Vec3 normal;  // unit, from the triangle to the shape
   TrianglePart part;
-  double gap;                      // along the normal: less than 0, they overlap
+  double separation;               // along the normal: less than 0, they overlap
   std::size_t first_point, count;  // in the vector that they were appended to
   // Of an edge the names of both corners, the lower one above the higher one, of a corner its name
   // twice; of a face kFace.
-  std::uint64_t felt_part;
+  std::uint64_t active_part;
   static constexpr std::uint64_t kFace = ~std::uint64_t{0};
   bool rough = false;  // CorePair::rough
 };
@@ -36,7 +36,7 @@ TriangleContact collide_triangle(const Surface& surface, const SurfaceTriangle& 
 
 // Distance from a sphere's centre to what of the triangle it would touch; kFar if what is nearest
 // cannot be felt from there. Precondition: the triangle faces the centre.
-double felt_distance(const Surface& surface, const SurfaceTriangle& triangle, const Vec3& centre);
+double active_distance(const Surface& surface, const SurfaceTriangle& triangle, const Vec3& centre);
 
 // Whether the shape, there, has a point in common with the triangle, more than touching.
 bool overlaps_triangle(const SurfaceTriangle& triangle, const Geometry& shape,

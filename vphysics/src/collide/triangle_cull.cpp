@@ -19,11 +19,11 @@ TriangleCull::TriangleCull(const Geometry& shape, const SE3& T, double margin) {
   // Of a core swept by a sphere, the planes are those of the core and the sphere is of the margin.
   const double radius = core_radius(shape);
   margin_ = static_cast<float>(margin + radius);
-  middle_ = T.position();
+  centre_ = T.position();
   if (shape.kind == Kind::hull) {
     const HullData& hull = *shape.hull;
     const Vec3 centre = 0.5 * (hull.lower + hull.upper);
-    middle_ = T * centre;
+    centre_ = T * centre;
     if (hull.faces.size() <= kMaxPlanes) {
       for (std::size_t f = 0; f < hull.faces.size(); ++f) {
         const ConvexHull::Face& face = hull.faces[f];
@@ -48,18 +48,18 @@ TriangleCull::TriangleCull(const Geometry& shape, const SE3& T, double margin) {
     add_corner(shape.half.z * R.cz);
     add_corner(-shape.half.z * R.cz);
   } else {  // sphere, cylinder, cone
-    const double across = shape.kind == Kind::sphere ? 0.0 : shape.radius;
-    add_box(R, {across, across, shape.half.z});
+    const double radial = shape.kind == Kind::sphere ? 0.0 : shape.radius;
+    add_box(R, {radial, radial, shape.half.z});
   }
 }
 
-void TriangleCull::add_plane(const Vec3& outwards, double offset) {
-  plane_[0][planes_] = static_cast<float>(outwards.x);
-  plane_[1][planes_] = static_cast<float>(outwards.y);
-  plane_[2][planes_] = static_cast<float>(outwards.z);
+void TriangleCull::add_plane(const Vec3& outward, double offset) {
+  plane_[0][planes_] = static_cast<float>(outward.x);
+  plane_[1][planes_] = static_cast<float>(outward.y);
+  plane_[2][planes_] = static_cast<float>(outward.z);
   plane_[3][planes_] = static_cast<float>(offset) + margin_;
   ++planes_;
-  reach_ = std::max(reach_, std::fabs(offset));
+  extent_ = std::max(extent_, std::fabs(offset));
 }
 
 void TriangleCull::add_box(const Mat3& R, const Vec3& half) {
@@ -73,17 +73,17 @@ void TriangleCull::add_box(const Mat3& R, const Vec3& half) {
 void TriangleCull::add_corner(const Vec3& corner) {
   for (int i = 0; i < 3; ++i) corner_[i][corners_] = static_cast<float>(corner[i]);
   ++corners_;
-  reach_ = std::max(reach_, norm(corner));
+  extent_ = std::max(extent_, norm(corner));
 }
 
-bool TriangleCull::may_meet(const Vec3 p[3]) const {
+bool TriangleCull::may_overlap(const Vec3 p[3]) const {
   float q[3][3];
-  double farthest = reach_ + static_cast<double>(margin_);
+  double farthest = extent_ + static_cast<double>(margin_);
   for (int i = 0; i < 3; ++i) {
-    const Vec3 from_middle = p[i] - middle_;
+    const Vec3 from_centre = p[i] - centre_;
     for (int k = 0; k < 3; ++k) {
-      q[i][k] = static_cast<float>(from_middle[k]);
-      farthest = std::max(farthest, std::fabs(from_middle[k]));
+      q[i][k] = static_cast<float>(from_centre[k]);
+      farthest = std::max(farthest, std::fabs(from_centre[k]));
     }
   }
   const auto slack = static_cast<float>(kRounding * farthest);

@@ -12,21 +12,21 @@ class TriangleCull {
   TriangleCull(const Geometry& shape, const SE3& T_surface_shape, double margin);
 
   // False: they are farther apart than the margin. p: corners in the surface's frame.
-  bool may_meet(const Vec3 p[3]) const;
+  bool may_overlap(const Vec3 p[3]) const;
 
  private:
   static constexpr int kMaxPlanes = 64, kMaxCorners = 64;
 
-  void add_plane(const Vec3& outwards, double offset);
+  void add_plane(const Vec3& outward, double offset);
   void add_box(const Mat3& R, const Vec3& half);
   void add_corner(const Vec3& corner);
   bool is_beyond_a_plane(const float q[3][3], float slack) const;
   bool is_off_its_plane(const float q[3][3], float slack) const;
 
   // In single precision and about the shape's middle, in the surface's axes.
-  Vec3 middle_;
+  Vec3 centre_;
   float margin_;
-  double reach_ = 0.0;  // farthest corner or plane
+  double extent_ = 0.0;  // farthest corner or plane
   int planes_ = 0, corners_ = 0;
   float plane_[4][kMaxPlanes];    // outward normal; what lies farther along it is beyond the margin
   float corner_[3][kMaxCorners];  // of the core; none: they are too many, or there are none

@@ -13,34 +13,34 @@ namespace {
 
 using collide::MeshData;
 
-constexpr std::size_t kMostTriangles = std::size_t{1} << 26, kMostMeshVertices = kMostTriangles;
+constexpr std::size_t kMaxTriangles = std::size_t{1} << 26, kMaxMeshVertices = kMaxTriangles;
 constexpr double kFarthestVertex = 1e9;  // of a coordinate [m], as everywhere in the engine
-constexpr double kLeastFactor = 1e-6, kMostFactor = 1e6;
+constexpr double kMinFactor = 1e-6, kMaxFactor = 1e6;
 // Height over the longest edge, as a share of it, below which a triangle has no area: its normal is
 // rounding noise.
 constexpr double kNoHeight = 1e-10;
 
-tl::unexpected<Error> refused_mesh(std::string message) {
+tl::unexpected<Error> invalid_mesh(std::string message) {
   return tl::make_unexpected(Error{Errc::invalid_argument, "triangle mesh: " + std::move(message)});
 }
 
 Expected<void> check(std::span<const Vec3> vertices,
                      std::span<const TriangleMesh::Triangle> triangles) {
-  if (triangles.empty()) return refused_mesh("there are no triangles; give at least one");
-  if (triangles.size() > kMostTriangles || vertices.size() > kMostMeshVertices) {
-    return refused_mesh("more than 2^26 triangles or vertices; split the mesh into several");
+  if (triangles.empty()) return invalid_mesh("there are no triangles; give at least one");
+  if (triangles.size() > kMaxTriangles || vertices.size() > kMaxMeshVertices) {
+    return invalid_mesh("more than 2^26 triangles or vertices; split the mesh into several");
   }
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     for (const double x : {vertices[i].x, vertices[i].y, vertices[i].z}) {
       if (std::fabs(x) <= kFarthestVertex) continue;
-      return refused_mesh("vertex " + std::to_string(i) +
+      return invalid_mesh("vertex " + std::to_string(i) +
                           " is not finite or beyond 1e9 m; correct it");
     }
   }
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     for (const std::uint32_t v : triangles[i]) {
       if (v < vertices.size()) continue;
-      return refused_mesh("triangle " + std::to_string(i) + " names vertex " + std::to_string(v) +
+      return invalid_mesh("triangle " + std::to_string(i) + " names vertex " + std::to_string(v) +
                           " of " + std::to_string(vertices.size()) + "; indices count from 0");
     }
   }
@@ -48,7 +48,7 @@ Expected<void> check(std::span<const Vec3> vertices,
 }
 
 // For each vertex the first that is in the same place.
-std::vector<std::uint32_t> firsts_in_place(std::span<const Vec3> vertices) {
+std::vector<std::uint32_t> first_at_each_position(std::span<const Vec3> vertices) {
   std::vector<std::uint32_t> order(vertices.size()), first(vertices.size());
   std::iota(order.begin(), order.end(), 0u);
   std::sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t k) {
@@ -82,7 +82,7 @@ void set_tree(MeshData& mesh) {
       mesh.lower[i] = std::min(mesh.lower[i], b.lower[i]);
       mesh.upper[i] = std::max(mesh.upper[i], b.upper[i]);
     }
-    items.push_back({collide::rounded_outwards(b), t});
+    items.push_back({collide::rounded_outward(b), t});
   }
   mesh.tree.build(items, collide::BoundingTree::Effort::careful);
 }
@@ -90,12 +90,12 @@ void set_tree(MeshData& mesh) {
 // Tetrahedra from the middle to each triangle: of volume V, V S / 4 and V (S S^T + sum of each
 // corner's) / 20, S the sum of its corners.
 void set_moments(MeshData& mesh) {
-  mesh.middle = 0.5 * (mesh.lower + mesh.upper);
+  mesh.centre = 0.5 * (mesh.lower + mesh.upper);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     if (mesh.degenerate[t] != 0) continue;
     const TriangleMesh::Triangle& i = mesh.triangles[t];
-    const Vec3 a = mesh.vertices[i[0]] - mesh.middle, b = mesh.vertices[i[1]] - mesh.middle,
-               c = mesh.vertices[i[2]] - mesh.middle;
+    const Vec3 a = mesh.vertices[i[0]] - mesh.centre, b = mesh.vertices[i[1]] - mesh.centre,
+               c = mesh.vertices[i[2]] - mesh.centre;
     const double V = dot(a, cross(b, c)) / 6.0;
     const Vec3 S = a + b + c;
     const double k = 0.05 * V;
@@ -117,20 +117,20 @@ Expected<TriangleMesh> TriangleMesh::of(std::span<const Vec3> vertices,
   auto mesh = std::make_shared<MeshData>();
   mesh->two_sided = options.two_sided;
   mesh->vertices.assign(vertices.begin(), vertices.end());
-  const std::vector<std::uint32_t> first = firsts_in_place(vertices);
+  const std::vector<std::uint32_t> first = first_at_each_position(vertices);
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     const Triangle t{first[triangles[i][0]], first[triangles[i][1]], first[triangles[i][2]]};
     const bool degenerate = has_no_area(vertices[t[0]], vertices[t[1]], vertices[t[2]]);
-    if (degenerate && options.refuse_degenerate) {
-      return refused_mesh("triangle " + std::to_string(i) +
-                          " has no area; leave it out, or do not set refuse_degenerate");
+    if (degenerate && options.reject_degenerate) {
+      return invalid_mesh("triangle " + std::to_string(i) +
+                          " has no area; leave it out, or do not set reject_degenerate");
     }
     mesh->triangles.push_back(t);
     mesh->degenerate.push_back(degenerate ? 1 : 0);
     mesh->left_out += degenerate ? 1 : 0;
   }
   if (mesh->left_out == triangles.size()) {
-    return refused_mesh("no triangle has an area; check the vertices and their unit, the metre");
+    return invalid_mesh("no triangle has an area; check the vertices and their unit, the metre");
   }
   collide::set_topology(*mesh);
   set_tree(*mesh);
@@ -139,13 +139,13 @@ Expected<TriangleMesh> TriangleMesh::of(std::span<const Vec3> vertices,
 }
 
 Expected<TriangleMesh> TriangleMesh::scaled(const Vec3& factors) const {
-  if (!data_) return refused_mesh("it was moved from; scale the one that it was moved to");
+  if (!data_) return invalid_mesh("it was moved from; scale the one that it was moved to");
   TriangleMesh made = *this;
   for (int i = 0; i < 3; ++i) {
     made.scale_[i] *= factors[i];
     for (const double s : {factors[i], made.scale_[i]}) {
-      if (s >= kLeastFactor && s <= kMostFactor) continue;
-      return refused_mesh("every factor of a scale, and what it gives, must be from 1e-6 to 1e6");
+      if (s >= kMinFactor && s <= kMaxFactor) continue;
+      return invalid_mesh("every factor of a scale, and what it gives, must be from 1e-6 to 1e6");
     }
   }
   return made;
@@ -173,12 +173,12 @@ double TriangleMesh::volume() const {
 
 // x -> D x makes x x^T -> D x x^T D, and volumes det D as large.
 Expected<Inertia> TriangleMesh::inertia(double density) const {
-  if (!data_) return refused_mesh("it was moved from; ask the one that it was moved to");
+  if (!data_) return invalid_mesh("it was moved from; ask the one that it was moved to");
   if (!(density > 0.0 && density <= 1e12)) {
-    return refused_mesh("the density must be positive and at most 1e12 kg/m^3");
+    return invalid_mesh("the density must be positive and at most 1e12 kg/m^3");
   }
   if (!data_->closed || !(data_->volume > 0.0)) {
-    return refused_mesh(
+    return invalid_mesh(
         "only a closed mesh whose triangles face outwards has a mass; give the body's inertia");
   }
   const Vec3& D = scale_;
@@ -192,8 +192,8 @@ Expected<Inertia> TriangleMesh::inertia(double density) const {
                         -k * D.x * D.y * s.xy,
                         -k * D.y * D.z * s.yz,
                         -k * D.z * D.x * s.zx};
-  const Inertia about_middle(k * data_->volume, k * stretched(data_->first_moment), rotational);
-  return about_middle.about(-stretched(data_->middle));
+  const Inertia about_centre(k * data_->volume, k * stretched(data_->first_moment), rotational);
+  return about_centre.about(-stretched(data_->centre));
 }
 
 }  // namespace vp

@@ -19,11 +19,11 @@ bool face_towards(SurfaceTriangle& t, const Vec3& point, bool two_sided) {
   t.normal = -t.normal;
   std::swap(t.p[1], t.p[2]);
   std::swap(t.corners[1], t.corners[2]);
-  std::swap(t.across[0], t.across[2]);
-  std::swap(t.has_across[0], t.has_across[2]);
-  const unsigned front = t.felt & 7u, back = t.felt >> 3;
-  const auto turned = [](unsigned bits) { return (bits & 2u) | (bits & 1u) << 2 | bits >> 2; };
-  t.felt = turned(back) | turned(front) << 3;
+  std::swap(t.opposite[0], t.opposite[2]);
+  std::swap(t.has_opposite[0], t.has_opposite[2]);
+  const unsigned front = t.active & 7u, back = t.active >> 3;
+  const auto reversed = [](unsigned bits) { return (bits & 2u) | (bits & 1u) << 2 | bits >> 2; };
+  t.active = reversed(back) | reversed(front) << 3;
   return true;
 }
 
@@ -79,16 +79,16 @@ bool may_touch_along(const Surface& surface, const SurfaceTriangle& t, const Tri
     case TrianglePart::face:
       return dot(d, t.normal) > 0.0;
     case TrianglePart::edge: {
-      if (!is_felt(t, part.index)) return false;
+      if (!is_active_edge(t, part.index)) return false;
       // A border: of a solid's skin its outer side only.
-      if (!t.has_across[part.index]) return surface.two_sided() || dot(d, t.normal) >= -kBelow;
-      const Vec3 way = t.across[part.index] - t.p[part.index];
-      return dot(d, way) <= kBelow * norm(way);
+      if (!t.has_opposite[part.index]) return surface.two_sided() || dot(d, t.normal) >= -kBelow;
+      const Vec3 offset = t.opposite[part.index] - t.p[part.index];
+      return dot(d, offset) <= kBelow * norm(offset);
     }
     case TrianglePart::corner:
       break;
   }
-  return (is_felt(t, part.index) || is_felt(t, (part.index + 2) % 3)) &&
+  return (is_active_edge(t, part.index) || is_active_edge(t, (part.index + 2) % 3)) &&
          surface.lies_below(t.corners[part.index], d);
 }
 

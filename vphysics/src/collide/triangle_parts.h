@@ -22,8 +22,8 @@ NearestOnTriangle nearest_on_triangle(const Vec3 p[3], const Vec3& q);
 // What of the triangle lies farthest along the unit vector d.
 TrianglePart foremost_part(const Vec3 p[3], const Vec3& d);
 
-inline bool is_felt(const SurfaceTriangle& t, int edge) {
-  return ((t.felt >> edge) & 1u) != 0;
+inline bool is_active_edge(const SurfaceTriangle& t, int edge) {
+  return ((t.active >> edge) & 1u) != 0;
 }
 // Whether d, a unit vector away from the surface, may be a contact's normal at that part: an edge
 // or a corner must be felt, and the surface there lie below the plane across d.

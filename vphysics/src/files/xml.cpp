@@ -31,7 +31,7 @@ std::string reason(const tinyxml2::XMLDocument& document) {
 // each, and a stranger's million would take hours. As far as tinyxml2 reads without an error, this
 // finds the same elements.
 std::size_t overfull_element(std::string_view text) {
-  constexpr int kMost = 200;
+  constexpr int kMax = 200;
   const auto after = [&](std::string_view end, std::size_t from) {
     const std::size_t at = text.find(end, from);
     return at == std::string_view::npos ? text.size() : at + end.size();
@@ -48,7 +48,7 @@ std::size_t overfull_element(std::string_view text) {
     } else {
       int attributes = 0;
       while (at < text.size() && text[at] != '>') {
-        if (text[at] == '=' && ++attributes > kMost) return at;
+        if (text[at] == '=' && ++attributes > kMax) return at;
         const bool quote = text[at] == '"' || text[at] == '\'';
         at = quote ? after(text.substr(at, 1), at + 1) : at + 1;
       }

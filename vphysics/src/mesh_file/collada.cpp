@@ -95,8 +95,8 @@ class Collada {
 
   // Nodes name nodes of a library, so that few lines may ask for endlessly many.
   void node(const XMLElement& n, const Affine& parent, int depth) {
-    constexpr int kDeepest = 50, kMostNodes = 10000;
-    if (depth > kDeepest || ++visited_ > kMostNodes || builder_.full()) return;
+    constexpr int kDeepest = 50, kMaxNodes = 10000;
+    if (depth > kDeepest || ++visited_ > kMaxNodes || builder_.full()) return;
     Affine T = parent;
     for (const XMLElement* e = n.FirstChildElement(); e; e = e->NextSiblingElement()) {
       if (is(*e, "instance_geometry")) {
@@ -124,7 +124,7 @@ class Collada {
         T.A.cx[row] = a.x;
         T.A.cy[row] = a.y;
         T.A.cz[row] = a.z;
-        T.t[row] = to_number(take_word(text));
+        T.t[row] = to_number(take_token(text));
       }
     } else if (is(e, "translate")) {
       T.t = take_vec3(text);
@@ -133,7 +133,7 @@ class Collada {
       T.A = {{s.x, 0, 0}, {0, s.y, 0}, {0, 0, s.z}};
     } else if (is(e, "rotate")) {
       const Vec3 axis = take_vec3(text);
-      const double degrees = to_number(take_word(text));
+      const double degrees = to_number(take_token(text));
       const double length = norm(axis);
       // Not of what is no number: Exp asks for numbers.
       if (length > 0.0 && length < 1e9 && std::fabs(degrees) < 1e9) {
@@ -146,9 +146,9 @@ class Collada {
   // The text, or nothing once more than any file has was asked for: nodes may place a geometry any
   // number of times.
   std::string_view asked(std::string_view text) {
-    constexpr std::size_t kMost = std::size_t{256} << 20;
+    constexpr std::size_t kMax = std::size_t{256} << 20;
     asked_ += text.size();
-    return asked_ <= kMost ? text : std::string_view();
+    return asked_ <= kMax ? text : std::string_view();
   }
 
   void geometry(const XMLElement& g, const Affine& T) {
@@ -178,11 +178,11 @@ class Collada {
     const XMLElement* accessor = technique ? technique->FirstChildElement("accessor") : nullptr;
     const int stride = accessor ? accessor->IntAttribute("stride", 3) : 3;
     for (;;) {
-      const std::string_view x = take_word(text);
+      const std::string_view x = take_token(text);
       if (x.empty() || builder_.full()) return;
-      const double y = to_number(take_word(text)), z = to_number(take_word(text));
+      const double y = to_number(take_token(text)), z = to_number(take_token(text));
       builder_.vertex(T(Vec3{to_number(x), y, z}));
-      for (int k = 3; k < stride && !text.empty(); ++k) take_word(text);
+      for (int k = 3; k < stride && !text.empty(); ++k) take_token(text);
     }
   }
 
@@ -198,11 +198,12 @@ class Collada {
       corners_.clear();
       while (corners_.size() < corners && !text.empty()) {
         for (int k = 0; k < indices; ++k) {
-          const std::string_view word = take_word(text);
-          if (word.empty()) break;
+          const std::string_view token = take_token(text);
+          if (token.empty()) break;
           std::int64_t index = -1;
-          const auto [end, failed] = std::from_chars(word.data(), word.data() + word.size(), index);
-          const bool fine = failed == std::errc() && index >= 0 && index < kMostIndices;
+          const auto [end, failed] =
+              std::from_chars(token.data(), token.data() + token.size(), index);
+          const bool fine = failed == std::errc() && index >= 0 && index < kMaxIndices;
           if (k == offset) corners_.push_back(fine ? first + index : -1);
         }
       }
@@ -219,7 +220,7 @@ class Collada {
     } else if (is(e, "polylist")) {
       std::string_view counts = text_of(e.FirstChildElement("vcount"));
       while (!text.empty() && !builder_.full()) {
-        const double count = to_number(take_word(counts));
+        const double count = to_number(take_token(counts));
         if (!(count >= 1.0 && count < 1e6)) return;
         polygon(text, static_cast<std::size_t>(count));
       }
@@ -228,7 +229,7 @@ class Collada {
     }
   }
 
-  static constexpr std::int64_t kMostIndices = std::int64_t{1} << 31;
+  static constexpr std::int64_t kMaxIndices = std::int64_t{1} << 31;
 
   MeshBuilder& builder_;
   Affine unit_;

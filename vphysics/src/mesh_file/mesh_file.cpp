@@ -111,13 +111,13 @@ std::optional<MeshFormat> mesh_format(std::string_view path) {
 
 Expected<MeshFile> parse_mesh(std::string_view bytes, MeshFormat format, const MeshLimits& limits) {
   // Indices have 32 bits, and STL three vertices for each triangle.
-  constexpr std::size_t kMostTriangles = std::size_t{1} << 26;
+  constexpr std::size_t kMaxTriangles = std::size_t{1} << 26;
   if (bytes.size() > limits.max_bytes) {
     return tl::make_unexpected(
         Error{Errc::unsupported, "more than " + std::to_string(limits.max_bytes >> 20) + " MiB"});
   }
   try {  // the standard library throws
-    return parse(bytes, format, std::min(limits.max_triangles, kMostTriangles));
+    return parse(bytes, format, std::min(limits.max_triangles, kMaxTriangles));
   } catch (const std::exception& thrown) {
     return tl::make_unexpected(
         Error{Errc::bad_data, std::string("it cannot be read: ") + thrown.what()});

@@ -9,22 +9,22 @@ namespace vp::detail {
 namespace {
 
 // Below 0: no index.
-std::int64_t take_index(std::string_view word, std::size_t vertices) {
+std::int64_t take_index(std::string_view token, std::size_t vertices) {
   std::int64_t index = 0;
-  const auto [end, failed] = std::from_chars(word.data(), word.data() + word.size(), index);
-  const bool whole = end == word.data() + word.size() || *end == '/';
-  if (failed != std::errc() || !whole || index == 0) return -1;
+  const auto [end, failed] = std::from_chars(token.data(), token.data() + token.size(), index);
+  const bool is_whole = end == token.data() + token.size() || *end == '/';
+  if (failed != std::errc() || !is_whole || index == 0) return -1;
   return index > 0 ? index - 1 : static_cast<std::int64_t>(vertices) + index;
 }
 
 void read_statement(std::string_view line, MeshBuilder& builder, std::vector<std::int64_t>& face) {
-  const std::string_view what = take_word(line);
+  const std::string_view what = take_token(line);
   if (what == "v") {
     builder.vertex(take_vec3(line));
   } else if (what == "f") {
     face.clear();
     for (;;) {
-      const std::string_view corner = take_word(line);
+      const std::string_view corner = take_token(line);
       if (corner.empty() || corner[0] == '#') break;
       face.push_back(take_index(corner, builder.mesh.vertices.size()));
     }

@@ -45,24 +45,24 @@ class MeshBuilder {
 inline constexpr std::string_view kSpace = " \t\r\n\f\v";
 
 // The next word, and off the front of the text with it; empty at the end.
-inline std::string_view take_word(std::string_view& text) {
+inline std::string_view take_token(std::string_view& text) {
   text.remove_prefix(std::min(text.find_first_not_of(kSpace), text.size()));
-  const std::string_view word = text.substr(0, text.find_first_of(kSpace));
-  text.remove_prefix(word.size());
-  return word;
+  const std::string_view token = text.substr(0, text.find_first_of(kSpace));
+  text.remove_prefix(token.size());
+  return token;
 }
 
 // Unlike strtod it asks no locale. Not a number where the word is none.
-inline double to_number(std::string_view word) {
-  if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
+inline double to_number(std::string_view token) {
+  if (token.size() > 1 && token[0] == '+' && token[1] != '-') token.remove_prefix(1);
   double value = 0.0;
-  const auto [end, failed] = std::from_chars(word.data(), word.data() + word.size(), value);
-  return failed == std::errc() && end == word.data() + word.size() ? value : std::nan("");
+  const auto [end, failed] = std::from_chars(token.data(), token.data() + token.size(), value);
+  return failed == std::errc() && end == token.data() + token.size() ? value : std::nan("");
 }
 inline Vec3 take_vec3(std::string_view& text) {
-  const double x = to_number(take_word(text));
-  const double y = to_number(take_word(text));
-  const double z = to_number(take_word(text));
+  const double x = to_number(take_token(text));
+  const double y = to_number(take_token(text));
+  const double z = to_number(take_token(text));
   return {x, y, z};
 }
 

@@ -43,11 +43,11 @@ void read_binary(std::string_view bytes, MeshBuilder& builder) {
 void read_text(std::string_view text, MeshBuilder& builder) {
   std::vector<std::int64_t> loop;
   while (!builder.full()) {
-    const std::string_view word = take_word(text);
-    if (word.empty()) return;
-    if (word == "outer") loop.clear();
-    if (word == "vertex") loop.push_back(builder.vertex(take_vec3(text)));
-    if (word == "endloop") {
+    const std::string_view token = take_token(text);
+    if (token.empty()) return;
+    if (token == "outer") loop.clear();
+    if (token == "vertex") loop.push_back(builder.vertex(take_vec3(text)));
+    if (token == "endloop") {
       builder.polygon(loop);
       loop.clear();
     }
@@ -60,7 +60,7 @@ void read_stl(std::string_view bytes, MeshBuilder& builder, std::string& fault) 
   const bool has_header = bytes.size() >= kHeader;
   if (has_header && binary_size(bytes) == bytes.size()) return read_binary(bytes, builder);
   std::string_view begin = bytes;
-  if (take_word(begin) == "solid") read_text(bytes, builder);
+  if (take_token(begin) == "solid") read_text(bytes, builder);
   if (!builder.mesh.triangles.empty() || builder.full()) return;
   builder.mesh = {};
   if (!has_header || binary_size(bytes) > bytes.size()) {

@@ -80,19 +80,20 @@ struct Bar {
   }
 };
 
-Vec3T<Dual> with_slope(const Vec3& a, const Vec3& rate) {
+Vec3T<Dual> with_derivative(const Vec3& a, const Vec3& rate) {
   Vec3T<Dual> out{Dual(a.x), Dual(a.y), Dual(a.z)};
-  for (int i = 0; i < 3; ++i) out[i].slope[0] = rate[i];
+  for (int i = 0; i < 3; ++i) out[i].derivative[0] = rate[i];
   return out;
 }
-se3T<Dual> with_slope(const se3& V, const se3& rate) {
-  return {with_slope(V.w, rate.w), with_slope(V.v, rate.v)};
+se3T<Dual> with_derivative(const se3& V, const se3& rate) {
+  return {with_derivative(V.w, rate.w), with_derivative(V.v, rate.v)};
 }
 SE3T<Dual> moving(const SE3& X, const se3& W) {
   const Mat3& R = X.rotation();
   const Mat3 R1 = R * skew(W.w);
-  return {Mat3T<Dual>{with_slope(R.cx, R1.cx), with_slope(R.cy, R1.cy), with_slope(R.cz, R1.cz)},
-          with_slope(X.position(), X.rotate(W.v))};
+  return {Mat3T<Dual>{with_derivative(R.cx, R1.cx), with_derivative(R.cy, R1.cy),
+                      with_derivative(R.cz, R1.cz)},
+          with_derivative(X.position(), X.rotate(W.v))};
 }
 
 bool finite_pose(const SE3& X) {
@@ -108,22 +109,22 @@ class Closure final : public Constraint {
   int rows() const override { return static_cast<int>(Loop::kRows); }
 
   Expected<void> check(const Model& model) const override {
-    const auto refuse = [](std::string why) {
+    const auto invalid = [](std::string why) {
       return tl::make_unexpected(Error{Errc::invalid_argument, std::move(why)});
     };
     for (const Attachment* side : {&a_, &b_}) {
       if (side->link != kWorld && (side->link < 0 || side->link >= model.links())) {
-        return refuse("a loop is closed at link " + std::to_string(side->link) +
-                      ", which is not in the model");
+        return invalid("a loop is closed at link " + std::to_string(side->link) +
+                       ", which is not in the model");
       }
       if (!finite_pose(side->T_link_frame)) {
-        return refuse("the frames at which a loop is closed must be finite");
+        return invalid("the frames at which a loop is closed must be finite");
       }
     }
-    if (a_.link == b_.link) return refuse("a loop must be closed between two links, not one");
+    if (a_.link == b_.link) return invalid("a loop must be closed between two links, not one");
     if constexpr (requires { loop_.length; }) {
       if (!(loop_.length > 0.0 && loop_.length < 1e300)) {
-        return refuse("a bar's length must be positive; for none, close a ball");
+        return invalid("a bar's length must be positive; for none, close a ball");
       }
     }
     return {};
@@ -138,7 +139,7 @@ class Closure final : public Constraint {
     const se3 W1 = InvAd(b_.T_link_frame, at.bias(b_.link)) - A_a + ad(W, V_a);
 
     const auto residual = loop_.residual(X);
-    const auto rates = loop_.rate(moving(X, W), with_slope(W, W1));
+    const auto rates = loop_.rate(moving(X, W), with_derivative(W, W1));
     std::array<dse3, Loop::kRows> F{};
     for (int k = 0; k < 6; ++k) {
       se3 unit{};
@@ -148,7 +149,7 @@ class Closure final : public Constraint {
     }
     for (std::size_t i = 0; i < Loop::kRows; ++i) {
       out.residual[i] = residual[i];
-      out.bias[i] = rates[i].slope[0];
+      out.bias[i] = rates[i].derivative[0];
       at.add(out, i, b_.link, InvdAd(b_.T_link_frame, F[i]));
       at.add(out, i, a_.link, -1.0 * InvdAd(a_.T_link_frame * X, F[i]));
     }

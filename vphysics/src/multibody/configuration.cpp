@@ -52,12 +52,12 @@ void move(const Node<base_t<T>>& node, std::span<const T> q, std::span<const T> 
     return;
   }
   const Vec3T<T> w = vector_of(delta, v);
-  const QuaternionT<T> turn = quaternion_of(q, quaternion_at(node));
+  const QuaternionT<T> rotation = quaternion_of(q, quaternion_at(node));
   if (node.kind == NodeKind::free) {
     const SE3T<T> step = Exp(se3T<T>{w, vector_of(delta, v + 3)});
-    put(out, c, vector_of(q, c) + from_quaternion(turn) * step.position());
+    put(out, c, vector_of(q, c) + from_quaternion(rotation) * step.position());
   }
-  put(out, quaternion_at(node), normalized(turn * exp_quaternion(w)));
+  put(out, quaternion_at(node), normalized(rotation * exp_quaternion(w)));
 }
 
 template <class T>
@@ -70,11 +70,12 @@ void subtract(const Node<base_t<T>>& node, std::span<const T> q0, std::span<cons
     }
     return;
   }
-  const QuaternionT<T> turn = quaternion_of(q0, quaternion_at(node));
-  const Vec3T<T> w = Log(normalized(conjugate(turn) * quaternion_of(q1, quaternion_at(node))));
+  const QuaternionT<T> rotation = quaternion_of(q0, quaternion_at(node));
+  const Vec3T<T> w = Log(normalized(conjugate(rotation) * quaternion_of(q1, quaternion_at(node))));
   put(delta, v, w);
   if (node.kind == NodeKind::free) {
-    const Vec3T<T> p = transposed_times(from_quaternion(turn), vector_of(q1, c) - vector_of(q0, c));
+    const Vec3T<T> p =
+        transposed_times(from_quaternion(rotation), vector_of(q1, c) - vector_of(q0, c));
     put(delta, v + 3, left_jacobian_inverse(w) * p);
   }
 }

@@ -50,11 +50,11 @@ ConstraintWork::ConstraintWork(const Model& model, ConstraintSet constraints)
       step(velocities),
       q_trial(static_cast<std::size_t>(model.coordinates())),
       v_zero(velocities),
-      laws(velocities),
+      force_laws(velocities),
       warm(velocities),
       tau(velocities),
       q_before(q_trial.size()),
-      law_force(velocities),
+      force_law_force(velocities),
       motor_force(velocities) {
   joints.reserve(velocities);
   for (int l = 0; l < model.links(); ++l) {
@@ -160,7 +160,7 @@ void solve_rows(ConstraintWork& work, std::span<double> p) {
   work.cholesky.factor(work.G, n, work.capacity(), work.floor);
   std::fill(p.begin(), p.end(), 0.0);
   std::copy_n(work.rhs.begin(), n, work.left.begin());
-  for (int round = 0; round < 2; ++round) {
+  for (int iteration = 0; iteration < 2; ++iteration) {
     work.cholesky.solve(std::span(work.left).first(n));
     for (std::size_t i = 0; i < n; ++i) p[i] += work.left[i];
     for (std::size_t i = 0; i < n; ++i) {
@@ -235,34 +235,34 @@ void evaluate_at(const Model& model, ConstraintWork& work, std::span<const doubl
 // all of it: a residual may have to grow on the way. phi and J are then those of q.
 void take_step(const Model& model, ConstraintWork& work, std::span<double> q) {
   const double before = square_of(work.phi);
-  const auto go = [&](double share) {
-    for (double& x : work.step) x *= share;
+  const auto go = [&](double fraction) {
+    for (double& x : work.step) x *= fraction;
     integrate<double>(model, q, work.step, work.q_trial);
     evaluate_at(model, work, work.q_trial);
     return square_of(work.phi) < before;
   };
-  double share = 1.0;
+  double fraction = 1.0;
   bool better = go(1.0);
-  while (!better && share > 0.01) {
+  while (!better && fraction > 0.01) {
     better = go(0.5);
-    share *= 0.5;
+    fraction *= 0.5;
   }
-  if (!better) go(1.0 / share);
+  if (!better) go(1.0 / fraction);
   std::copy(work.q_trial.begin(), work.q_trial.end(), q.begin());
 }
 
 }  // namespace
 
 Expected<int> close(const Model& model, ConstraintWork& work, std::span<double> q, double tolerance,
-                    int most_steps) {
+                    int max_steps) {
   evaluate_at(model, work, q);
   double before = std::numeric_limits<double>::infinity();
-  for (int taken = 0; taken <= most_steps; ++taken) {
+  for (int taken = 0; taken <= max_steps; ++taken) {
     if (closed(work, tolerance, 0.0)) return taken;
     const double now = square_of(work.phi);
     if (now > 0.25 * before && closed(work, tolerance, size_of(model, work, q))) return taken;
     before = now;
-    if (taken == most_steps) break;
+    if (taken == max_steps) break;
     if (auto fine = factor_mass<double>(model, work.data, q); !fine) {
       return tl::make_unexpected(fine.error());
     }
@@ -342,7 +342,7 @@ Expected<void> constrained_forward_dynamics(const Model& model, ConstrainedData&
 }
 
 Expected<int> close_loops(const Model& model, ConstrainedData& data, std::span<double> q,
-                          const ClosingOptions& options) {
+                          const ClosureOptions& options) {
   detail::ConstraintWork& work = data.work();
   VP_ASSERT(q.size() == work.q_trial.size());
   work.joints.clear();
@@ -350,7 +350,7 @@ Expected<int> close_loops(const Model& model, ConstrainedData& data, std::span<d
     VP_ASSERT(i >= 0 && i < model.velocities());
     work.joints.push_back(static_cast<std::size_t>(i));
   }
-  return detail::close(model, work, q, options.tolerance, options.most_steps);
+  return detail::close(model, work, q, options.tolerance, options.max_steps);
 }
 
 Expected<void> project_velocities(const Model& model, ConstrainedData& data,

@@ -2,7 +2,7 @@
 //
 //   constraints  J v+ = -h b, as J a + b = 0 has it:  G_ee p_e + G_ej p_j = -h b - J v*
 //   eliminated   G' = G_jj - G_je G_ee^+ G_ej,  w' = v*_j + G_je G_ee^+ (-h b - J v*)
-//   laws         w = w' + G' p_j, each on its law (law_solver.h)
+//   laws         w = w' + G' p_j, each on its law (force_law_solver.h)
 //   then         v+ = v* + Y^T p
 //
 // The laws, with x = q - lower and so on:
@@ -74,7 +74,7 @@ Ramp limit_ramp(const JointForces& f, double away, bool lower, double h) {
 }
 
 // The law of one velocity; its motor's ramp, if it has one, is the first.
-struct LawOf {
+struct ForceLawOf {
   const JointForces* forces;
   double damping;
   const Motor* motor;
@@ -85,25 +85,26 @@ struct LawOf {
            (forces != nullptr && (forces->stiffness > 0.0 || forces->friction > 0.0 ||
                                   forces->lower > -kUnbounded || forces->upper < kUnbounded));
   }
-  void make(ForceLaw& law, double q, double h) const {
+  void make(ForceLaw& force_law, double q, double h) const {
     static const JointForces kNone;
     const JointForces& f = forces != nullptr ? *forces : kNone;
-    law.clear();
+    force_law.clear();
     if (motor != nullptr) {
       Motor m = *motor;
       if (!by_coordinate) m.stiffness = 0.0;
-      law.add(motor_ramp(m, f, q, h));
+      force_law.add(motor_ramp(m, f, q, h));
     }
-    if (f.stiffness > 0.0 || damping > 0.0) law.add(pull(f.stiffness, damping, f.rest - q, 0.0, h));
-    if (f.friction > 0.0) law.add({kUnbounded, 0.0, -h * f.friction, h * f.friction});
-    if (f.lower > -kUnbounded) law.add(limit_ramp(f, f.lower - q, true, h));
-    if (f.upper < kUnbounded) law.add(limit_ramp(f, f.upper - q, false, h));
+    if (f.stiffness > 0.0 || damping > 0.0)
+      force_law.add(pull(f.stiffness, damping, f.rest - q, 0.0, h));
+    if (f.friction > 0.0) force_law.add({kUnbounded, 0.0, -h * f.friction, h * f.friction});
+    if (f.lower > -kUnbounded) force_law.add(limit_ramp(f, f.lower - q, true, h));
+    if (f.upper < kUnbounded) force_law.add(limit_ramp(f, f.upper - q, false, h));
   }
 };
 
 // Which velocities have a law, and what each is at q.
-void make_laws(const Model& model, ConstraintWork& work, std::span<const double> q,
-               std::span<const Motor> motors, double h) {
+void make_force_laws(const Model& model, ConstraintWork& work, std::span<const double> q,
+                     std::span<const Motor> motors, double h) {
   work.joints.clear();
   for (int l = 0; l < model.links(); ++l) {
     const LinkSpec& link = model.link(l);
@@ -112,10 +113,12 @@ void make_laws(const Model& model, ConstraintWork& work, std::span<const double>
     for (std::size_t k = 0; k < dofs; ++k) {
       const std::size_t i = first + k;
       const int c = work.coordinate[i];
-      const LawOf law{link.forces.empty() ? nullptr : &link.forces[k], link.damping,
-                      motors.empty() || !is_motor(motors[i]) ? nullptr : &motors[i], c >= 0};
-      if (!law.any()) continue;
-      law.make(work.laws.laws[work.joints.size()], c < 0 ? 0.0 : q[static_cast<std::size_t>(c)], h);
+      const ForceLawOf force_law{link.forces.empty() ? nullptr : &link.forces[k], link.damping,
+                                 motors.empty() || !is_motor(motors[i]) ? nullptr : &motors[i],
+                                 c >= 0};
+      if (!force_law.any()) continue;
+      force_law.make(work.force_laws.force_laws[work.joints.size()],
+                     c < 0 ? 0.0 : q[static_cast<std::size_t>(c)], h);
       work.joints.push_back(i);
     }
   }
@@ -144,31 +147,32 @@ Expected<void> free_velocities(const Model& model, ConstraintWork& work, std::sp
 
 // The laws' system, with the constraints eliminated.
 void eliminate_constraints(ConstraintWork& work, std::span<const double> v) {
-  LawSolver& laws = work.laws;
+  ForceLawSolver& force_laws = work.force_laws;
   const std::size_t e = work.rows, n = work.joints.size(), stride = work.capacity();
-  laws.size = n;
+  force_laws.size = n;
   work.cholesky.factor(work.G, e, stride, work.floor);
   std::copy_n(work.rhs.begin(), e, work.lambda.begin());
   work.cholesky.solve(std::span(work.lambda).first(e));
   for (std::size_t j = 0; j < n; ++j) {
-    laws.w_free[j] = v[work.joints[j]];
-    laws.self[j] = work.G[(e + j) * stride + e + j];
+    force_laws.w_free[j] = v[work.joints[j]];
+    force_laws.self[j] = work.G[(e + j) * stride + e + j];
     for (std::size_t k = 0; k < e; ++k) {
       work.left[k] = work.G[k * stride + e + j];
-      laws.w_free[j] += work.left[k] * work.lambda[k];
+      force_laws.w_free[j] += work.left[k] * work.lambda[k];
     }
     work.cholesky.solve(std::span(work.left).first(e));
     for (std::size_t i = 0; i < n; ++i) {
       double sum = work.G[(e + i) * stride + e + j];
       for (std::size_t k = 0; k < e; ++k) sum -= work.G[(e + i) * stride + k] * work.left[k];
-      laws.G[i * laws.most + j] = sum;
+      force_laws.G[i * force_laws.capacity + j] = sum;
     }
   }
   // Symmetric to the bit, as the sums above are only to rounding.
   for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t j = 0; j < i; ++j) laws.G[j * laws.most + i] = laws.G[i * laws.most + j];
+    for (std::size_t j = 0; j < i; ++j)
+      force_laws.G[j * force_laws.capacity + i] = force_laws.G[i * force_laws.capacity + j];
   }
-  for (std::size_t j = 0; j < n; ++j) laws.p[j] = work.warm[work.joints[j]];
+  for (std::size_t j = 0; j < n; ++j) force_laws.p[j] = work.warm[work.joints[j]];
 }
 
 // The constraints' impulses beside the laws'; in lambda, the laws' after the constraints'. What the
@@ -177,14 +181,14 @@ void find_impulses(ConstraintWork& work) {
   const std::size_t e = work.rows, n = work.joints.size(), stride = work.capacity();
   for (std::size_t i = 0; i < e; ++i) {
     double sum = work.rhs[i];
-    for (std::size_t j = 0; j < n; ++j) sum -= work.G[i * stride + e + j] * work.laws.p[j];
+    for (std::size_t j = 0; j < n; ++j) sum -= work.G[i * stride + e + j] * work.force_laws.p[j];
     work.lambda[i] = work.left[i] = sum;
   }
   work.cholesky.solve(std::span(work.lambda).first(e));
   for (std::size_t i = 0; i < e; ++i) {
     for (std::size_t j = 0; j < e; ++j) work.left[i] -= work.G[i * stride + j] * work.lambda[j];
   }
-  for (std::size_t j = 0; j < n; ++j) work.lambda[e + j] = work.laws.p[j];
+  for (std::size_t j = 0; j < n; ++j) work.lambda[e + j] = work.force_laws.p[j];
 }
 
 // All impulses. Without a solution for J v+ = -h b, J v+ = 0 may have one (h = 0 here): where
@@ -196,24 +200,25 @@ bool solve_step(ConstraintWork& work, std::span<const double> v, double h, StepR
     work.terms[i] = std::fabs(bias) + std::fabs(speed);
   }
   eliminate_constraints(work, v);
-  report.rounds += work.laws.solve();
-  report.settled = work.laws.off() < 1e-9;
+  report.iterations += work.force_laws.solve();
+  report.converged = work.force_laws.off() < 1e-9;
   find_impulses(work);
-  return work.laws.off() < kMissed && !contradicted(work);
+  return work.force_laws.off() < kMissed && !contradicted(work);
 }
 
 // Impulses as forces, and kept for the next step.
 void tell_forces(ConstraintWork& work, std::span<const Motor> motors, double h) {
-  std::fill(work.law_force.begin(), work.law_force.end(), 0.0);
+  std::fill(work.force_law_force.begin(), work.force_law_force.end(), 0.0);
   std::fill(work.motor_force.begin(), work.motor_force.end(), 0.0);
   std::fill(work.warm.begin(), work.warm.end(), 0.0);
-  const LawSolver& laws = work.laws;
+  const ForceLawSolver& force_laws = work.force_laws;
   for (std::size_t j = 0; j < work.joints.size(); ++j) {
     const std::size_t i = work.joints[j];
-    work.warm[i] = laws.p[j];
-    work.law_force[i] = laws.p[j] / h;
+    work.warm[i] = force_laws.p[j];
+    work.force_law_force[i] = force_laws.p[j] / h;
     if (motors.empty() || !is_motor(motors[i])) continue;
-    work.motor_force[i] = laws.laws[j].share_of_first(laws.on[j].w, laws.p[j]) / h;
+    work.motor_force[i] =
+        force_laws.force_laws[j].fraction_of_first(force_laws.on[j].w, force_laws.p[j]) / h;
   }
 }
 
@@ -222,7 +227,7 @@ void tell_forces(ConstraintWork& work, std::span<const Motor> motors, double h) 
 void apply_impulses(ConstraintWork& work, std::span<double> v) {
   add_response(work, work.lambda, v);
   for (std::size_t j = 0; j < work.joints.size(); ++j) {
-    if (work.laws.on[j].at_step) v[work.joints[j]] = work.laws.on[j].w;
+    if (work.force_laws.on[j].at_step) v[work.joints[j]] = work.force_laws.on[j].w;
   }
 }
 
@@ -248,18 +253,18 @@ void move(const Model& model, ConstraintWork& work, std::span<double> q, std::sp
 Expected<void> return_to_constraints(const Model& model, ConstraintWork& work, std::span<double> q,
                                      std::span<double> v) {
   constexpr double kTolerance = 1e-12;
-  constexpr int kMostSteps = 20;
+  constexpr int kMaxSteps = 20;
   std::copy(q.begin(), q.end(), work.q_before.begin());
   std::size_t held = 0;
   for (std::size_t j = 0; j < work.joints.size(); ++j) {
-    if (work.laws.on[j].at_step) work.joints[held++] = work.joints[j];
+    if (work.force_laws.on[j].at_step) work.joints[held++] = work.joints[j];
   }
   work.joints.resize(held);
-  auto closed = close(model, work, q, kTolerance, kMostSteps);
+  auto closed = close(model, work, q, kTolerance, kMaxSteps);
   if (!closed && held > 0) {
     work.joints.clear();
     std::copy(work.q_before.begin(), work.q_before.end(), q.begin());
-    closed = close(model, work, q, kTolerance, kMostSteps);
+    closed = close(model, work, q, kTolerance, kMaxSteps);
   }
   if (!closed) return tl::make_unexpected(closed.error());
   if (auto fine = factor_mass<double>(model, work.data, q); !fine) return fine;
@@ -291,7 +296,7 @@ Expected<StepReport> constrained_step(const Model& model, ConstrainedData& data,
       return detail::bad_step("motors must have finite targets and no negative numbers");
     }
   }
-  detail::make_laws(model, work, q, motors, h);
+  detail::make_force_laws(model, work, q, motors, h);
   if (auto fine = detail::free_velocities(model, work, q, v, tau, loads, h); !fine) {
     return tl::make_unexpected(fine.error());
   }
@@ -311,8 +316,8 @@ Expected<StepReport> constrained_step(const Model& model, ConstrainedData& data,
   return report;
 }
 
-std::span<const double> law_forces(const ConstrainedData& data) {
-  return data.work().law_force;
+std::span<const double> force_law_forces(const ConstrainedData& data) {
+  return data.work().force_law_force;
 }
 std::span<const double> motor_forces(const ConstrainedData& data) {
   return data.work().motor_force;

@@ -11,16 +11,16 @@
 namespace vp {
 namespace {
 
-tl::unexpected<Error> refuse_constraint(std::string why) {
+tl::unexpected<Error> invalid_constraint(std::string why) {
   return tl::make_unexpected(Error{Errc::invalid_argument, std::move(why)});
 }
 
-const detail::LinkPlace<double>& place_of(const Model& model, int link) {
-  return model.tree().places[static_cast<std::size_t>(link)];
+const detail::LinkFrame<double>& place_of(const Model& model, int link) {
+  return model.tree().frames[static_cast<std::size_t>(link)];
 }
 // In the frame of the tree that the link's node is in.
-SE3 pose_in_tree(const Data& data, const detail::LinkPlace<double>& place) {
-  return detail::pose_of(data.work(), place.node) * place.T_node_link;
+SE3 pose_in_tree(const Data& data, const detail::LinkFrame<double>& frame) {
+  return detail::pose_of(data.work(), frame.node) * frame.T_node_link;
 }
 
 class Coupling final : public Constraint {
@@ -30,20 +30,20 @@ class Coupling final : public Constraint {
 
   int rows() const override { return 1; }
   Expected<void> check(const Model& model) const override {
-    if (coordinates_.empty()) return refuse_constraint("couple: name one coordinate or more");
-    if (!std::isfinite(offset_)) return refuse_constraint("couple: the offset must be finite");
+    if (coordinates_.empty()) return invalid_constraint("couple: name one coordinate or more");
+    if (!std::isfinite(offset_)) return invalid_constraint("couple: the offset must be finite");
     for (const CoupledCoordinate& c : coordinates_) {
       if (c.link < 0 || c.link >= model.links()) {
-        return refuse_constraint("couple: there is no link " + std::to_string(c.link));
+        return invalid_constraint("couple: there is no link " + std::to_string(c.link));
       }
       const Joint& joint = model.link(c.link).joint;
       const int count = velocities_of(joint);
       if (coordinates_of(joint) != count || c.index < 0 || c.index >= count) {
-        return refuse_constraint("couple: the joint of link " + std::to_string(c.link) +
-                                 " has no coordinate " + std::to_string(c.index) +
-                                 " whose rate is a velocity");
+        return invalid_constraint("couple: the joint of link " + std::to_string(c.link) +
+                                  " has no coordinate " + std::to_string(c.index) +
+                                  " whose rate is a velocity");
       }
-      if (!std::isfinite(c.factor)) return refuse_constraint("couple: factors must be finite");
+      if (!std::isfinite(c.factor)) return invalid_constraint("couple: factors must be finite");
     }
     return {};
   }
@@ -77,10 +77,10 @@ SE3 ConstraintView::T_between(int a, int b) const {
   };
   const auto find = [&](int link) -> Place {
     if (link == kWorld) return {};
-    const auto& place = place_of(model_, link);
-    if (place.node == kWorld)
-      return {SE3(place.T_node_link.rotation(), {}), place.T_node_link.position()};
-    return {pose_in_tree(data_, place), detail::origin_of(data_.work(), place.node)};
+    const auto& frame = place_of(model_, link);
+    if (frame.node == kWorld)
+      return {SE3(frame.T_node_link.rotation(), {}), frame.T_node_link.position()};
+    return {pose_in_tree(data_, frame), detail::origin_of(data_.work(), frame.node)};
   };
   const Place from = find(a), to = find(b);
   return Inv(from.X) * (SE3(to.origin - from.origin) * to.X);
@@ -93,21 +93,21 @@ se3 ConstraintView::velocity(int link) const {
 
 se3 ConstraintView::bias(int link) const {
   if (link == kWorld) return {};
-  const auto& place = place_of(model_, link);
-  if (place.node == kWorld) return {};
-  return InvAd(pose_in_tree(data_, place), bias_[static_cast<std::size_t>(place.node)]);
+  const auto& frame = place_of(model_, link);
+  if (frame.node == kWorld) return {};
+  return InvAd(pose_in_tree(data_, frame), bias_[static_cast<std::size_t>(frame.node)]);
 }
 
 void ConstraintView::add(const ConstraintRows& out, std::size_t row, int link,
                          const dse3& F) const {
   if (link == kWorld) return;
   const auto& tree = model_.tree();
-  const auto& place = place_of(model_, link);
-  if (place.node == kWorld) return;
-  const dse3 in_tree = InvdAd(pose_in_tree(data_, place), F);
+  const auto& frame = place_of(model_, link);
+  if (frame.node == kWorld) return;
+  const dse3 in_tree = InvdAd(pose_in_tree(data_, frame), F);
   const std::span<double> J = out.row(row);
   const double m = norm(in_tree.m), f = norm(in_tree.f);
-  for (int i = place.node; i != kWorld; i = tree.nodes[static_cast<std::size_t>(i)].parent) {
+  for (int i = frame.node; i != kWorld; i = tree.nodes[static_cast<std::size_t>(i)].parent) {
     const auto& node = tree.nodes[static_cast<std::size_t>(i)];
     for (int k = 0; k < node.dofs; ++k) {
       const se3 S = detail::column_of<double>(tree, data_.work(), i, k);
@@ -129,11 +129,11 @@ Expected<ConstraintSet> ConstraintSet::make(const Model& model,
                                             std::vector<ConstraintPtr> constraints) {
   ConstraintSet set;
   for (const ConstraintPtr& constraint : constraints) {
-    if (!constraint) return refuse_constraint("a constraint of the set is null; leave it out");
+    if (!constraint) return invalid_constraint("a constraint of the set is null; leave it out");
     const int rows = constraint->rows();
     if (rows < 1 || rows > 10000) {
-      return refuse_constraint("a constraint must have 1 to 10000 rows, not " +
-                               std::to_string(rows));
+      return invalid_constraint("a constraint must have 1 to 10000 rows, not " +
+                                std::to_string(rows));
     }
     if (auto fits = constraint->check(model); !fits) return tl::make_unexpected(fits.error());
     set.rows_ += rows;

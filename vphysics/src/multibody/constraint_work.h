@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "multibody/law_solver.h"
+#include "multibody/force_law_solver.h"
 #include "multibody/pivoted_cholesky.h"
 #include "vphysics/multibody/constrained_dynamics.h"
 
@@ -27,8 +27,8 @@ struct ConstraintWork {
   PivotedCholesky cholesky;
   std::vector<double> rhs, left, terms, step, q_trial, v_zero;
   // Of constrained_step: the joints' laws, and for each velocity the impulse that its law had last.
-  LawSolver laws;
-  std::vector<double> warm, tau, q_before, law_force, motor_force;
+  ForceLawSolver force_laws;
+  std::vector<double> warm, tau, q_before, force_law_force, motor_force;
 
   std::size_t capacity() const { return rows + velocities; }
   std::size_t in_use() const { return rows + joints.size(); }
@@ -57,6 +57,6 @@ void add_response(const ConstraintWork& work, std::span<const double> p, std::sp
 
 // close_loops, with work.joints held where they are.
 Expected<int> close(const Model& model, ConstraintWork& work, std::span<double> q, double tolerance,
-                    int most_steps);
+                    int max_steps);
 
 }  // namespace vp::detail

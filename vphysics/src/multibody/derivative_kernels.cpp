@@ -21,7 +21,7 @@ struct DerivativeCall {
         memory(*static_cast<DerivativesWork<T>*>(args.memory)) {}
 
   std::size_t size() const { return memory.velocities(); }
-  slopes::State<T> state() const {
+  derivatives::State<T> state() const {
     const auto numbers = [](const void* at, int count) {
       return Span<T>(static_cast<const T*>(at), static_cast<std::size_t>(count));
     };
@@ -35,7 +35,7 @@ struct DerivativeCall {
   }
   Span<dse3T<T>> external() const {
     if (args.external == nullptr) return {};
-    return {static_cast<const dse3T<T>*>(args.external), tree.places.size()};
+    return {static_cast<const dse3T<T>*>(args.external), tree.frames.size()};
   }
   // One of the results, zeroed.
   T* zeros(void* at) const {
@@ -56,9 +56,9 @@ Differentiated run_inverse(const DerivativeArguments& args) {
   const std::size_t n = c.size();
   const InverseMatrices<T> out{
       {c.zeros(args.by_q), n}, {c.zeros(args.by_v), n}, {c.zeros(args.by_force), n}};
-  return slopes::differentiate(c.state(), c.memory, c.external(), true, out)
+  return derivatives::differentiate(c.state(), c.memory, c.external(), true, out)
              ? Differentiated::done
-             : Differentiated::no_slopes;
+             : Differentiated::no_derivatives;
 }
 
 // A pack of states is solved where its results go.
@@ -67,15 +67,15 @@ Differentiated forward_of_states(const DerivativeCall<T>& c) {
   const std::size_t n = c.size();
   T* const by_q = c.zeros(c.args.by_q);
   T* const by_v = c.zeros(c.args.by_v);
-  if (!slopes::differentiate(c.state(), c.memory, c.external(), false,
-                             {{by_q, n}, {by_v, n}, c.memory.L})) {
-    return Differentiated::no_slopes;
+  if (!derivatives::differentiate(c.state(), c.memory, c.external(), false,
+                                  {{by_q, n}, {by_v, n}, c.memory.L})) {
+    return Differentiated::no_derivatives;
   }
-  if (!slopes::factor_mass(c.tree, c.work, c.memory)) return Differentiated::singular;
-  slopes::solve(c.memory, by_q, n, 1);
-  slopes::solve(c.memory, by_v, n, 1);
+  if (!derivatives::factor_mass(c.tree, c.work, c.memory)) return Differentiated::singular;
+  derivatives::solve(c.memory, by_q, n, 1);
+  derivatives::solve(c.memory, by_v, n, 1);
   T* const inverse = c.zeros(c.args.by_force);
-  slopes::invert(c.memory, inverse, n);
+  derivatives::invert(c.memory, inverse, n);
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t k = 0; k < i; ++k) inverse[i * n + k] = inverse[k * n + i];
   }
@@ -93,12 +93,12 @@ Differentiated forward_of_one(const DerivativeCall<T>& c) {
   std::fill_n(memory.inverse.data(), memory.inverse.size(), T(0));
   const MatrixView<T> Q{memory.both.data(), width, 2 * kGroup};
   const MatrixView<T> V{memory.both.data() + kGroup, width, 2 * kGroup};
-  if (!slopes::differentiate(c.state(), memory, c.external(), false, {Q, V, memory.L})) {
-    return Differentiated::no_slopes;
+  if (!derivatives::differentiate(c.state(), memory, c.external(), false, {Q, V, memory.L})) {
+    return Differentiated::no_derivatives;
   }
-  if (!slopes::factor_mass(c.tree, c.work, memory)) return Differentiated::singular;
-  slopes::solve(memory, memory.both.data(), width, 2);
-  slopes::invert(memory, memory.inverse.data(), memory.row_size);
+  if (!derivatives::factor_mass(c.tree, c.work, memory)) return Differentiated::singular;
+  derivatives::solve(memory, memory.both.data(), width, 2);
+  derivatives::invert(memory, memory.inverse.data(), memory.row_size);
   T* const by_q = static_cast<T*>(c.args.by_q);
   T* const by_v = static_cast<T*>(c.args.by_v);
   T* const inverse = static_cast<T*>(c.args.by_force);

@@ -19,7 +19,7 @@ struct DerivativeArguments {
   const void* external;  // of each link, or null
   void *by_q, *by_v, *by_force;
 };
-enum class Differentiated { done, no_slopes, singular };
+enum class Differentiated { done, no_derivatives, singular };
 
 struct DerivativeKernels {
   Differentiated (*inverse)(const DerivativeArguments&);

@@ -100,7 +100,7 @@ Expected<void> report(const char* call, Differentiated how) {
   switch (how) {
     case Differentiated::done:
       return {};
-    case Differentiated::no_slopes:
+    case Differentiated::no_derivatives:
       return tl::make_unexpected(
           Error{Errc::unsupported, std::string(call) +
                                        ": a joint of one's own does not say its slopes; override "
@@ -133,8 +133,8 @@ DerivativesWork<T>::DerivativesWork(const Tree<base_t<T>>& tree)
   L = {factor.data(), row_size};
   for (const auto& node : tree.nodes) {
     const bool user = node.kind == NodeKind::user;
-    slopes_of.push_back(user ? static_cast<int>(slopes.size()) : -1);
-    if (user) slopes.emplace_back();
+    derivatives_of.push_back(user ? static_cast<int>(derivatives.size()) : -1);
+    if (user) derivatives.emplace_back();
   }
   lay_out_branches<T>(tree, *this);
 }

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "multibody/kinematics.h"
-#include "multibody/user_slopes.h"
+#include "multibody/user_derivatives.h"
 #include "vphysics/multibody/derivatives.h"
 
 namespace vp::detail {
@@ -136,9 +136,9 @@ struct DerivativesWork {
 
   std::vector<Branch> branches;  // of each velocity
   std::vector<Run> runs;
-  std::vector<se3T<T>> A;             // of each node: acceleration on top of gravity's
-  std::vector<UserSlopes<T>> slopes;  // of each user's node, in the tree's frame
-  std::vector<int> slopes_of;         // a node's, or -1
+  std::vector<se3T<T>> A;                       // of each node: acceleration on top of gravity's
+  std::vector<UserDerivatives<T>> derivatives;  // of each user's node, in the tree's frame
+  std::vector<int> derivatives_of;              // a node's, or -1
   AlignedArray<T> records, scratch;
   // Of forward dynamics. Of one state dtau/dq and dtau/dv share rows, a group of one after a group
   // of the other: twice as many sums go on at once.

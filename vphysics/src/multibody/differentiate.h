@@ -35,10 +35,10 @@
 //   dtau_k/dq_i += <D_ki, F^>
 #pragma once
 
+#include "multibody/base_to_tip.h"
 #include "multibody/derivatives.h"
-#include "multibody/outwards.h"
 
-namespace vp::detail::slopes {
+namespace vp::detail::derivatives {
 
 // --- from the roots outwards
 
@@ -86,15 +86,15 @@ VP_FLATTEN void open_group(const Records<T>& fields, const Records<T>& joints) {
 
 // S1, S2 and Sv of column i of a user's joint: what its derivatives add.
 template <class T>
-VP_APART void add_slopes(const Node<base_t<T>>& node, const UserSlopes<T>& slopes, Span<T> v,
-                         Span<T> a, std::size_t i, const Fields<T, T>& fields,
-                         const Fields<T, T>& joints) {
+VP_NOINLINE void add_derivatives(const Node<base_t<T>>& node, const UserDerivatives<T>& derivatives,
+                                 Span<T> v, Span<T> a, std::size_t i, const Fields<T, T>& fields,
+                                 const Fields<T, T>& joints) {
   const auto n = static_cast<std::size_t>(node.dofs), first = static_cast<std::size_t>(node.v);
-  se3T<T> d{}, self{}, accelerated = slopes.rate[i];
+  se3T<T> d{}, self{}, accelerated = derivatives.rate[i];
   for (std::size_t k = 0; k < n; ++k) {
-    d = d + v[first + k] * slopes.S[n * k + i];
-    self = self + v[first + k] * slopes.S[n * i + k];
-    accelerated = accelerated + a[first + k] * slopes.S[n * k + i];
+    d = d + v[first + k] * derivatives.S[n * k + i];
+    self = self + v[first + k] * derivatives.S[n * i + k];
+    accelerated = accelerated + a[first + k] * derivatives.S[n * k + i];
   }
   const se3T<T> turned = ad(joints.twist(kParentV), d) + ad(joints.twist(kNodeV), d);
   fields.set(kColumnS1, fields.twist(kColumnS1) + d);
@@ -104,13 +104,13 @@ VP_APART void add_slopes(const Node<base_t<T>>& node, const UserSlopes<T>& slope
 
 // False where the joint does not say them.
 template <class T>
-VP_APART bool open_user(const Node<base_t<T>>& node, const SE3T<T>& X, Span<T> q, Span<T> v,
-                        UserSlopes<T>& slopes) {
+VP_NOINLINE bool open_user(const Node<base_t<T>>& node, const SE3T<T>& X, Span<T> q, Span<T> v,
+                           UserDerivatives<T>& derivatives) {
   for (int lane = 0; lane < kLanesOf<T>; ++lane) {
-    if (!user_slopes<T>(node, UserState(node, q, v, lane), lane, slopes)) return false;
+    if (!user_derivatives<T>(node, UserState(node, q, v, lane), lane, derivatives)) return false;
   }
-  for (auto& S : slopes.S) S = Ad(X, S);
-  for (auto& r : slopes.rate) r = Ad(X, r);
+  for (auto& S : derivatives.S) S = Ad(X, S);
+  for (auto& r : derivatives.rate) r = Ad(X, r);
   return true;
 }
 
@@ -140,8 +140,9 @@ bool open_node(const State<T>& state, DerivativesWork<T>& memory, int number) {
   se3T<T> A = acceleration_before(state, memory, node) +
               ad(velocity_before(state, node), velocity_of(state.work, number));
   if (node.kind == NodeKind::user) {
-    UserSlopes<T>& slopes = memory.slopes[static_cast<std::size_t>(memory.slopes_of[n])];
-    if (!open_user(node, pose_of(state.work, number), state.q, state.v, slopes)) return false;
+    UserDerivatives<T>& derivatives =
+        memory.derivatives[static_cast<std::size_t>(memory.derivatives_of[n])];
+    if (!open_user(node, pose_of(state.work, number), state.q, state.v, derivatives)) return false;
     A = A + state.work.columns[static_cast<std::size_t>(state.work.columns_of[n])].rate;
   }
   for (int k = 0; k < node.dofs; ++k) {
@@ -200,12 +201,12 @@ bool open(const State<T>& state, DerivativesWork<T>& memory) {
     open_group<T>(memory.group(g), memory.lanes());
     for (int k = 0; k < count; ++k) {
       const Branch& branch = memory.branches[static_cast<std::size_t>(first + k)];
-      const int slopes = memory.slopes_of[static_cast<std::size_t>(branch.node)];
-      if (slopes < 0) continue;
-      add_slopes<T>(state.tree.nodes[static_cast<std::size_t>(branch.node)],
-                    memory.slopes[static_cast<std::size_t>(slopes)], state.v, state.a,
-                    static_cast<std::size_t>(branch.column), memory.velocity(first + k),
-                    memory.lane(k));
+      const int derivatives = memory.derivatives_of[static_cast<std::size_t>(branch.node)];
+      if (derivatives < 0) continue;
+      add_derivatives<T>(state.tree.nodes[static_cast<std::size_t>(branch.node)],
+                         memory.derivatives[static_cast<std::size_t>(derivatives)], state.v,
+                         state.a, static_cast<std::size_t>(branch.column),
+                         memory.velocity(first + k), memory.lane(k));
     }
   }
   return true;
@@ -215,11 +216,11 @@ bool open(const State<T>& state, DerivativesWork<T>& memory) {
 template <class T>
 void take_loads(const State<T>& state, DerivativesWork<T>& memory, Span<dse3T<T>> external) {
   for (std::size_t l = 0; l < external.size(); ++l) {
-    const auto& place = state.tree.places[l];
-    if (place.node == kWorld) continue;
-    const auto& node = state.tree.nodes[static_cast<std::size_t>(place.node)];
+    const auto& frame = state.tree.frames[l];
+    if (frame.node == kWorld) continue;
+    const auto& node = state.tree.nodes[static_cast<std::size_t>(frame.node)];
     const auto body = memory.velocity(node.v + node.dofs - 1);
-    const SE3T<T> X = pose_of(state.work, place.node) * wide<T>(place.T_node_link);
+    const SE3T<T> X = pose_of(state.work, frame.node) * wide<T>(frame.T_node_link);
     body.set(kCompositeF, body.wrench(kCompositeF) - InvdAd(X, external[l]));
   }
 }
@@ -318,8 +319,8 @@ void fill_velocity(DerivativesWork<T>& memory, int number, const Fields<T, T>& f
 
 // Between velocities of one node.
 template <class T>
-VP_APART void turn_columns(DerivativesWork<T>& memory, const Node<base_t<T>>& node,
-                           const UserSlopes<T>* slopes, const MatrixView<T>& tau_q) {
+VP_NOINLINE void rotate_columns(DerivativesWork<T>& memory, const Node<base_t<T>>& node,
+                                const UserDerivatives<T>* derivatives, const MatrixView<T>& tau_q) {
   const auto first = static_cast<std::size_t>(node.v), dofs = static_cast<std::size_t>(node.dofs);
   const dse3T<T> F = memory.velocity(node.v).wrench(kCompositeF);
   const auto S = [&](std::size_t k) {
@@ -329,7 +330,7 @@ VP_APART void turn_columns(DerivativesWork<T>& memory, const Node<base_t<T>>& no
     for (std::size_t i = 0; i < dofs; ++i) {
       T& tau = tau_q(first + k, first + i);
       if (k < i) tau += ad(S(i), S(k)) * F;
-      if (slopes != nullptr) tau += slopes->S[dofs * k + i] * F;
+      if (derivatives != nullptr) tau += derivatives->S[dofs * k + i] * F;
     }
   }
 }
@@ -361,11 +362,13 @@ bool differentiate(const State<T>& state, DerivativesWork<T>& memory, Span<dse3T
   for (std::size_t i = 0; i < state.tree.nodes.size(); ++i) {
     const Node<base_t<T>>& node = state.tree.nodes[i];
     if (node.dofs == 1 && node.kind != NodeKind::user) continue;
-    const int slopes = memory.slopes_of[i];
-    turn_columns(memory, node,
-                 slopes < 0 ? nullptr : &memory.slopes[static_cast<std::size_t>(slopes)], out.q);
+    const int derivatives = memory.derivatives_of[i];
+    rotate_columns(
+        memory, node,
+        derivatives < 0 ? nullptr : &memory.derivatives[static_cast<std::size_t>(derivatives)],
+        out.q);
   }
   return true;
 }
 
-}  // namespace vp::detail::slopes
+}  // namespace vp::detail::derivatives

@@ -78,10 +78,10 @@ Work<T>::Work(const Tree<base_t<T>>& tree, Arithmetic arithmetic)
                : 0),
       fields(static_cast<std::size_t>(kFields * kSlots<T>) * layout_of<T>(tree).groups.size()),
       factors(static_cast<std::size_t>(tree.velocities)),
-      articulated_flow(static_cast<std::size_t>(tree.inflow_places)),
-      row_flow(static_cast<std::size_t>(tree.inflow_places)),
-      force_flow(static_cast<std::size_t>(tree.inflow_places)),
-      moment_flow(static_cast<std::size_t>(tree.inflow_places)),
+      articulated_flow(static_cast<std::size_t>(tree.child_slots)),
+      row_flow(static_cast<std::size_t>(tree.child_slots)),
+      force_flow(static_cast<std::size_t>(tree.child_slots)),
+      moment_flow(static_cast<std::size_t>(tree.child_slots)),
       added(tree.slots.size()),
       zeros(static_cast<std::size_t>(tree.velocities), T(0)) {
   int general = 0;
@@ -117,22 +117,22 @@ void forward_kinematics(const ModelT<base_t<T>>& model, DataT<T>& data, std::spa
 template <class T>
 SE3T<T> T_world_link(const ModelT<base_t<T>>& model, const DataT<T>& data, int link) {
   VP_ASSERT(link >= 0 && link < model.links());
-  const auto& place = model.tree().places[static_cast<std::size_t>(link)];
-  const SE3T<T> T_node_link = detail::wide<T>(place.T_node_link);
-  if (place.node == kWorld) return T_node_link;
-  const SE3T<T> X = detail::pose_of<T>(data.work(), place.node);
-  const Vec3T<T> origin = detail::origin_of<T>(data.work(), place.node);
+  const auto& frame = model.tree().frames[static_cast<std::size_t>(link)];
+  const SE3T<T> T_node_link = detail::wide<T>(frame.T_node_link);
+  if (frame.node == kWorld) return T_node_link;
+  const SE3T<T> X = detail::pose_of<T>(data.work(), frame.node);
+  const Vec3T<T> origin = detail::origin_of<T>(data.work(), frame.node);
   return SE3T<T>(X.rotation(), X.position() + origin) * T_node_link;
 }
 
 template <class T>
 se3T<T> link_velocity(const ModelT<base_t<T>>& model, const DataT<T>& data, int link) {
   VP_ASSERT(link >= 0 && link < model.links());
-  const auto& place = model.tree().places[static_cast<std::size_t>(link)];
-  if (place.node == kWorld) return {};
-  const SE3T<T> X = detail::pose_of<T>(data.work(), place.node);
-  return InvAd(X * detail::wide<T>(place.T_node_link),
-               detail::velocity_of<T>(data.work(), place.node));
+  const auto& frame = model.tree().frames[static_cast<std::size_t>(link)];
+  if (frame.node == kWorld) return {};
+  const SE3T<T> X = detail::pose_of<T>(data.work(), frame.node);
+  return InvAd(X * detail::wide<T>(frame.T_node_link),
+               detail::velocity_of<T>(data.work(), frame.node));
 }
 
 template <class T>

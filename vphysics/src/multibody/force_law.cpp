@@ -44,7 +44,7 @@ ForceLaw::Line ForceLaw::line_at(double inside) const {
   return line;
 }
 
-OnLaw ForceLaw::on_line(const Line& line, double z, double D) const {
+ForceLawPoint ForceLaw::on_line(const Line& line, double z, double D) const {
   const double p = (line.alpha - line.beta * z) / (1.0 + D * line.beta);
   return {z + D * p, p, false, line.alpha, line.beta};
 }
@@ -73,7 +73,7 @@ double ForceLaw::Corners::inside(std::size_t i) const {
 }
 
 // Along the law from left to right, w - D p rises: the first corner that is not left of z.
-OnLaw ForceLaw::meet(double z, double D) const {
+ForceLawPoint ForceLaw::intersect(double z, double D) const {
   const Corners at = corners();
   for (std::size_t i = 0; i < at.count; ++i) {
     const double c = at.w[i];
@@ -107,13 +107,13 @@ double ForceLaw::cut_off(double p) const {
   return std::clamp(p, lowest, highest);
 }
 
-double ForceLaw::share_of_first(double w, double p) const {
+double ForceLaw::fraction_of_first(double w, double p) const {
   const Ramp& r = ramps_[0];
   const bool free = r.slope == kUnbounded && w == r.w0;
   const double high = free ? r.highest : r.at(w), low = free ? r.lowest : r.at(w);
   // The others' part lies between these two.
-  const double most = sum(w, true) - high, least = sum(w, false) - low;
-  return std::clamp(std::clamp(std::clamp(0.0, low, high), p - most, p - least), r.lowest,
+  const double max_value = sum(w, true) - high, min_value = sum(w, false) - low;
+  return std::clamp(std::clamp(std::clamp(0.0, low, high), p - max_value, p - min_value), r.lowest,
                     r.highest);
 }
 

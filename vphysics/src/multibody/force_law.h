@@ -25,7 +25,7 @@ struct Ramp {
 };
 
 // Where the law is on the line: at a velocity (of a step), or on p = alpha - beta w.
-struct OnLaw {
+struct ForceLawPoint {
   double w, p;
   bool at_step;
   double alpha, beta;
@@ -34,22 +34,22 @@ struct OnLaw {
 class ForceLaw {
  public:
   void clear() { count_ = 0; }
-  // At most kMost. A ramp steeper than its velocities' rounding counts as a step.
+  // At most kMax. A ramp steeper than its velocities' rounding counts as a step.
   void add(Ramp ramp);
   // The point with w = z + D p; D > 0.
-  OnLaw meet(double z, double D) const;
+  ForceLawPoint intersect(double z, double D) const;
   // The velocity at which the law has p; p cut off at what the law can do at all.
   double velocity_for(double p) const;
   double cut_off(double p) const;
   // What the first ramp does of p at w; where friction or a stop could do the same, what it would
   // by itself.
-  double share_of_first(double w, double p) const;
+  double fraction_of_first(double w, double p) const;
 
  private:
-  static constexpr std::size_t kMost = 5;  // motor, spring and damper, friction, two limits
+  static constexpr std::size_t kMax = 5;  // motor, spring and damper, friction, two limits
 
   struct Corners {
-    std::array<double, 2 * kMost> w;
+    std::array<double, 2 * kMax> w;
     std::size_t count;
     double inside(std::size_t i) const;  // of the piece before corner i
   };
@@ -59,9 +59,9 @@ class ForceLaw {
   Corners corners() const;
   double sum(double w, bool from_left) const;
   Line line_at(double inside) const;
-  OnLaw on_line(const Line& line, double z, double D) const;
+  ForceLawPoint on_line(const Line& line, double z, double D) const;
 
-  std::array<Ramp, kMost> ramps_{};
+  std::array<Ramp, kMax> ramps_{};
   std::size_t count_ = 0;
 };
 

@@ -1,6 +1,6 @@
 // Forward dynamics: the articulated body algorithm, paper, appendix A, in the tree's frame.
 //
-//   outwards   X, S, V, A, and each body's J_i and F_i (outwards.h)
+//   outwards   X, S, V, A, and each body's J_i and F_i (base_to_tip.h)
 //   inwards    U_i = J^_i S_i, Omega_i = <S_i, U_i> + armature
 //              J^_parent += J^_i - U_i (x) U_i / Omega_i
 //              u_i = tau_i - damping q'_i - <S_i, p^_i>,  p^_parent += p^_i + U_i u_i / Omega_i
@@ -11,9 +11,9 @@
 // identity.
 #pragma once
 
+#include "multibody/base_to_tip.h"
+#include "multibody/child_sum.h"
 #include "multibody/free_root.h"
-#include "multibody/inflow.h"
-#include "multibody/outwards.h"
 
 namespace vp::detail {
 
@@ -21,7 +21,7 @@ namespace vp::detail {
 template <class T>
 class AllPositive {
  public:
-  void see(const T& x, const T& least) { fine_ = both(fine_, x > least); }
+  void see(const T& x, const T& min_value) { fine_ = both(fine_, x > min_value); }
   bool fine() const { return all(fine_); }
 
  private:
@@ -34,7 +34,7 @@ AInertiaT<T> factor_out(const AInertiaT<T>& J, const se3T<T>& S, const Constants
                         Factor<T>& factor, AllPositive<T>& positive) {
   const dse3T<T> U = J * S;
   const T omega = S * U + k.get(kArmature);
-  positive.see(omega, k.get(kLeast));
+  positive.see(omega, k.get(kMin));
   factor.inverse = T(1) / omega;
   factor.W = factor.inverse * U;
   const dse3T<T>& W = factor.W;
@@ -73,7 +73,7 @@ void put_inertia_rows(const Work<T>& work, int g, const Body<Row<T>>& body) {
 }
 template <class T, bool kForces>
 bool factor_by_rows(const Tree<T>& tree, Work<T>& work, Span<T> v, Span<T> tau) {
-  Inflow<ArticulatedRows<T>> inflow(work.row_flow);
+  ChildSum<ArticulatedRows<T>> child_sum(work.row_flow);
   AllPositive<T> positive;
   for (int i = static_cast<int>(tree.slots.size()); i-- > 0;) {
     const Slot& slot = tree.slots[static_cast<std::size_t>(i)];
@@ -85,7 +85,7 @@ bool factor_by_rows(const Tree<T>& tree, Work<T>& work, Span<T> v, Span<T> tau) 
     ArticulatedRows<T> load{columns_of<T>(vp::detail::load<Row<T>>(row + kRowInertia),
                                           vp::detail::load<Row<T>>(row + kRowMoment)),
                             vp::detail::load<Row<T>>(row + kRowForce)};
-    load = load + inflow.take(slot);
+    load = load + child_sum.take(slot);
     alignas(64) T u[8], p[8];
     if (slot.kind == SlotKind::root) {
       const FreeRoot<T> root(tree, work, i);
@@ -99,7 +99,7 @@ bool factor_by_rows(const Tree<T>& tree, Work<T>& work, Span<T> v, Span<T> tau) 
     const Row<T> U = times(load.J, S);
     spread(u, U);
     const T omega = S * wrench_from(u) + k.get(kArmature);
-    positive.see(omega, k.get(kLeast));
+    positive.see(omega, k.get(kMin));
     const T inverse = T(1) / omega;
     load.J = without(load.J, U, u, inverse);
     const Row<T> W = Row<T>(inverse) * U;
@@ -113,7 +113,7 @@ bool factor_by_rows(const Tree<T>& tree, Work<T>& work, Span<T> v, Span<T> tau) 
     }
     factor.inverse = inverse;
     factor.x = x;
-    inflow.give(slot, load);
+    child_sum.give(slot, load);
   }
   return positive.fine();
 }
@@ -121,7 +121,7 @@ bool factor_by_rows(const Tree<T>& tree, Work<T>& work, Span<T> v, Span<T> tau) 
 // Without the velocities' part, for factors alone, bodies' forces are not needed.
 template <class T, bool kForces>
 bool factor_by_slots(const Tree<base_t<T>>& tree, Work<T>& work, Span<T> v, Span<T> tau) {
-  Inflow<Articulated<T>> inflow(work.articulated_flow);
+  ChildSum<Articulated<T>> child_sum(work.articulated_flow);
   AllPositive<T> positive;
   for (int i = static_cast<int>(tree.slots.size()); i-- > 0;) {
     const Slot& slot = tree.slots[static_cast<std::size_t>(i)];
@@ -130,7 +130,7 @@ bool factor_by_slots(const Tree<base_t<T>>& tree, Work<T>& work, Span<T> v, Span
     const auto k = constants_of<T>(tree, i);
     Factor<T>& factor = work.factors[n];
     const InertiaT<T> body(k.get(kMass), fields.vec(kH), fields.sym(kI));
-    const Articulated<T>& in = inflow.take(slot);
+    const Articulated<T>& in = child_sum.take(slot);
     Articulated<T> load{body + in.J, fields.wrench(kF) + in.p};
     if (slot.kind == SlotKind::root) {
       const FreeRoot<T> root(tree, work, i);
@@ -144,7 +144,7 @@ bool factor_by_slots(const Tree<base_t<T>>& tree, Work<T>& work, Span<T> v, Span
       const T x = tau[n] - k.get(kDamping) * v[n];
       load.p = force_out(load.p, S, x, factor);
     }
-    inflow.give(slot, load);
+    child_sum.give(slot, load);
   }
   return positive.fine();
 }
@@ -207,11 +207,11 @@ VP_FLATTEN bool forward_dynamics_kernel(const Tree<base_t<T>>& tree, Work<T>& wo
                                         Span<T> v, Span<T> tau, const Vec3T<T>& gravity,
                                         Span<dse3T<T>> external, std::span<T> a) {
   work.A_world.v = -gravity;
-  outwards<T, Reach::accelerations>(tree, work, q, v, {}, BodyInTree<T>(),
-                                    [&](int g, const auto& body, const auto& V, const auto& A) {
-                                      put_body(work, g, body);
-                                      put_force(work, g, body_force(body, V, A));
-                                    });
+  outwards<T, PassDepth::accelerations>(tree, work, q, v, {}, BodyInTree<T>(),
+                                        [&](int g, const auto& body, const auto& V, const auto& A) {
+                                          put_body(work, g, body);
+                                          put_force(work, g, body_force(body, V, A));
+                                        });
   subtract_external<T, kByRows<T>>(tree, work, external);
   if (!factor<T, true>(tree, work, v, tau)) return false;
   expand<T>(tree, work, a);
@@ -220,7 +220,7 @@ VP_FLATTEN bool forward_dynamics_kernel(const Tree<base_t<T>>& tree, Work<T>& wo
 
 template <class T>
 VP_FLATTEN bool factor_mass_kernel(const Tree<base_t<T>>& tree, Work<T>& work, Span<T> q) {
-  outwards<T, Reach::poses>(
+  outwards<T, PassDepth::poses>(
       tree, work, q, {}, {}, BodyInTree<T>(),
       [&](int g, const auto& body, const auto&, const auto&) { put_body(work, g, body); });
   return factor<T, false>(tree, work, {}, {});
@@ -228,18 +228,18 @@ VP_FLATTEN bool factor_mass_kernel(const Tree<base_t<T>>& tree, Work<T>& work, S
 
 template <class T>
 VP_FLATTEN void solve_mass_kernel(const Tree<base_t<T>>& tree, Work<T>& work, std::span<T> x) {
-  LightInflow<Six<T>, Eight<T>> inflow(work.force_flow);
+  LightChildSum<Six<T>, Eight<T>> child_sum(work.force_flow);
   for (int i = static_cast<int>(tree.slots.size()); i-- > 0;) {
     const Slot& slot = tree.slots[static_cast<std::size_t>(i)];
     const auto n = static_cast<std::size_t>(slot.v);
-    const Six<T> in = inflow.add(slot, {});
+    const Six<T> in = child_sum.add(slot, {});
     const dse3T<T> p{in.head(), in.tail()};
     if (slot.kind == SlotKind::root) {
       FreeRoot<T>(tree, work, i).take_forces(x, {}, p);
       continue;
     }
     const dse3T<T> out = force_out(p, work.slot(i).twist(kS), x[n], work.factors[n]);
-    inflow.give(slot, Six<T>::of(out.m, out.f));
+    child_sum.give(slot, Six<T>::of(out.m, out.f));
   }
   expand<T>(tree, work, x);
 }

@@ -52,7 +52,7 @@ class FreeRoot {
   // Factors of J; false where one is not positive.
   template <class Positive>
   void factor(Triangle<T> J, Positive& positive) const {
-    const T armature = k_.get(kArmature), turns = k_.get(kLeast);
+    const T armature = k_.get(kArmature), turns = k_.get(kMin);
     const T slides = T(16) * T(std::numeric_limits<base_t<T>>::epsilon()) * k_.get(kComposite);
     for (int k = 6; k-- > 0;) {
       const T omega = J.m[k][k] + armature;
@@ -87,7 +87,7 @@ class FreeRoot {
       for (int i = 0; i < k; ++i) p.x[i] = p.x[i] + left * w.x[i];
     }
   }
-  // Outwards: the acceleration, of which the joint's part goes to x.
+  // BaseToTip: the acceleration, of which the joint's part goes to x.
   se3T<T> expand(std::span<T> x) const {
     Six<T> a;
     for (int k = 0; k < 6; ++k) {

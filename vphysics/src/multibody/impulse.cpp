@@ -39,7 +39,8 @@ InverseInertiaT<T> through(const InverseInertiaT<T>& L, const se3T<T>& S, const 
 template <class T>
 dse3T<T> inwards_through(const Tree<base_t<T>>& tree, const Work<T>& work, int node, dse3T<T> F) {
   for (int k = tree.nodes[static_cast<std::size_t>(node)].dofs; k-- > 0;) {
-    F = F - (factored_column_of<T>(tree, work, node, k) * F) * gain_of<T>(tree, work, node, k);
+    F = F - (factored_column_of<T>(tree, work, node, k) * F) *
+                projected_wrench_of<T>(tree, work, node, k);
   }
   return F;
 }
@@ -47,8 +48,8 @@ dse3T<T> inwards_through(const Tree<base_t<T>>& tree, const Work<T>& work, int n
 // The impulse at a link's origin, from its frame to the tree's.
 template <class T>
 SE3T<T> T_tree_link(const Tree<base_t<T>>& tree, const Work<T>& work, int link) {
-  const auto& place = tree.places[static_cast<std::size_t>(link)];
-  return pose_of(work, place.node) * wide<T>(place.T_node_link);
+  const auto& frame = tree.frames[static_cast<std::size_t>(link)];
+  return pose_of(work, frame.node) * wide<T>(frame.T_node_link);
 }
 
 template <class T>
@@ -74,7 +75,7 @@ void impulse_response(const ModelT<base_t<T>>& model, DataT<T>& data, int link, 
   const auto& tree = model.tree();
   const detail::Work<T>& work = data.work();
   std::fill(dv.begin(), dv.end(), T(0));
-  int i = tree.places[static_cast<std::size_t>(link)].node;
+  int i = tree.frames[static_cast<std::size_t>(link)].node;
   if (i == kWorld) return;
   const dse3T<T> in_tree = InvdAd(detail::T_tree_link(tree, work, link), F);
   for (; i != kWorld; i = tree.nodes[static_cast<std::size_t>(i)].parent) {
@@ -100,7 +101,7 @@ void InverseInertiasT<T>::update(const ModelT<base_t<T>>& model, const DataT<T>&
     if (parent != kWorld) L = of_node_[static_cast<std::size_t>(parent)];
     for (int k = 0; k < tree.nodes[i].dofs; ++k) {
       L = detail::through<T>(L, detail::factored_column_of<T>(tree, work, node, k),
-                             detail::gain_of<T>(tree, work, node, k),
+                             detail::projected_wrench_of<T>(tree, work, node, k),
                              detail::omega_inverse_of<T>(tree, work, node, k));
     }
     of_node_[i] = L;
@@ -112,8 +113,8 @@ ResponseT<T> InverseInertiasT<T>::between(const ModelT<base_t<T>>& model, const 
                                           int a, int b) const {
   const auto& tree = model.tree();
   const detail::Work<T>& work = data.work();
-  int i = tree.places[static_cast<std::size_t>(a)].node;
-  int j = tree.places[static_cast<std::size_t>(b)].node;
+  int i = tree.frames[static_cast<std::size_t>(a)].node;
+  int j = tree.frames[static_cast<std::size_t>(b)].node;
   ResponseT<T> out{};
   if (i == kWorld || j == kWorld) return out;
   auto at_a = detail::unit_impulses<T>(detail::T_tree_link(tree, work, a));

@@ -49,15 +49,15 @@ ImpulseFactor::ImpulseFactor(const Model& model) {
   std::reverse(inwards_.begin(), inwards_.end());
   joint_rows_.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
-    joint_rows_[i].begin = static_cast<std::uint32_t>(kept_.size());
-    kept_.resize(kept_.size() + depth_[i]);
+    joint_rows_[i].begin = static_cast<std::uint32_t>(cached_.size());
+    cached_.resize(cached_.size() + depth_[i]);
   }
-  for (const auto& place : tree.places) {
-    if (place.node == kWorld) {
+  for (const auto& frame : tree.frames) {
+    if (frame.node == kWorld) {
       links_.push_back({kEnd, 0, {}});
     } else {
       const auto dof =
-          static_cast<std::uint32_t>(tree.nodes[static_cast<std::size_t>(place.node)].v);
+          static_cast<std::uint32_t>(tree.nodes[static_cast<std::size_t>(frame.node)].v);
       links_.push_back({dof, depth_[dof], {}});
     }
   }
@@ -72,7 +72,7 @@ bool ImpulseFactor::factor(const Model& model, const Data& data, double damping_
     own_[n] = detail::inertia_of(tree, work, i);
     J_[n] = AInertia(own_[n]);
   }
-  for (KeptRow& kept : joint_rows_) kept.valid = false;
+  for (CachedRow& cached : joint_rows_) cached.valid = false;
   bool fine = true;
   for (int i = nodes; i-- > 0;) {
     const auto& node = tree.nodes[static_cast<std::size_t>(i)];
@@ -95,7 +95,7 @@ bool ImpulseFactor::factor(const Model& model, const Data& data, double damping_
     }
   }
   for (std::size_t l = 0; l < links_.size(); ++l) {
-    const int node = tree.places[l].node;
+    const int node = tree.frames[l].node;
     if (node != kWorld) links_[l].origin = origin_of(work, node);
   }
   return fine;
@@ -117,17 +117,17 @@ void ImpulseFactor::moment_row(int link, const Vec3& direction, double* y) const
   row(links_[static_cast<std::size_t>(link)].first, {direction, {}}, y);
 }
 ImpulseFactor::JointRow ImpulseFactor::joint_row(std::uint32_t dof) {
-  KeptRow& kept = joint_rows_[dof];
-  double* const y = kept_.data() + kept.begin;
-  if (!kept.valid) {
+  CachedRow& cached = joint_rows_[dof];
+  double* const y = cached_.data() + cached.begin;
+  if (!cached.valid) {
     const Column& c = columns_[dof];
     y[0] = c.g;
     row(next_[dof], -c.g * c.G, y + 1);
-    kept.response = 0.0;
-    for (std::uint32_t k = 0; k < depth_[dof]; ++k) kept.response += y[k] * y[k];
-    kept.valid = true;
+    cached.response = 0.0;
+    for (std::uint32_t k = 0; k < depth_[dof]; ++k) cached.response += y[k] * y[k];
+    cached.valid = true;
   }
-  return {y, kept.response};
+  return {y, cached.response};
 }
 
 void ImpulseFactor::to_velocities(std::span<double> x) {

@@ -90,8 +90,8 @@ class ImpulseFactor {
     dse3 G;
     double g;
   };
-  struct KeptRow {
-    std::uint32_t begin = 0;  // in kept_
+  struct CachedRow {
+    std::uint32_t begin = 0;  // in cached_
     bool valid = false;
     double response = 0.0;
   };
@@ -105,8 +105,8 @@ class ImpulseFactor {
   std::vector<std::uint32_t> next_, depth_;  // likewise
   std::vector<std::uint32_t> inwards_;       // all of them, from the leaves to the roots
   std::vector<LinkPath> links_;
-  std::vector<KeptRow> joint_rows_;  // of each degree of freedom
-  std::vector<double> kept_;
+  std::vector<CachedRow> joint_rows_;  // of each degree of freedom
+  std::vector<double> cached_;
   std::vector<std::uint32_t> body_dof_;  // of each node: that which carries its body
   std::vector<std::uint32_t>
       parent_dof_;            // of each node: that which carries its parent's body, or kEnd

@@ -24,7 +24,7 @@ void put(const Vec3T<T>& a, std::span<T> x, std::size_t i) {
   x[i] = a.x, x[i + 1] = a.y, x[i + 2] = a.z;
 }
 template <class T>
-bool less_than_a_turn(const Vec3T<T>& w) {
+bool is_less_than_a_revolution(const Vec3T<T>& w) {
   return all(dot(w, w) < T(base_t<T>(4 * kPi * kPi)));
 }
 
@@ -37,11 +37,11 @@ bool rate_on_group(const Tree<base_t<T>>& tree, std::span<const T> u, std::span<
     const auto i = static_cast<std::size_t>(node.v);
     if (node.kind == NodeKind::ball) {
       const Vec3T<T> w = vector_at(u, i);
-      if (!less_than_a_turn(w)) return false;
+      if (!is_less_than_a_revolution(w)) return false;
       put(right_jacobian_inverse(w) * vector_at(v, i), rate, i);
     } else if (node.kind == NodeKind::free) {
       const se3T<T> U{vector_at(u, i), vector_at(u, i + 3)};
-      if (!less_than_a_turn(U.w)) return false;
+      if (!is_less_than_a_revolution(U.w)) return false;
       const se3T<T> V = right_jacobian_inverse(U) * se3T<T>{vector_at(v, i), vector_at(v, i + 3)};
       put(V.w, rate, i);
       put(V.v, rate, i + 3);
@@ -82,19 +82,19 @@ Expected<void> step_rk4(const ModelT<base_t<T>>& model, IntegratorDataT<T>& data
   const std::size_t n = v.size();
 
   // Stage s is reached from the start by a share c of the step along the rates of stage s - 1.
-  constexpr double kShare[4] = {0.0, 0.5, 0.5, 1.0};
+  constexpr double kStageFraction[4] = {0.0, 0.5, 0.5, 1.0};
   for (std::size_t s = 0; s < 4; ++s) {
-    const B share = step.h * B(kShare[s]);
+    const B fraction = step.h * B(kStageFraction[s]);
     for (std::size_t i = 0; i < n; ++i) {
-      work.u[i] = s == 0 ? T(0) : T(share) * work.u_rate[s - 1][i];
-      work.v[i] = s == 0 ? v[i] : v[i] + T(share) * work.v_rate[s - 1][i];
+      work.u[i] = s == 0 ? T(0) : T(fraction) * work.u_rate[s - 1][i];
+      work.v[i] = s == 0 ? v[i] : v[i] + T(fraction) * work.v_rate[s - 1][i];
     }
     integrate<T>(model, q, work.u, work.q);
-    const auto done =
-        detail::acceleration<T>(model, work, work.q, work.v, step.t + share, step, work.v_rate[s]);
+    const auto done = detail::acceleration<T>(model, work, work.q, work.v, step.t + fraction, step,
+                                              work.v_rate[s]);
     if (!done) return done;
     if (!detail::rate_on_group<T>(model.tree(), work.u, work.v, work.u_rate[s])) {
-      return detail::refuse_argument(
+      return detail::invalid_argument(
           "step_rk4", "a joint turns a full turn within the step; take shorter steps");
     }
   }

@@ -30,7 +30,7 @@ struct VariationalNode {
   SE3T<T> link, joint;  // a user's joint: poses of its link and of its own frame
 };
 
-inline constexpr std::size_t kMostStages = 7;
+inline constexpr std::size_t kMaxStages = 7;
 
 template <class T>
 struct IntegratorWork {
@@ -52,14 +52,14 @@ struct IntegratorWork {
   std::vector<T> q, v;  // of a stage
   std::vector<T> u;     // the way to it, q = q0 [+] u
   std::vector<T> tau;
-  std::array<std::vector<T>, kMostStages> u_rate, v_rate;
+  std::array<std::vector<T>, kMaxStages> u_rate, v_rate;
   std::vector<T> scale;                   // magnitudes of the coordinates, one a velocity
   std::vector<T> rest;                    // zeros
   std::vector<se3T<T>> S;                 // columns, one a velocity
   std::vector<VariationalNode<T>> nodes;  // of the tree
 };
 
-inline tl::unexpected<Error> refuse_argument(const char* call, const char* why) {
+inline tl::unexpected<Error> invalid_argument(const char* call, const char* why) {
   return tl::make_unexpected(Error{Errc::invalid_argument, std::string(call) + ": " + why});
 }
 inline tl::unexpected<Error> not_converged(const char* call, const char* why) {
@@ -78,11 +78,11 @@ Expected<void> check_step(const char* call, const ModelT<base_t<T>>& model,
   VP_ASSERT(q.size() == static_cast<std::size_t>(model.coordinates()));
   VP_ASSERT(v.size() == static_cast<std::size_t>(model.velocities()));
   if (!positive_and_finite(step.h)) {
-    return refuse_argument(call, "the step h must be positive and finite, in seconds");
+    return invalid_argument(call, "the step h must be positive and finite, in seconds");
   }
-  if (!std::isfinite(step.t)) return refuse_argument(call, "the time t must be finite");
+  if (!std::isfinite(step.t)) return invalid_argument(call, "the time t must be finite");
   if (!step.forces.fits(static_cast<std::size_t>(model.velocities()))) {
-    return refuse_argument(call, "constant forces must be as many as the model has velocities");
+    return invalid_argument(call, "constant forces must be as many as the model has velocities");
   }
   return {};
 }

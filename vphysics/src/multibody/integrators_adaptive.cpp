@@ -21,7 +21,7 @@ namespace vp {
 namespace detail {
 namespace {
 
-constexpr double kDormandPrinceShare[7] = {0, 1.0 / 5, 3.0 / 10, 4.0 / 5, 8.0 / 9, 1, 1};
+constexpr double kDormandPrinceFraction[7] = {0, 1.0 / 5, 3.0 / 10, 4.0 / 5, 8.0 / 9, 1, 1};
 // Row s: the weights by which stage s is reached. The last are those of order 5 too.
 constexpr double kDormandPrince[7][6] = {
     {},
@@ -88,13 +88,14 @@ class DormandPrince {
 
   // All stages; E, or infinity where a stage is no state: then the new state is none either.
   Expected<T> attempt(std::span<const T> q, std::span<const T> v, T t, T h) {
-    for (std::size_t s = 1; s < kMostStages; ++s) {
+    for (std::size_t s = 1; s < kMaxStages; ++s) {
       reach(v, h, s);
       integrate<T>(model_, q, work_.u, work_.q);
       if (!rate_on_group<T>(model_.tree(), work_.u, work_.v, work_.u_rate[s])) return kNoState;
       if (!finite(work_.q) || !finite(work_.v)) return kNoState;
-      const auto done = acceleration<T>(model_, work_, work_.q, work_.v,
-                                        t + h * T(kDormandPrinceShare[s]), step_, work_.v_rate[s]);
+      const auto done =
+          acceleration<T>(model_, work_, work_.q, work_.v, t + h * T(kDormandPrinceFraction[s]),
+                          step_, work_.v_rate[s]);
       if (!done) return tl::make_unexpected(done.error());
     }
     const T E = error(q, v, h);
@@ -114,12 +115,12 @@ class DormandPrince {
     const T e = std::max(E, T(1e-4)), root = sixteenth_root(e);
     const T factor = T(kSafety) * sixteenth_root(before_) / (root * root * std::sqrt(root));
     before_ = e;
-    const T most = refused_ ? T(1) : T(kLargestGrowth);
-    refused_ = false;
-    return std::clamp(factor, T(kLargestShrinking), most);
+    const T max_value = rejected_ ? T(1) : T(kLargestGrowth);
+    rejected_ = false;
+    return std::clamp(factor, T(kLargestShrinking), max_value);
   }
   T factor_after_refusal(T E) {
-    refused_ = true;
+    rejected_ = true;
     if (E == kNoState) return T(kLargestShrinking);
     const T root = sixteenth_root(E);
     return std::max(T(kLargestShrinking), T(kSafety) / (root * root * root));
@@ -151,7 +152,7 @@ class DormandPrince {
     T sum = 0;
     for (std::size_t i = 0; i < v.size(); ++i) {
       T u = 0, w = 0;
-      for (std::size_t s = 0; s < kMostStages; ++s) {
+      for (std::size_t s = 0; s < kMaxStages; ++s) {
         u += T(kDormandPrinceError[s]) * work_.u_rate[s][i];
         w += T(kDormandPrinceError[s]) * work_.v_rate[s][i];
       }
@@ -166,20 +167,21 @@ class DormandPrince {
   const StepT<T>& step_;
   const AdaptiveT<T>& options_;
   T before_ = T(1e-4);  // E of the step before; so small that the first step is not held back
-  bool refused_ = false;
+  bool rejected_ = false;
 };
 
 template <class B>
 Expected<void> check_adaptive(const AdaptiveT<B>& options) {
   const char* call = "advance_adaptive";
   if (!positive_and_finite(options.absolute) || !positive_and_finite(options.relative)) {
-    return refuse_argument(call, "both tolerances must be positive and finite");
+    return invalid_argument(call, "both tolerances must be positive and finite");
   }
   if (!(options.first_step >= B(0) && std::isfinite(options.first_step)) ||
       !(options.minimum_step >= B(0) && std::isfinite(options.minimum_step))) {
-    return refuse_argument(call, "first_step and minimum_step must be positive, or 0 to be chosen");
+    return invalid_argument(call,
+                            "first_step and minimum_step must be positive, or 0 to be chosen");
   }
-  if (options.most_steps < 1) return refuse_argument(call, "most_steps must be at least 1");
+  if (options.max_steps < 1) return invalid_argument(call, "max_steps must be at least 1");
   return {};
 }
 
@@ -194,9 +196,9 @@ Expected<void> advance(DormandPrince<T>& method, const StepT<T>& step, const Ada
   h = std::max(h, minimum);
   T done = 0;  // of step.h
   while (done < step.h) {
-    if (report.taken + report.refused >= options.most_steps) {
+    if (report.taken + report.refused >= options.max_steps) {
       return not_converged("advance_adaptive",
-                           "most_steps are taken; allow more, or a larger tolerance");
+                           "max_steps are taken; allow more, or a larger tolerance");
     }
     // The rest is taken whole, also where it is a little longer: no sliver is left for the end.
     const bool last = done + T(1.01) * h >= step.h;

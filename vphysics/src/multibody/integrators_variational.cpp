@@ -47,14 +47,14 @@ namespace {
 
 // R x = x + 2 c (u x x) + 2 u x (u x x)
 template <class T>
-Vec3T<T> turned_by(const Displacement<T>& D, const Vec3T<T>& x) {
+Vec3T<T> rotated_by(const Displacement<T>& D, const Vec3T<T>& x) {
   const Vec3T<T> ux = cross(D.u, x);
   return x + T(2) * (D.c * ux + cross(D.u, ux));
 }
 template <class T>
 Displacement<T> operator*(const Displacement<T>& A, const Displacement<T>& B) {
   return {A.c * B.u + B.c * A.u + cross(A.u, B.u), A.c * B.c - dot(A.u, B.u),
-          A.d + turned_by(A, B.d)};
+          A.d + rotated_by(A, B.d)};
 }
 // dAd_D F - F, with the precision of its own size.
 template <class T>
@@ -97,7 +97,7 @@ se3T<T> screw_of(const Displacement<T>& D) {
 // --- a user's joint
 
 template <class T>
-struct UserPlace {
+struct UserPose {
   SE3T<T> X;
   std::array<se3T<T>, 6> S;
 };
@@ -107,7 +107,7 @@ Vec3T<T> narrowed(const Vec3& a) {
 }
 // At its coordinates q + delta.
 template <class T>
-UserPlace<T> user_place(const Node<T>& node, Span<T> q, Span<T> delta) {
+UserPose<T> user_pose(const Node<T>& node, Span<T> q, Span<T> delta) {
   const auto dofs = static_cast<std::size_t>(node.dofs);
   std::array<double, 6> at{}, still{};
   for (std::size_t k = 0; k < dofs; ++k) {
@@ -120,11 +120,11 @@ UserPlace<T> user_place(const Node<T>& node, Span<T> q, Span<T> delta) {
   node.user->evaluate(std::span(at).first(dofs), std::span(still).first(dofs), X,
                       std::span(S).first(dofs), rate);
   const Mat3& R = X.rotation();
-  UserPlace<T> place{{Mat3T<T>{narrowed<T>(R.cx), narrowed<T>(R.cy), narrowed<T>(R.cz)},
-                      narrowed<T>(X.position())},
-                     {}};
-  for (std::size_t k = 0; k < dofs; ++k) place.S[k] = {narrowed<T>(S[k].w), narrowed<T>(S[k].v)};
-  return place;
+  UserPose<T> frame{{Mat3T<T>{narrowed<T>(R.cx), narrowed<T>(R.cy), narrowed<T>(R.cz)},
+                     narrowed<T>(X.position())},
+                    {}};
+  for (std::size_t k = 0; k < dofs; ++k) frame.S[k] = {narrowed<T>(S[k].w), narrowed<T>(S[k].v)};
+  return frame;
 }
 
 // --- the step
@@ -153,7 +153,7 @@ class VariationalStep {
   std::vector<T>& static_force() { return work_.u_rate[0]; }  // dU/dq less the external loads
   std::vector<T>& mean() { return work_.u_rate[1]; }          // delta / h
   std::vector<T>& momentum() { return work_.u_rate[2]; }      // M(q0) v0
-  std::vector<T>& slope() { return work_.u_rate[3]; }         // -D1 L_d, without U
+  std::vector<T>& derivative() { return work_.u_rate[3]; }    // -D1 L_d, without U
   std::vector<T>& residual() { return work_.v_rate[0]; }      // of (1)
   std::vector<T>& correction() { return work_.v_rate[1]; }
 
@@ -188,7 +188,7 @@ class VariationalStep {
       }
       if (node.kind != NodeKind::user) continue;
       work_.nodes[n].link = pose_of(work, number);
-      work_.nodes[n].joint = work_.nodes[n].link * Inv(user_place<T>(node, q_, {}).X);
+      work_.nodes[n].joint = work_.nodes[n].link * Inv(user_pose<T>(node, q_, {}).X);
     }
   }
 
@@ -214,8 +214,8 @@ class VariationalStep {
   Displacement<T> of_joint(std::size_t n) const {
     const Node<T>& node = tree_.nodes[n];
     if (node.kind == NodeKind::user) {
-      const VariationalNode<T>& place = work_.nodes[n];
-      return displacement(place.joint * user_place<T>(node, q_, work_.u).X * Inv(place.link));
+      const VariationalNode<T>& frame = work_.nodes[n];
+      return displacement(frame.joint * user_pose<T>(node, q_, work_.u).X * Inv(frame.link));
     }
     se3T<T> W{};
     for (int k = node.v; k < node.v + node.dofs; ++k) {
@@ -226,7 +226,7 @@ class VariationalStep {
   }
 
   // D, pi and the energy outwards, Pi inwards, -D1 L_d. False where a link turns half a turn.
-  bool find_slope() {
+  bool find_derivative() {
     const T rate = T(1) / step_.h;
     energy_ = T(0);
     for (std::size_t n = 0; n < tree_.nodes.size(); ++n) {
@@ -250,7 +250,7 @@ class VariationalStep {
         energy_ += node.armature * speed * speed;
       }
     }
-    project(mean(), slope());
+    project(mean(), derivative());
     return true;
   }
 
@@ -268,10 +268,10 @@ class VariationalStep {
 
   // What (1) is off by, for the present delta.
   bool find_residual() {
-    if (!find_slope()) return false;
+    if (!find_derivative()) return false;
     residual() = momentum();
     add_impulse(q_, step_.t, residual());
-    for (std::size_t i = 0; i < v_.size(); ++i) residual()[i] -= slope()[i];
+    for (std::size_t i = 0; i < v_.size(); ++i) residual()[i] -= derivative()[i];
     return true;
   }
   // delta += h M^-1 r; returns <r, M^-1 r>, twice the correction's kinetic energy.
@@ -292,11 +292,11 @@ class VariationalStep {
     constexpr T kRounding = std::numeric_limits<T>::epsilon();  // of energies: its root of rates
     bool close = false;
     T before = std::numeric_limits<T>::infinity();
-    for (int round = 0; round <= options.most_iterations; ++round) {
+    for (int iteration = 0; iteration <= options.max_iterations; ++iteration) {
       if (!find_residual()) {
         return not_converged(kName, "a link turns half a turn in the step; take shorter steps");
       }
-      if (close) return round;
+      if (close) return iteration;
       const T missing = correct();
       if (!std::isfinite(missing)) break;
       close = missing <= options.tolerance * options.tolerance * energy_ ||
@@ -316,16 +316,16 @@ class VariationalStep {
       const Node<T>& node = tree_.nodes[n];
       const VariationalNode<T>& own = work_.nodes[n];
       const bool user = node.kind == NodeKind::user;
-      UserPlace<T> place{};
-      if (user) place = user_place<T>(node, q_, work_.u);
+      UserPose<T> frame{};
+      if (user) frame = user_pose<T>(node, q_, work_.u);
       const dse3T<T> Pi = user ? dAd(pose(own.D) * own.link, own.momentum) : dse3T<T>{};
       const dse3T<T> change = change_of(own.D, own.momentum);
       for (int k = 0; k < node.dofs; ++k) {
         const auto i = static_cast<std::size_t>(node.v + k);
         const se3T<T>& S = work_.S[i];
         const T grown =
-            user ? place.S[static_cast<std::size_t>(k)] * Pi - S * own.momentum : S * change;
-        work_.v[i] = slope()[i] + residual()[i] + grown;
+            user ? frame.S[static_cast<std::size_t>(k)] * Pi - S * own.momentum : S * change;
+        work_.v[i] = derivative()[i] + residual()[i] + grown;
       }
     }
     inverse_dynamics<T>(model_, work_.data, work_.q, work_.rest, work_.rest, step_.loads,
@@ -369,9 +369,9 @@ Expected<int> step_variational(const ModelT<T>& model, IntegratorDataT<T>& data,
   const char* call = "step_variational";
   const auto checked = detail::check_step<T>(call, model, q, v, step);
   if (!checked) return tl::make_unexpected(checked.error());
-  if (!detail::positive_and_finite(options.tolerance) || options.most_iterations < 1) {
-    return detail::refuse_argument(call,
-                                   "the tolerance must be positive, and one iteration allowed");
+  if (!detail::positive_and_finite(options.tolerance) || options.max_iterations < 1) {
+    return detail::invalid_argument(call,
+                                    "the tolerance must be positive, and one iteration allowed");
   }
   return detail::VariationalStep<T>(model, data.work(), step, q, v).run(options);
 }

@@ -1,12 +1,12 @@
 // Inverse dynamics: the recursive Newton-Euler algorithm, in the tree's frame.
 //
-//   outwards   X, S, V, A with the joints' accelerations, each body's F_i (outwards.h)
+//   outwards   X, S, V, A with the joints' accelerations, each body's F_i (base_to_tip.h)
 //   inwards    F_parent += F_i
 //              tau_i = <S_i, F_i> + armature q''_i + damping q'_i
 #pragma once
 
-#include "multibody/inflow.h"
-#include "multibody/outwards.h"
+#include "multibody/base_to_tip.h"
+#include "multibody/child_sum.h"
 
 namespace vp::detail {
 
@@ -15,12 +15,12 @@ VP_FLATTEN void inverse_dynamics_kernel(const Tree<base_t<T>>& tree, Work<T>& wo
                                         Span<T> v, Span<T> a, const Vec3T<T>& gravity,
                                         Span<dse3T<T>> external, std::span<T> tau) {
   work.A_world.v = -gravity;
-  outwards<T, Reach::accelerations>(tree, work, q, v, a, BodyInTree<T>(),
-                                    [&](int g, const auto& body, const auto& V, const auto& A) {
-                                      work.group(g).set(kF, body_force(body, V, A));
-                                    });
+  outwards<T, PassDepth::accelerations>(tree, work, q, v, a, BodyInTree<T>(),
+                                        [&](int g, const auto& body, const auto& V, const auto& A) {
+                                          work.group(g).set(kF, body_force(body, V, A));
+                                        });
   subtract_external<T, false>(tree, work, external);
-  LightInflow<ChainSix<T>, Eight<T>> inflow(work.force_flow);
+  LightChildSum<ChainSix<T>, Eight<T>> child_sum(work.force_flow);
   const auto& groups = layout_of<T>(tree).groups;
   for (int g = static_cast<int>(groups.size()); g-- > 0;) {
     const int first = g * kSlots<T>, count = groups[static_cast<std::size_t>(g)].count;
@@ -30,8 +30,8 @@ VP_FLATTEN void inverse_dynamics_kernel(const Tree<base_t<T>>& tree, Work<T>& wo
     split<T>(F.m, F.f, x);
     for (int k = count; k-- > 0;) {
       const Slot& slot = tree.slots[static_cast<std::size_t>(first + k)];
-      x[k] = inflow.add(slot, x[k]);
-      inflow.give(slot, x[k]);
+      x[k] = child_sum.add(slot, x[k]);
+      child_sum.give(slot, x[k]);
     }
     join<T>(x, F.m, F.f);
     const Wide<T> forces = fields.twist(kS) * F;

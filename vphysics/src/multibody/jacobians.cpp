@@ -12,7 +12,7 @@
 
 #include "multibody/instantiate.h"
 #include "multibody/kinematics.h"
-#include "multibody/user_slopes.h"
+#include "multibody/user_derivatives.h"
 #include "vphysics/assert.h"
 
 namespace vp {
@@ -28,9 +28,9 @@ struct Place {
 };
 template <class T>
 Place<T> place_of(const Tree<base_t<T>>& tree, const Work<T>& work, int link) {
-  const auto& place = tree.places[static_cast<std::size_t>(link)];
-  return {place.node, pose_of(work, place.node) * wide<T>(place.T_node_link),
-          origin_of(work, place.node)};
+  const auto& frame = tree.frames[static_cast<std::size_t>(link)];
+  return {frame.node, pose_of(work, frame.node) * wide<T>(frame.T_node_link),
+          origin_of(work, frame.node)};
 }
 
 // A velocity of the tree's frame as a link's in some frame; V is how the link moves.
@@ -61,15 +61,15 @@ struct PointView {
   Frame frame;
   Vec3T<T> x;
 
-  Column turned_back(const Vec3T<T>& u) const {
+  Column rotated_back(const Vec3T<T>& u) const {
     return frame == Frame::link ? at.X.unrotate(u) : u;
   }
-  Column operator()(const se3T<T>& S) const { return turned_back(S.v + cross(S.w, x)); }
+  Column operator()(const se3T<T>& S) const { return rotated_back(S.v + cross(S.w, x)); }
   Column rate(const se3T<T>& S, const se3T<T>& S_rate, const se3T<T>& V) const {
     const Vec3T<T> x_rate = V.v + cross(V.w, x);
     const Vec3T<T> u_rate = S_rate.v + cross(S_rate.w, x) + cross(S.w, x_rate);
     if (frame != Frame::link) return u_rate;
-    return turned_back(u_rate - cross(V.w, S.v + cross(S.w, x)));
+    return rotated_back(u_rate - cross(V.w, S.v + cross(S.w, x)));
   }
 };
 
@@ -86,7 +86,7 @@ PointView<T> view_of(const Tree<base_t<T>>& tree, const Work<T>& work, int link,
 
 template <class B>
 bool moves(const Tree<B>& tree, int link) {
-  return tree.places[static_cast<std::size_t>(link)].node != kWorld;
+  return tree.frames[static_cast<std::size_t>(link)].node != kWorld;
 }
 
 template <class T, class View>
@@ -100,7 +100,7 @@ void fill_jacobian(const Tree<base_t<T>>& tree, const Work<T>& work, const View&
   }
 }
 
-Expected<void> no_slopes(const char* call) {
+Expected<void> no_derivatives(const char* call) {
   return tl::make_unexpected(Error{
       Errc::unsupported, std::string(call) +
                              ": a joint of one's own with several degrees does not say its slopes; "
@@ -116,7 +116,7 @@ Expected<void> fill_rate(const char* call, const Tree<base_t<T>>& tree, const Wo
     const auto& node = tree.nodes[static_cast<std::size_t>(i)];
     std::array<se3T<T>, 6> own{};
     if (node.kind == NodeKind::user) {
-      if (!user_column_rates<T>(node, UserState(node, q, v), own)) return no_slopes(call);
+      if (!user_column_rates<T>(node, UserState(node, q, v), own)) return no_derivatives(call);
       for (auto& S_rate : own) S_rate = Ad(pose_of(work, i), S_rate);
     }
     const se3T<T> V_node = velocity_of(work, i);
@@ -146,7 +146,7 @@ typename View::Column drift(const Tree<base_t<T>>& tree, const Work<T>& work, Sp
 
 template <class B, class Column>
 bool fits(const Tree<B>& tree, int link, std::span<Column> J) {
-  return link >= 0 && static_cast<std::size_t>(link) < tree.places.size() &&
+  return link >= 0 && static_cast<std::size_t>(link) < tree.frames.size() &&
          J.size() == static_cast<std::size_t>(tree.velocities);
 }
 template <class B, class T>

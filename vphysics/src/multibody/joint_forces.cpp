@@ -12,16 +12,16 @@ namespace detail {
 namespace {
 
 template <class T>
-T at_most(const T& x, const T& most) {
-  return select(x > most, most, select(x < -most, -most, x));
+T at_most(const T& x, const T& max_value) {
+  return select(x > max_value, max_value, select(x < -max_value, -max_value, x));
 }
 
-// Outwards is how far the coordinate is beyond the limit, and rate how fast it goes on.
+// BaseToTip is how far the coordinate is beyond the limit, and rate how fast it goes on.
 template <class T>
-T pushed_back(const JointForces& f, const T& outwards, const T& rate) {
-  const T push = T(static_cast<base_t<T>>(f.limit_stiffness)) * outwards +
-                 T(static_cast<base_t<T>>(f.limit_damping)) * rate;
-  return select(both(outwards > T(0), push > T(0)), push, T(0));
+T stop_force(const JointForces& f, const T& outwards, const T& rate) {
+  const T resistance = T(static_cast<base_t<T>>(f.limit_stiffness)) * outwards +
+                       T(static_cast<base_t<T>>(f.limit_damping)) * rate;
+  return select(both(outwards > T(0), resistance > T(0)), resistance, T(0));
 }
 
 template <class T>
@@ -29,8 +29,8 @@ T passive_force(const JointForces& f, const T& q, const T& v) {
   using B = base_t<T>;
   T sum = T(static_cast<B>(f.stiffness)) * (T(static_cast<B>(f.rest)) - q);
   if (f.limit_stiffness == JointForces::kNever) return sum;
-  if (f.lower > -JointForces::kNever) sum += pushed_back<T>(f, T(static_cast<B>(f.lower)) - q, -v);
-  if (f.upper < JointForces::kNever) sum -= pushed_back<T>(f, q - T(static_cast<B>(f.upper)), v);
+  if (f.lower > -JointForces::kNever) sum += stop_force<T>(f, T(static_cast<B>(f.lower)) - q, -v);
+  if (f.upper < JointForces::kNever) sum -= stop_force<T>(f, q - T(static_cast<B>(f.upper)), v);
   return sum;
 }
 

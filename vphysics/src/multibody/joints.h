@@ -93,8 +93,8 @@ QuaternionT<T> quaternion_at(Span<T> q, int i) {
 // Of a node that is not simple, nor a free root: its pose in its parent's frame; and then from its
 // pose in the tree's frame its columns there.
 template <class T>
-VP_APART SE3T<T> place_columns(const Node<base_t<T>>& node, Span<T> q, Span<T> v,
-                               Columns<T>& columns) {
+VP_NOINLINE SE3T<T> place_columns(const Node<base_t<T>>& node, Span<T> q, Span<T> v,
+                                  Columns<T>& columns) {
   const Vec3T<T> nowhere{T(0), T(0), T(0)};
   SE3T<T> zero = wide<T>(node.T_parent);
   if (node.parent == kWorld) zero = {zero.rotation(), nowhere};
@@ -109,7 +109,7 @@ VP_APART SE3T<T> place_columns(const Node<base_t<T>>& node, Span<T> q, Span<T> v
   return {zero.rotation() * from_quaternion(quaternion_at<T>(q, free ? node.q + 3 : node.q)), p};
 }
 template <class T>
-VP_APART void open_columns(const Node<base_t<T>>& node, const SE3T<T>& X, Columns<T>& columns) {
+VP_NOINLINE void open_columns(const Node<base_t<T>>& node, const SE3T<T>& X, Columns<T>& columns) {
   if (node.kind == NodeKind::user) {
     for (int k = 0; k < node.dofs; ++k) {
       se3T<T>& S = columns.S[static_cast<std::size_t>(k)];

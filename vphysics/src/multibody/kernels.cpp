@@ -30,7 +30,7 @@ struct Call {
   const Vec3T<T>& gravity() const { return *static_cast<const Vec3T<T>*>(args.gravity); }
   Span<dse3T<T>> external() const {
     if (args.external == nullptr) return {};
-    return {static_cast<const dse3T<T>*>(args.external), tree.places.size()};
+    return {static_cast<const dse3T<T>*>(args.external), tree.frames.size()};
   }
   std::span<T> out(std::size_t size) const { return {static_cast<T*>(args.out), size}; }
 
@@ -51,9 +51,9 @@ bool run_kinematics(const Arguments& args) {
   const auto no_body = [](const auto&, const auto&) { return 0; };
   const auto nothing = [](int, int, const auto&, const auto&) {};
   if (c.v().empty()) {
-    outwards<T, Reach::poses>(c.tree, c.work, c.q(), {}, {}, no_body, nothing);
+    outwards<T, PassDepth::poses>(c.tree, c.work, c.q(), {}, {}, no_body, nothing);
   } else {
-    outwards<T, Reach::velocities>(c.tree, c.work, c.q(), c.v(), {}, no_body, nothing);
+    outwards<T, PassDepth::velocities>(c.tree, c.work, c.q(), c.v(), {}, no_body, nothing);
   }
   return true;
 }

@@ -26,7 +26,7 @@
 #else
 #define VP_FLATTEN
 #endif
-#define VP_APART [[gnu::noinline]]
+#define VP_NOINLINE [[gnu::noinline]]
 
 namespace vp::detail {
 

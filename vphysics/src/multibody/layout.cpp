@@ -71,7 +71,7 @@ class LayOut {
   // more than its joints feel: in float it would refuse a hundred links that are computed well, so
   // there the bound is that of double, next to nothing. Of a user's joint, whose units are its own,
   // nothing is said.
-  double least(std::size_t i) const {
+  double min_value(std::size_t i) const {
     constexpr double rounding = 16.0 * std::numeric_limits<double>::epsilon();
     const double mass = rounding * composites_[i];
     switch (node_of(i).kind) {
@@ -150,7 +150,7 @@ class LayOut {
       }
       parent.forks = true;
       slot.adds = parent.from >= Slot::kOthers;
-      if (!slot.adds) parent.from = tree_.inflow_places++;
+      if (!slot.adds) parent.from = tree_.child_slots++;
       slot.to = parent.from;
     }
   }
@@ -249,17 +249,17 @@ class LayOut {
       for (int k = 0; k < 3; ++k) set(f + k, a[k]);
     };
     const auto& R = node.T_parent.rotation();
-    set3(kTurn0, wider(R.cx));
-    set3(kTurn0 + 3, wider(R.cy));
-    set3(kTurn0 + 6, wider(R.cz));
+    set3(kRotation0, wider(R.cx));
+    set3(kRotation0 + 3, wider(R.cy));
+    set3(kRotation0 + 6, wider(R.cz));
     if (node.parent != kWorld) set3(kShift0, wider(node.T_parent.position()));
     const bool revolute = node.kind == NodeKind::revolute, helical = node.kind == NodeKind::helical;
-    set(kTurn, revolute || helical ? 1.0 : 0.0);
+    set(kRotation, revolute || helical ? 1.0 : 0.0);
     set(kSlide, node.kind == NodeKind::prismatic ? 1.0 : helical ? wider(node.pitch) : 0.0);
     set(kArmature, wider(node.armature));
     set(kDamping, wider(node.damping));
     set(kComposite, composites_[i]);
-    set(kLeast, least(i));
+    set(kMin, min_value(i));
     if (!ends_node(i) || node.J == InertiaT<B>{}) return;
     const auto& I = node.J.rotational();
     const Inertia J(wider(node.J.mass()), wider(node.J.first_moment()),

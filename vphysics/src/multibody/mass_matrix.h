@@ -1,14 +1,14 @@
 // The mass matrix: the composite body algorithm, in the tree's frame.
 //
-//   outwards  X, S, each body's inertia (outwards.h)
+//   outwards  X, S, each body's inertia (base_to_tip.h)
 //   inwards   C_i = J_i + sum of the children's C: nine numbers, added; the masses are known
 //   F_i = C_i S_i,  M_ij = <S_j, F_i> for j = i and every j between i and the root
 #pragma once
 
 #include <algorithm>
 
+#include "multibody/child_sum.h"
 #include "multibody/forward_dynamics.h"
-#include "multibody/inflow.h"
 
 namespace vp::detail {
 
@@ -44,17 +44,17 @@ void fill_root(const Mat3T<T>& R, const dse3T<T>& F, std::size_t row, std::size_
 template <class T>
 VP_FLATTEN void mass_matrix_kernel(const Tree<base_t<T>>& tree, Work<T>& work, Span<T> q,
                                    std::span<T> M) {
-  outwards<T, Reach::poses>(
+  outwards<T, PassDepth::poses>(
       tree, work, q, {}, {}, BodyInTree<T>(),
       [&](int g, const auto& body, const auto&, const auto&) { set_inertia(work, g, body); });
-  LightInflow<Moments<T>, Nine<T>> inflow(work.moment_flow);
+  LightChildSum<Moments<T>, Nine<T>> child_sum(work.moment_flow);
   for (int i = static_cast<int>(tree.slots.size()); i-- > 0;) {
     const Slot& slot = tree.slots[static_cast<std::size_t>(i)];
     const auto fields = work.slot(i);
-    const Moments<T> C = inflow.add(slot, {fields.vec(kH), fields.sym(kI)});
+    const Moments<T> C = child_sum.add(slot, {fields.vec(kH), fields.sym(kI)});
     fields.set(kH, C.h);
     fields.set(kI, C.I);
-    inflow.give(slot, C);
+    child_sum.give(slot, C);
   }
   const auto& groups = layout_of<T>(tree).groups;
   for (int g = 0; g < static_cast<int>(groups.size()); ++g) {

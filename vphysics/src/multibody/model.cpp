@@ -9,12 +9,12 @@
 namespace vp {
 namespace {
 
-using detail::LinkPlace;
+using detail::LinkFrame;
 using detail::Node;
 using detail::NodeKind;
 using detail::Tree;
 
-tl::unexpected<Error> refuse(const LinkSpec& link, const std::string& why) {
+tl::unexpected<Error> invalid(const LinkSpec& link, const std::string& why) {
   return tl::make_unexpected(Error{Errc::invalid_argument, "link \"" + link.name + "\": " + why});
 }
 
@@ -32,8 +32,8 @@ Mat3 frame_along(const Vec3& axis) {
   const Vec3 z = (1.0 / norm(axis)) * axis;
   if (z.x == 0.0 && z.y == 0.0 && z.z > 0.0) return Mat3::identity();
   const Vec3 beside = std::fabs(z.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-  const Vec3 across = cross(z, beside);
-  const Vec3 x = (1.0 / norm(across)) * across;
+  const Vec3 perpendicular = cross(z, beside);
+  const Vec3 x = (1.0 / norm(perpendicular)) * perpendicular;
   return {x, cross(z, x), z};
 }
 
@@ -117,7 +117,7 @@ class NodeMaker {
     if (link.parent == kWorld) {
       place_ = {kWorld, link.T_parent_joint, 0, 0};
     } else {
-      const LinkPlace<double>& parent = tree.places[static_cast<std::size_t>(link.parent)];
+      const LinkFrame<double>& parent = tree.frames[static_cast<std::size_t>(link.parent)];
       place_ = {parent.node, parent.T_node_link * link.T_parent_joint, 0, 0};
     }
     place_.q = tree.coordinates;
@@ -149,7 +149,7 @@ class NodeMaker {
   }
 
   // Where the link is now; its inertia goes to the node.
-  LinkPlace<double> finish() {
+  LinkFrame<double> finish() {
     if (place_.node != kWorld) {
       Inertia& J = tree_.nodes[static_cast<std::size_t>(place_.node)].J;
       J = J + link_.inertia.InvXform(place_.T_node_link);
@@ -184,7 +184,7 @@ class NodeMaker {
 
   Tree<double>& tree_;
   const LinkSpec& link_;
-  LinkPlace<double> place_;
+  LinkFrame<double> place_;
 };
 
 template <class To, class From>
@@ -224,32 +224,32 @@ int velocities_of(const Joint& joint) {
 Expected<int> ModelBuilder::add(LinkSpec link) {
   const int count = static_cast<int>(links_.size());
   if (link.parent != kWorld && (link.parent < 0 || link.parent >= count)) {
-    return refuse(link, "its parent is no earlier link; add links from the root on");
+    return invalid(link, "its parent is no earlier link; add links from the root on");
   }
   const Mat3& R = link.T_parent_joint.rotation();
   if (!finite(R) || !is_finite(link.T_parent_joint.position()) || !is_rotation(R)) {
-    return refuse(link, "T_parent_joint must be finite and its rotation a rotation");
+    return invalid(link, "T_parent_joint must be finite and its rotation a rotation");
   }
   for (const Vec3& axis : axes_of(link.joint)) {
     const double length = norm(axis);
     if (!(length > 1e-100 && length < 1e100)) {
-      return refuse(link, "a joint's axis must be finite and not zero");
+      return invalid(link, "a joint's axis must be finite and not zero");
     }
   }
   if (const auto* universal = std::get_if<UniversalJoint>(&link.joint)) {
-    const Vec3 across = cross(universal->first, universal->second);
-    if (norm(across) < 1e-6 * norm(universal->first) * norm(universal->second)) {
-      return refuse(link, "the two axes of a universal joint must not be parallel");
+    const Vec3 perpendicular = cross(universal->first, universal->second);
+    if (norm(perpendicular) < 1e-6 * norm(universal->first) * norm(universal->second)) {
+      return invalid(link, "the two axes of a universal joint must not be parallel");
     }
   }
   if (const auto* helical = std::get_if<HelicalJoint>(&link.joint);
       helical && !std::isfinite(helical->pitch)) {
-    return refuse(link, "the pitch of a helical joint must be finite");
+    return invalid(link, "the pitch of a helical joint must be finite");
   }
   if (const auto* user = std::get_if<std::shared_ptr<const UserJoint>>(&link.joint)) {
     const int dofs = *user ? (*user)->degrees_of_freedom() : 0;
     if (dofs < 1 || dofs > 6) {
-      return refuse(link, "a joint of one's own must be there and have 1 to 6 degrees of freedom");
+      return invalid(link, "a joint of one's own must be there and have 1 to 6 degrees of freedom");
     }
   }
   const Inertia& J = link.inertia;
@@ -257,15 +257,15 @@ Expected<int> ModelBuilder::add(LinkSpec link) {
   if (!std::isfinite(J.mass()) || !is_finite(J.first_moment()) ||
       !is_finite(Vec3{I.xx, I.yy, I.zz}) || !is_finite(Vec3{I.xy, I.yz, I.zx}) ||
       !(link.inertia_as_stated || of_a_body(J))) {
-    return refuse(link,
-                  "no body has this inertia: the mass must be positive, the moments about the "
-                  "centre of mass positive and none larger than the two others together");
+    return invalid(link,
+                   "no body has this inertia: the mass must be positive, the moments about the "
+                   "centre of mass positive and none larger than the two others together");
   }
   if (!(link.armature >= 0.0 && link.armature < 1e300 && link.damping >= 0.0 &&
         link.damping < 1e300)) {
-    return refuse(link, "armature and damping must be finite and not negative");
+    return invalid(link, "armature and damping must be finite and not negative");
   }
-  if (const char* why = wrong_with_forces(link)) return refuse(link, why);
+  if (const char* why = wrong_with_forces(link)) return invalid(link, why);
   links_.push_back(std::move(link));
   return count;
 }
@@ -276,7 +276,7 @@ Expected<Model> ModelBuilder::build() const {
   for (const LinkSpec& link : links_) {
     NodeMaker maker(*tree, link);
     std::visit(maker, link.joint);
-    tree->places.push_back(maker.finish());
+    tree->frames.push_back(maker.finish());
   }
   if (tree->nodes.empty()) {
     return tl::make_unexpected(Error{Errc::invalid_argument,
@@ -291,11 +291,11 @@ Expected<Model> ModelBuilder::build() const {
     if (moves[i] && node.parent != kWorld) moves[static_cast<std::size_t>(node.parent)] = 1;
     if (moves[i] || node.armature > 0.0) continue;
     for (std::size_t l = 0; l < links_.size(); ++l) {
-      if (tree->places[l].v <= node.v &&
-          node.v < tree->places[l].v + velocities_of(links_[l].joint)) {
-        return refuse(links_[l],
-                      "its joint moves no mass; give it, or a link after it, an inertia "
-                      "or an armature");
+      if (tree->frames[l].v <= node.v &&
+          node.v < tree->frames[l].v + velocities_of(links_[l].joint)) {
+        return invalid(links_[l],
+                       "its joint moves no mass; give it, or a link after it, an inertia "
+                       "or an armature");
       }
     }
   }
@@ -313,8 +313,8 @@ ModelT<B>::ModelT(const ModelT<C>& other) {
                            cast<B>(n.J), static_cast<B>(n.pitch), static_cast<B>(n.armature),
                            static_cast<B>(n.damping), n.user});
   }
-  for (const LinkPlace<C>& p : from.places) {
-    tree->places.push_back({p.node, cast<B>(p.T_node_link), p.q, p.v});
+  for (const LinkFrame<C>& p : from.frames) {
+    tree->frames.push_back({p.node, cast<B>(p.T_node_link), p.q, p.v});
   }
   tree->links = from.links;
   tree->coordinates = from.coordinates;
@@ -337,11 +337,11 @@ int ModelT<B>::velocities() const {
 }
 template <class B>
 int ModelT<B>::first_coordinate(int link) const {
-  return tree_->places[static_cast<std::size_t>(link)].q;
+  return tree_->frames[static_cast<std::size_t>(link)].q;
 }
 template <class B>
 int ModelT<B>::first_velocity(int link) const {
-  return tree_->places[static_cast<std::size_t>(link)].v;
+  return tree_->frames[static_cast<std::size_t>(link)].v;
 }
 template <class B>
 const LinkSpec& ModelT<B>::link(int link) const {

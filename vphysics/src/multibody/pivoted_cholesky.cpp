@@ -5,8 +5,13 @@
 
 namespace vp::detail {
 
-PivotedCholesky::PivotedCholesky(std::size_t most)
-    : most_(most), L_(most * most), scale_(most), diagonal_(most), work_(most), order_(most) {}
+PivotedCholesky::PivotedCholesky(std::size_t capacity)
+    : max_(capacity),
+      L_(capacity * capacity),
+      scale_(capacity),
+      diagonal_(capacity),
+      work_(capacity),
+      order_(capacity) {}
 
 // Exchanges two rows of L so far, and their places.
 void PivotedCholesky::bring_forward(std::size_t k, std::size_t pivot) {

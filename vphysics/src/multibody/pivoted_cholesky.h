@@ -20,7 +20,7 @@ inline constexpr double kDependent = 1e-11;
 
 class PivotedCholesky {
  public:
-  explicit PivotedCholesky(std::size_t most);
+  explicit PivotedCholesky(std::size_t capacity);
 
   // G is size x size, its rows `stride` apart. A row whose diagonal is at most its floor counts as
   // zero and is left out. Returns the rank.
@@ -31,10 +31,10 @@ class PivotedCholesky {
   std::size_t rank() const { return rank_; }
 
  private:
-  double& L(std::size_t i, std::size_t j) { return L_[i * most_ + j]; }
+  double& L(std::size_t i, std::size_t j) { return L_[i * max_ + j]; }
   void bring_forward(std::size_t k, std::size_t pivot);
 
-  std::size_t most_, size_ = 0, rank_ = 0;
+  std::size_t max_, size_ = 0, rank_ = 0;
   std::vector<double> L_;  // the lower triangle, row by row
   std::vector<double> scale_, diagonal_, work_;
   std::vector<std::size_t> order_;  // order_[k]: the row that is the k-th pivot

@@ -31,7 +31,8 @@ void for_each_body(const Tree<base_t<T>>& tree, const Work<T>& work, const F& f)
 }
 // f(velocity's number, S) for every joint that moves the node.
 template <class T, class F>
-void for_each_mover(const Tree<base_t<T>>& tree, const Work<T>& work, int node, const F& f) {
+void for_each_ancestor_column(const Tree<base_t<T>>& tree, const Work<T>& work, int node,
+                              const F& f) {
   for (int i = node; i != kWorld; i = tree.nodes[static_cast<std::size_t>(i)].parent) {
     const auto& mover = tree.nodes[static_cast<std::size_t>(i)];
     for (int k = 0; k < mover.dofs; ++k) {
@@ -115,7 +116,7 @@ void momentum_matrix(const ModelT<base_t<T>>& model, const DataT<T>& data, const
   std::fill(A.begin(), A.end(), dse3T<T>{});
   detail::for_each_body<T>(tree, work, [&](int node, const InertiaT<T>& J) {
     const Vec3T<T> origin = origin_of(work, node);
-    detail::for_each_mover<T>(tree, work, node, [&](std::size_t k, const se3T<T>& S) {
+    detail::for_each_ancestor_column<T>(tree, work, node, [&](std::size_t k, const se3T<T>& S) {
       A[k] = A[k] + detail::moved_to(J * S, origin, about);
     });
   });
@@ -127,10 +128,10 @@ void centre_of_mass_jacobian(const ModelT<base_t<T>>& model, const DataT<T>& dat
   const auto& work = data.work();
   VP_ASSERT(J.size() == static_cast<std::size_t>(tree.velocities));
   std::fill(J.begin(), J.end(), Vec3T<T>{});
-  const T share = T(1) / T(total_mass(model));
+  const T fraction = T(1) / T(total_mass(model));
   detail::for_each_body<T>(tree, work, [&](int node, const InertiaT<T>& body) {
-    detail::for_each_mover<T>(tree, work, node, [&](std::size_t k, const se3T<T>& S) {
-      J[k] += share * (body.mass() * S.v + cross(S.w, body.first_moment()));
+    detail::for_each_ancestor_column<T>(tree, work, node, [&](std::size_t k, const se3T<T>& S) {
+      J[k] += fraction * (body.mass() * S.v + cross(S.w, body.first_moment()));
     });
   });
 }

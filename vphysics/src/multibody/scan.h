@@ -86,7 +86,7 @@ SE3T<N> pose_in_lanes(const External& external, const SE3T<T>& X, const SE3T<N>&
           column(X.position(), P.position())};
 }
 template <class T>
-se3T<Wide<T>> in_lanes(const External& external, const se3T<T>& V) {
+se3T<Wide<T>> in_blocks(const External& external, const se3T<T>& V) {
   return each_number<Wide<T>>(
       V, [&](const T& x, const Wide<T>& zero) { return spread_to(external, x, zero); });
 }

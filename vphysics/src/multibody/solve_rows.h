@@ -26,7 +26,7 @@
 
 #include "multibody/derivatives.h"
 
-namespace vp::detail::slopes {
+namespace vp::detail::derivatives {
 
 // Numbers of a row, in whole units of padding: as many for every instruction set, so that even the
 // signs of zeros are the same.
@@ -72,9 +72,9 @@ bool factor_root(DerivativesWork<T>& memory, const Work<T>& work, const Node<bas
     const T inverse = T(1) / A[k][k];
     memory.D_inverse[first + k] = inverse;
     for (std::size_t i = 0; i < k; ++i) {
-      const T share = A[k][i] * inverse;
-      memory.L(first + k, first + i) = share;
-      for (std::size_t j = 0; j <= i; ++j) A[i][j] = A[i][j] - share * A[k][j];
+      const T fraction = A[k][i] * inverse;
+      memory.L(first + k, first + i) = fraction;
+      for (std::size_t j = 0; j <= i; ++j) A[i][j] = A[i][j] - fraction * A[k][j];
     }
   }
   return true;
@@ -112,10 +112,10 @@ class RowSolver {
 
   void solve() const {
     const std::size_t registers = stride_ / kPack<T>;
-    const std::size_t passes = (registers + kMostSums - 1) / kMostSums;
+    const std::size_t passes = (registers + kMaxSums - 1) / kMaxSums;
     const std::size_t size = (registers + passes - 1) / passes;
     for (std::size_t r = 0; r < registers; r += size) {
-      solve_columns<kMostSums>(static_cast<int>(std::min(size, registers - r)), r * kPack<T>);
+      solve_columns<kMaxSums>(static_cast<int>(std::min(size, registers - r)), r * kPack<T>);
     }
   }
 
@@ -125,8 +125,8 @@ class RowSolver {
   // along that a row does not have (measured: 6 % of the time of a humanoid).
   static constexpr int kRegistersEach =
       (static_cast<int>(sizeof(Lanes<T>)) + kRegister - 1) / kRegister;
-  static constexpr int kHeld = std::max(1, 8 / kRegistersEach);
-  static constexpr int kMostSums = kSlots<T> == 1 ? kHeld : std::min(kHeld, 256 / kRegister);
+  static constexpr int kAtBound = std::max(1, 8 / kRegistersEach);
+  static constexpr int kMaxSums = kSlots<T> == 1 ? kAtBound : std::min(kAtBound, 256 / kRegister);
 
   // From column c on.
   template <int kSums>
@@ -140,7 +140,8 @@ class RowSolver {
       if (touched(j, memory_.branches[j].end).meets(c, end)) take_inwards<kSums>(j, X_ + c);
     }
     for (std::size_t i = 0; i < n; ++i) {
-      if (touched(i, memory_.branches[i].tree_end).meets(c, end)) take_outwards<kSums>(i, X_ + c);
+      if (touched(i, memory_.branches[i].tree_end).meets(c, end))
+        take_base_to_tip<kSums>(i, X_ + c);
     }
   }
   // The rows that were finished last come last.
@@ -154,7 +155,7 @@ class RowSolver {
     sums.put(X + j * stride_);
   }
   template <int kSums>
-  VP_FLATTEN void take_outwards(std::size_t i, T* X) const {
+  VP_FLATTEN void take_base_to_tip(std::size_t i, T* X) const {
     RowSums<T, kSums> sums(X + i * stride_, sign_ * memory_.D_inverse[i]);
     const T* const L = memory_.factor.data() + i * memory_.row_size;
     for (const Run& run : memory_.path_before(memory_.branches[i])) {
@@ -205,4 +206,4 @@ bool factor_mass(const Tree<base_t<T>>& tree, const Work<T>& work, DerivativesWo
   return true;
 }
 
-}  // namespace vp::detail::slopes
+}  // namespace vp::detail::derivatives

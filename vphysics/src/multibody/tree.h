@@ -42,7 +42,7 @@ struct Node {
 };
 
 template <class B>
-struct LinkPlace {
+struct LinkFrame {
   int node;  // or kWorld
   SE3T<B> T_node_link;
   int q, v;
@@ -59,7 +59,7 @@ struct Slot {
   int q;  // of a simple node its coordinate, else -1
   int node;
   int root;  // the slot of the free root that its tree hangs on, or kWorld
-  // Inwards (inflow.h): the places where its children's loads are, and where its own goes.
+  // Inwards (child_sum.h): the places where its children's loads are, and where its own goes.
   static constexpr int kNone = 0, kNext = 1, kOthers = 2;
   int from, to;
   bool from_next_too;  // besides from: the next slot's
@@ -75,10 +75,10 @@ struct SlotRun {
 
 // A slot's constants: numbers of the fields (lanes.h).
 enum Constant : int {
-  kTurn0 = 0,   // rotation of the node against its parent's at zero coordinates
-  kShift0 = 9,  // and its place there; a root is at the origin of its tree
-  kTurn = 12,   // [rad] of turn about z for a unit of the coordinate
-  kSlide = 13,  // [m] of slide along z
+  kRotation0 = 0,  // rotation of the node against its parent's at zero coordinates
+  kShift0 = 9,     // and its place there; a root is at the origin of its tree
+  kRotation = 12,  // [rad] of turn about z for a unit of the coordinate
+  kSlide = 13,     // [m] of slide along z
   kMass = 14,
   kCentre = 15,  // centre of mass
   kSpin = 18,    // central inertia: kSpin 1 + a a^T + b b^T, two axes of a length
@@ -87,7 +87,7 @@ enum Constant : int {
   kArmature = 25,
   kDamping = 26,
   kComposite = 27,  // mass of all that hangs on it, itself included
-  kLeast = 28,      // what of Omega may be rounding (layout.cpp)
+  kMin = 28,        // what of Omega may be rounding (layout.cpp)
   kConstants = 29
 };
 
@@ -126,14 +126,14 @@ struct Layout {
 template <class B>
 struct Tree {
   std::vector<Node<B>> nodes;
-  std::vector<LinkPlace<B>> places;  // of the links
+  std::vector<LinkFrame<B>> frames;  // of the links
   std::vector<LinkSpec> links;
   int coordinates = 0, velocities = 0;
 
   // Made of the above (layout.cpp).
   std::vector<Slot> slots;
   std::vector<Vec3T<B>> roots;  // where they are at zero coordinates
-  int inflow_places = Slot::kOthers;
+  int child_slots = Slot::kOthers;
   // The slots on the way from the world to each slot, itself included; without free roots.
   std::vector<SlotRun> runs;
   std::vector<int> first_run;  // of each slot; one more for the end

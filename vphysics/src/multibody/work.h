@@ -160,7 +160,7 @@ se3T<T> factored_column_of(const Tree<base_t<T>>& tree, const Work<T>& work, int
 // What factoring has left of such a column: the articulated inertia times it, without what the
 // columns after it have taken out, by Omega; and 1 / Omega.
 template <class T>
-dse3T<T> gain_of(const Tree<base_t<T>>& tree, const Work<T>& work, int node, int k) {
+dse3T<T> projected_wrench_of(const Tree<base_t<T>>& tree, const Work<T>& work, int node, int k) {
   const int velocity = tree.nodes[static_cast<std::size_t>(node)].v + k;
   return work.factors[static_cast<std::size_t>(velocity)].W;
 }

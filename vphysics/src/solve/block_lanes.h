@@ -43,30 +43,30 @@ class BlockLanes {
     lanes::gather8<W>([this](int i) { return row_b(i).velocity; }, r);
     take_velocity(r, v_b, w_b, mass_b_, falls_b);
   }
-  void gather_velocities_and_ways() {
+  void gather_velocities_and_displacements() {
     F r[16];
     lanes::gather16<W>([this](int i) { return first_line(row_a(i)); }, r);
     take_velocity(r, v_a, w_a, mass_a_, falls_a);
-    take_way(r + 8, x_a, turn_a, carried_a_, share_less_one_a_);
+    read_displacement(r + 8, x_a, turn_a, carried_a_, fraction_minus_one_a_);
     lanes::gather16<W>([this](int i) { return first_line(row_b(i)); }, r);
     take_velocity(r, v_b, w_b, mass_b_, falls_b);
-    take_way(r + 8, x_b, turn_b, carried_b_, share_less_one_b_);
+    read_displacement(r + 8, x_b, turn_b, carried_b_, fraction_minus_one_b_);
   }
   void scatter_velocities() const { scatter_velocities(F(0.0f) < F(1.0f)); }
   // Of those lanes.
   void scatter_velocities(const LaneMask<W>& of) const {
     const F a[8] = {v_a.x, v_a.y, v_a.z, w_a.x, w_a.y, w_a.z, mass_a_, falls_a};
     const F b[8] = {v_b.x, v_b.y, v_b.z, w_b.x, w_b.y, w_b.z, mass_b_, falls_b};
-    scatter([this](int i) { return row_a(i).velocity; }, a, both(pushes_a(), of));
-    scatter([this](int i) { return row_b(i).velocity; }, b, both(pushes_b(), of));
+    scatter([this](int i) { return row_a(i).velocity; }, a, both(is_movable_a(), of));
+    scatter([this](int i) { return row_b(i).velocity; }, b, both(is_movable_b(), of));
   }
-  void scatter_ways() const {
+  void scatter_displacements() const {
     const F a[8] = {x_a.x,    x_a.y,    x_a.z,      turn_a.x,
-                    turn_a.y, turn_a.z, carried_a_, share_less_one_a_};
+                    turn_a.y, turn_a.z, carried_a_, fraction_minus_one_a_};
     const F b[8] = {x_b.x,    x_b.y,    x_b.z,      turn_b.x,
-                    turn_b.y, turn_b.z, carried_b_, share_less_one_b_};
-    scatter([this](int i) { return row_a(i).way; }, a, pushes_a());
-    scatter([this](int i) { return row_b(i).way; }, b, pushes_b());
+                    turn_b.y, turn_b.z, carried_b_, fraction_minus_one_b_};
+    scatter([this](int i) { return row_a(i).displacement; }, a, is_movable_a());
+    scatter([this](int i) { return row_b(i).displacement; }, b, is_movable_b());
   }
   // Accelerations by the forces matter to bounces alone.
   void gather_accelerations(V& a, V& b) const {
@@ -78,17 +78,17 @@ class BlockLanes {
   }
 
   // Impulses on both, moments about their centres of mass.
-  void push(const V& linear_a, const V& angular_a, const V& linear_b, const V& angular_b) {
+  void apply_impulse(const V& linear_a, const V& angular_a, const V& linear_b, const V& angular_b) {
     v_a += mass_a_ * linear_a;
     v_b += mass_b_ * linear_b;
     w_a += get(block_.inertia_a) * angular_a;
     w_b += get(block_.inertia_b) * angular_b;
   }
-  void push_linear(const V& p) {
+  void apply_linear(const V& p) {
     v_a -= mass_a_ * p;
     v_b += mass_b_ * p;
   }
-  void push_angular(const V& on_a, const V& on_b) {
+  void apply_angular(const V& on_a, const V& on_b) {
     w_a -= get(block_.inertia_a) * on_a;
     w_b += get(block_.inertia_b) * on_b;
   }
@@ -96,7 +96,7 @@ class BlockLanes {
   const F& inverse_mass_a() const { return mass_a_; }
   const F& inverse_mass_b() const { return mass_b_; }
   // Of a push: the smaller one of the two. Precondition: ways were gathered.
-  F share() const { return F(1.0f) + smaller(share_less_one_a_, share_less_one_b_); }
+  F fraction() const { return F(1.0f) + smaller(fraction_minus_one_a_, fraction_minus_one_b_); }
   // Of a displacement of b against a: what a does of it, and what b does.
   void split(F& by_a, F& by_b) const {
     const F both = mass_a_ + mass_b_;
@@ -105,13 +105,13 @@ class BlockLanes {
     by_b = mass_b_ * inverse;
   }
   // Lanes whose a, or b, impulses move.
-  LaneMask<W> pushes_a() const { return mass_a_ > F(0.0f); }
-  LaneMask<W> pushes_b() const { return mass_b_ > F(0.0f); }
+  LaneMask<W> is_movable_a() const { return mass_a_ > F(0.0f); }
+  LaneMask<W> is_movable_b() const { return mass_b_ > F(0.0f); }
 
   // Of bodies that can be carried: those that cannot may be of several lanes.
   void mark_carried(int i) const {
     for (BodyRow* row : {&row_a(i), &row_b(i)}) {
-      if (row->velocity[kInverseMass] > 0.0f) row->way[kCarried] = 1.0f;
+      if (row->velocity[kInverseMass] > 0.0f) row->displacement[kCarried] = 1.0f;
     }
   }
 
@@ -121,23 +121,23 @@ class BlockLanes {
  private:
   BodyRow& row_a(int i) const { return rows_[block_.a.lane[at_ + i]]; }
   BodyRow& row_b(int i) const { return rows_[block_.b.lane[at_ + i]]; }
-  template <class Place>
-  void load_inertias(const Place& place, FieldSym3& inertia) const {
+  template <class ContactSlot>
+  void load_inertias(const ContactSlot& slot, FieldSym3& inertia) const {
     F r[8];
-    lanes::gather8<W>(place, r);
+    lanes::gather8<W>(slot, r);
     Field* const to[6] = {&inertia.xx, &inertia.yy, &inertia.zz,
                           &inertia.xy, &inertia.yz, &inertia.zx};
     for (int f = 0; f < 6; ++f) put(*to[f], r[f]);
   }
   // What nothing pushes keeps its row, which several lanes, and workers, may read. Empty lanes are
   // of the world's.
-  template <class Place>
-  static void scatter(const Place& place, const F* values, const LaneMask<W>& pushed) {
+  template <class ContactSlot>
+  static void scatter(const ContactSlot& slot, const F* values, const LaneMask<W>& pushed) {
     const unsigned bits = lanes::bits_of(pushed);
     if (bits == lanes::kAllBits<W>) {
-      lanes::scatter8<W>(place, values, [](int) { return true; });
+      lanes::scatter8<W>(slot, values, [](int) { return true; });
     } else {
-      lanes::scatter8<W>(place, values, [bits](int i) { return (bits >> i & 1u) != 0; });
+      lanes::scatter8<W>(slot, values, [bits](int i) { return (bits >> i & 1u) != 0; });
     }
   }
   static const float* first_line(const BodyRow& row) {
@@ -149,17 +149,17 @@ class BlockLanes {
     mass = r[kInverseMass];
     falls = r[kFalls];
   }
-  static void take_way(const F* r, V& x, V& turn, F& carried, F& share_less_one) {
+  static void read_displacement(const F* r, V& x, V& rotation, F& carried, F& fraction_minus_one) {
     x = {r[0], r[1], r[2]};
-    turn = {r[3], r[4], r[5]};
+    rotation = {r[3], r[4], r[5]};
     carried = r[kCarried];
-    share_less_one = r[kShareLessOne];
+    fraction_minus_one = r[kFractionMinusOne];
   }
 
   Block& block_;
   int at_;
   BodyRow* rows_;
-  F mass_a_, mass_b_, carried_a_, carried_b_, share_less_one_a_, share_less_one_b_;
+  F mass_a_, mass_b_, carried_a_, carried_b_, fraction_minus_one_a_, fraction_minus_one_b_;
 };
 
 }  // namespace vp::solve

@@ -17,16 +17,16 @@ struct alignas(64) BodyRow {
   // Way of the centre of mass since the row was last rebased [m], and its turning, the sum of small
   // rotation vectors [rad]; 1 if something carried it in this step, else 0; the
   // share of the fastest push that each of its contacts has, less 1: 0 unless they are many.
-  float way[8];
+  float displacement[8];
   // Inverse rotational inertia xx yy zz xy yz zx; the shares of v and of w that damping leaves in a
   // sub-step.
   float inertia[8];
   // What the forces add: acceleration [m/s^2], angular acceleration [rad/s^2]; 0, 0.
   float rate[8];
 };
-inline constexpr int kInverseMass = 6, kFalls = 7;       // in velocity
-inline constexpr int kKeepLinear = 6, kKeepAngular = 7;  // in inertia
-inline constexpr int kCarried = 6, kShareLessOne = 7;    // in way
+inline constexpr int kInverseMass = 6, kFalls = 7;         // in velocity
+inline constexpr int kKeepLinear = 6, kKeepAngular = 7;    // in inertia
+inline constexpr int kCarried = 6, kFractionMinusOne = 7;  // in way
 static_assert(sizeof(BodyRow) == 128);
 
 inline constexpr std::uint32_t kWorldRow = 0;

@@ -62,11 +62,11 @@ struct ContactBlock {
 
   // Not of the hot passes.
   Field restitution;
-  Field closing;  // the fastest approach seen in this step [m/s]
-  Field impact;   // the impulse of its bounces [N s]; both are zero when a step begins
+  Field approach_speed;  // the fastest approach seen in this step [m/s]
+  Field impact;          // the impulse of its bounces [N s]; both are zero when a step begins
   // Where the two were when the geometry was last computed (find_moved).
   Field3 slid;  // relative displacement at the grip
-  Field3 turned_a, turned_b;
+  Field3 rotated_a, rotated_b;
   Field slid_limit;  // how far they may slide by until it is computed again [m]
 };
 
@@ -81,7 +81,7 @@ static_assert(sizeof(ContactBlock<1>) == 66 * sizeof(Field));
 
 inline constexpr std::uint32_t kNoContact = 0xffffffffu;
 // A separation that no point comes near: of those that are not there.
-inline constexpr float kFarApart = 1e9f;
+inline constexpr float kFarSeparated = 1e9f;
 
 }  // namespace vphysics_solver
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "solve/body_row.h"
-#include "solve/lane_copy.h"
+#include "solve/slot_copy.h"
 
 namespace vp::solve {
 namespace {
@@ -23,7 +23,7 @@ const ContactBlock<P>& empty_block() {
     std::memset(static_cast<void*>(&empty), 0, sizeof empty);
     for (std::uint32_t& c : empty.contact.lane) c = kNoContact;
     for (Field& base : empty.base) {
-      for (float& s : base.lane) s = kFarApart;
+      for (float& s : base.lane) s = kFarSeparated;
     }
     return empty;
   }();
@@ -31,8 +31,8 @@ const ContactBlock<P>& empty_block() {
 }
 
 template <int P>
-void clear_lane(ContactBlock<P>& block, int lane) {
-  copy_lane(empty_block<P>(), 0, block, lane);
+void clear_slot(ContactBlock<P>& block, int lane) {
+  copy_slot(empty_block<P>(), 0, block, lane);
 }
 
 }  // namespace
@@ -49,11 +49,11 @@ void ContactGraph::reserve(std::size_t bodies) {
   const double faces =
       within == 0 ? 0.0 : std::min(1.0, 2.0 / std::cbrt(all / static_cast<double>(within)));
   for (std::size_t region = 0; region < regions(); ++region) {
-    const std::size_t share = within == 0          ? bodies
-                              : region == kBetween ? static_cast<std::size_t>(faces * all)
-                                                   : bodies / within + 1;
-    if (within > 0 && share < 2 * kLanes) continue;  // a block of each colour would be too much
-    const std::size_t blocks = share / (2 * kLanes) + 1;
+    const std::size_t fraction = within == 0          ? bodies
+                                 : region == kBetween ? static_cast<std::size_t>(faces * all)
+                                                      : bodies / within + 1;
+    if (within > 0 && fraction < 2 * kLanes) continue;  // a block of each colour would be too much
+    const std::size_t blocks = fraction / (2 * kLanes) + 1;
     for (int c = 0; c < kFirstFixedColour + kReadyFixed; ++c) {
       if (c >= kReady && c < kFirstFixedColour) continue;
       of<1>(region, c).blocks.reserve(blocks);
@@ -85,14 +85,14 @@ int ContactGraph::free_colour(const End& a, const End& b) const {
   return taken.lowest_free(!a.moves || !b.moves);
 }
 
-Place ContactGraph::add(std::uint32_t contact, const End& a, const End& b, int points) {
-  Place place;
-  (void)append(contact, a, b, points, free_colour(a, b), place);
-  return place;
+ContactSlot ContactGraph::add(std::uint32_t contact, const End& a, const End& b, int points) {
+  ContactSlot slot;
+  (void)append(contact, a, b, points, free_colour(a, b), slot);
+  return slot;
 }
 
 bool ContactGraph::append(std::uint32_t contact, const End& a, const End& b, int points, int colour,
-                          Place& place) {
+                          ContactSlot& slot) {
   if ((!a.moves || !b.moves) && colour < kFirstFixedColour) return false;
   if (colour < kLastColour) {
     if ((a.moves && taken_[a.row].has(colour)) || (b.moves && taken_[b.row].has(colour))) {
@@ -101,45 +101,45 @@ bool ContactGraph::append(std::uint32_t contact, const End& a, const End& b, int
     if (a.moves) taken_[a.row].insert(colour);
     if (b.moves) taken_[b.row].insert(colour);
   }
-  place.points = static_cast<std::uint8_t>(points);
-  place.colour = static_cast<std::uint8_t>(colour);
-  place.region = colour == kParked ? kBetween : region_of(a, b);
-  points == 1 ? add_lane<1>(contact, a, b, place) : add_lane<4>(contact, a, b, place);
+  slot.points = static_cast<std::uint8_t>(points);
+  slot.colour = static_cast<std::uint8_t>(colour);
+  slot.region = colour == kParked ? kBetween : region_of(a, b);
+  points == 1 ? add_slot<1>(contact, a, b, slot) : add_slot<4>(contact, a, b, slot);
   return true;
 }
 
-std::uint32_t ContactGraph::remove(const Place& place, const End& a, const End& b) {
-  if (place.colour < kLastColour) {
-    if (a.moves) taken_[a.row].erase(place.colour);
-    if (b.moves) taken_[b.row].erase(place.colour);
+std::uint32_t ContactGraph::remove(const ContactSlot& slot, const End& a, const End& b) {
+  if (slot.colour < kLastColour) {
+    if (a.moves) taken_[a.row].erase(slot.colour);
+    if (b.moves) taken_[b.row].erase(slot.colour);
   }
-  return place.points == 1 ? remove_lane<1>(place) : remove_lane<4>(place);
+  return slot.points == 1 ? remove_slot<1>(slot) : remove_slot<4>(slot);
 }
 
 // What one region has come to need, others will: room is made in all of them at once. Not of the
 // last colour: a body with hundreds of contacts fills that where it is, with a block for each.
 template <int P>
-void ContactGraph::make_room(const Place& place) {
-  const std::size_t room = 2 * of<P>(place.region, place.colour).blocks.capacity() + 1;
-  const bool of_all = place.region != kBetween && place.colour != kLastColour;
+void ContactGraph::ensure_capacity(const ContactSlot& slot) {
+  const std::size_t capacity = 2 * of<P>(slot.region, slot.colour).blocks.capacity() + 1;
+  const bool of_all = slot.region != kBetween && slot.colour != kLastColour;
   for (std::size_t region = 1; of_all && region < regions(); ++region) {
-    of<P>(region, place.colour).blocks.reserve(room);
+    of<P>(region, slot.colour).blocks.reserve(capacity);
   }
-  of<P>(place.region, place.colour).blocks.reserve(room);
+  of<P>(slot.region, slot.colour).blocks.reserve(capacity);
 }
 
 template <int P>
-void ContactGraph::add_lane(std::uint32_t contact, const End& a, const End& b, Place& place) {
-  ColourBlocks<P>& colour = of<P>(place.region, place.colour);
-  if (place.colour < kColours) regions_[place.region].in_use.insert(place.colour);
-  place.index = colour.lanes++;
-  const std::size_t block = ColourBlocks<P>::block_of(place.index, place.colour);
-  const int lane = ColourBlocks<P>::lane_of(place.index, place.colour);
+void ContactGraph::add_slot(std::uint32_t contact, const End& a, const End& b, ContactSlot& slot) {
+  ColourBlocks<P>& colour = of<P>(slot.region, slot.colour);
+  if (slot.colour < kColours) regions_[slot.region].in_use.insert(slot.colour);
+  slot.index = colour.lanes++;
+  const std::size_t block = ColourBlocks<P>::block_of(slot.index, slot.colour);
+  const int lane = ColourBlocks<P>::lane_of(slot.index, slot.colour);
   if (block == colour.blocks.size()) {
-    if (block == colour.blocks.capacity()) make_room<P>(place);
+    if (block == colour.blocks.capacity()) ensure_capacity<P>(slot);
     colour.blocks.push_back(empty_block<P>());
   } else {
-    clear_lane(colour.blocks[block], lane);  // passes write into empty lanes, too
+    clear_slot(colour.blocks[block], lane);  // passes write into empty lanes, too
   }
   ContactBlock<P>& to = colour.blocks[block];
   to.a.lane[lane] = a.row;
@@ -148,47 +148,47 @@ void ContactGraph::add_lane(std::uint32_t contact, const End& a, const End& b, P
 }
 
 template <int P>
-std::uint32_t ContactGraph::remove_lane(const Place& place) {
-  ColourBlocks<P>& colour = of<P>(place.region, place.colour);
-  Place last = place;
+std::uint32_t ContactGraph::remove_slot(const ContactSlot& slot) {
+  ColourBlocks<P>& colour = of<P>(slot.region, slot.colour);
+  ContactSlot last = slot;
   last.index = --colour.lanes;
   ContactBlock<P>& from = block<P>(last);
   std::uint32_t moved = kNoContact;
-  if (last.index != place.index) {
-    copy_lane(from, lane(last), block<P>(place), lane(place));
-    moved = block<P>(place).contact.lane[lane(place)];
+  if (last.index != slot.index) {
+    copy_slot(from, lane(last), block<P>(slot), lane(slot));
+    moved = block<P>(slot).contact.lane[lane(slot)];
   }
-  clear_lane(from, lane(last));
-  if (place.colour == kLastColour || last.index % kLanes == 0) colour.blocks.pop_back();
-  Region& region = regions_[place.region];
-  if (place.colour < kColours &&
-      region.ones[place.colour].lanes + region.fours[place.colour].lanes == 0) {
-    region.in_use.erase(place.colour);
+  clear_slot(from, lane(last));
+  if (slot.colour == kLastColour || last.index % kLanes == 0) colour.blocks.pop_back();
+  Region& region = regions_[slot.region];
+  if (slot.colour < kColours &&
+      region.ones[slot.colour].lanes + region.fours[slot.colour].lanes == 0) {
+    region.in_use.erase(slot.colour);
   }
   return moved;
 }
 
 template <int P>
-std::uint32_t ContactGraph::move_lane(Place& place, const End& a, const End& b, int colour) {
-  const Place from = place;
-  (void)append(block<P>(from).contact.lane[lane(from)], a, b, P, colour, place);
-  copy_lane(block<P>(from), lane(from), block<P>(place), lane(place));
+std::uint32_t ContactGraph::move_slot(ContactSlot& slot, const End& a, const End& b, int colour) {
+  const ContactSlot from = slot;
+  (void)append(block<P>(from).contact.lane[lane(from)], a, b, P, colour, slot);
+  copy_slot(block<P>(from), lane(from), block<P>(slot), lane(slot));
   return remove(from, a, b);
 }
 
-std::uint32_t ContactGraph::follow(Place& place, const End& a, const End& b) {
-  const Place from = place;
-  place.region = region_of(a, b);
-  if (place.region == from.region) return kNoContact;
+std::uint32_t ContactGraph::follow(ContactSlot& slot, const End& a, const End& b) {
+  const ContactSlot from = slot;
+  slot.region = region_of(a, b);
+  if (slot.region == from.region) return kNoContact;
   const auto move = [&]<int P>() {
-    add_lane<P>(block<P>(from).contact.lane[lane(from)], a, b, place);
-    copy_lane(block<P>(from), lane(from), block<P>(place), lane(place));
-    return remove_lane<P>(from);
+    add_slot<P>(block<P>(from).contact.lane[lane(from)], a, b, slot);
+    copy_slot(block<P>(from), lane(from), block<P>(slot), lane(slot));
+    return remove_slot<P>(from);
   };
   return from.points == 1 ? move.template operator()<1>() : move.template operator()<4>();
 }
 
-template std::uint32_t ContactGraph::move_lane<1>(Place&, const End&, const End&, int);
-template std::uint32_t ContactGraph::move_lane<4>(Place&, const End&, const End&, int);
+template std::uint32_t ContactGraph::move_slot<1>(ContactSlot&, const End&, const End&, int);
+template std::uint32_t ContactGraph::move_slot<4>(ContactSlot&, const End&, const End&, int);
 
 }  // namespace vp::solve

@@ -66,7 +66,7 @@ static_assert(kColours == 128 && kFirstFixedColour == 64);
 inline constexpr std::uint16_t kBetween = 0;
 
 // Where a contact's lane is; points: 1 or 4, or 0 for nowhere.
-struct Place {
+struct ContactSlot {
   std::uint8_t points = 0, colour = 0;
   std::uint16_t region = kBetween;
   std::uint32_t index = 0;  // of the lane, among all of its region, colour and kind
@@ -104,41 +104,39 @@ class ContactGraph {
     std::uint16_t region;
   };
   // An empty lane for the contact; all its fields are zero but the rows and the contact.
-  Place add(std::uint32_t contact, const End& a, const End& b, int points);
+  ContactSlot add(std::uint32_t contact, const End& a, const End& b, int points);
   // The same at the end of a given colour, as when a state is restored; false if that is not open
   // to it.
   bool append(std::uint32_t contact, const End& a, const End& b, int points, int colour,
-              Place& place);
+              ContactSlot& slot);
   // Returns the contact whose lane was moved to fill the gap, or kNoContact: its place is now this
   // one's.
-  std::uint32_t remove(const Place& place, const End& a, const End& b);
+  std::uint32_t remove(const ContactSlot& slot, const End& a, const End& b);
   // Puts a lane aside as it is, or back into a colour; place becomes its new one. Returns as
   // remove() does, of the old place.
-  std::uint32_t park(Place& place, const End& a, const End& b) {
-    return place.points == 1 ? move_lane<1>(place, a, b, kParked)
-                             : move_lane<4>(place, a, b, kParked);
+  std::uint32_t park(ContactSlot& slot, const End& a, const End& b) {
+    return slot.points == 1 ? move_slot<1>(slot, a, b, kParked) : move_slot<4>(slot, a, b, kParked);
   }
-  std::uint32_t unpark(Place& place, const End& a, const End& b) {
+  std::uint32_t unpark(ContactSlot& slot, const End& a, const End& b) {
     const int colour = free_colour(a, b);
-    return place.points == 1 ? move_lane<1>(place, a, b, colour)
-                             : move_lane<4>(place, a, b, colour);
+    return slot.points == 1 ? move_slot<1>(slot, a, b, colour) : move_slot<4>(slot, a, b, colour);
   }
 
   // To the region that its ends are in now, in its colour. Precondition: it is not put aside.
   // Returns as remove() does, of the old place.
-  std::uint32_t follow(Place& place, const End& a, const End& b);
+  std::uint32_t follow(ContactSlot& slot, const End& a, const End& b);
 
   template <int P>
-  ContactBlock<P>& block(const Place& place) {
-    return of<P>(place.region, place.colour)
-        .blocks[ColourBlocks<P>::block_of(place.index, place.colour)];
+  ContactBlock<P>& block(const ContactSlot& slot) {
+    return of<P>(slot.region, slot.colour)
+        .blocks[ColourBlocks<P>::block_of(slot.index, slot.colour)];
   }
   template <int P>
-  const ContactBlock<P>& block(const Place& place) const {
-    return const_cast<ContactGraph*>(this)->block<P>(place);
+  const ContactBlock<P>& block(const ContactSlot& slot) const {
+    return const_cast<ContactGraph*>(this)->block<P>(slot);
   }
-  static int lane(const Place& place) {
-    return ColourBlocks<1>::lane_of(place.index, place.colour);
+  static int lane(const ContactSlot& slot) {
+    return ColourBlocks<1>::lane_of(slot.index, slot.colour);
   }
   // Of which the region has lanes of either kind.
   const ColourSet& colours_in_use(std::size_t region) const { return regions_[region].in_use; }
@@ -169,13 +167,13 @@ class ContactGraph {
 
  private:
   template <int P>
-  void make_room(const Place& place);
+  void ensure_capacity(const ContactSlot& slot);
   template <int P>
-  void add_lane(std::uint32_t contact, const End& a, const End& b, Place& place);
+  void add_slot(std::uint32_t contact, const End& a, const End& b, ContactSlot& slot);
   template <int P>
-  std::uint32_t remove_lane(const Place& place);
+  std::uint32_t remove_slot(const ContactSlot& slot);
   template <int P>
-  std::uint32_t move_lane(Place& place, const End& a, const End& b, int colour);
+  std::uint32_t move_slot(ContactSlot& slot, const End& a, const End& b, int colour);
   int free_colour(const End& a, const End& b) const;
 
   struct Region {

@@ -46,10 +46,10 @@ struct Normals {
   // n . linear + (d x n) . turn_b + arm . (turn_b - turn_a), for all points.
   void along(const V& linear, const V& turn_a, const V& turn_b, F* out) const {
     const F common = dot(n, linear) + dot(d_n, turn_b);
-    const V turn = turn_b - turn_a;
-    const F turn_t = dot(t, turn), turn_about_b = dot(b, turn);
+    const V rotation = turn_b - turn_a;
+    const F angular_t = dot(t, rotation), angular_about_b = dot(b, rotation);
     for (int i = 0; i < P; ++i) {
-      out[i] = common + (arm_t[i] * turn_t + arm_b[i] * turn_about_b);
+      out[i] = common + (arm_t[i] * angular_t + arm_b[i] * angular_about_b);
     }
   }
   void speeds(const LanesOf<W, P>& c, F* u) const { along(c.v_b - c.v_a, c.w_a, c.w_b, u); }
@@ -58,7 +58,7 @@ struct Normals {
     for (int i = 0; i < P; ++i) s[i] += c.get(c.block().base[i]);
   }
   // Gives the bodies the changes of the points' impulses.
-  void push(LanesOf<W, P>& c, const F* change) const {
+  void apply_impulse(LanesOf<W, P>& c, const F* change) const {
     F sum = change[0], moment_t = change[0] * arm_t[0], moment_b = change[0] * arm_b[0];
     for (int i = 1; i < P; ++i) {
       sum += change[i];
@@ -66,8 +66,8 @@ struct Normals {
       moment_b += change[i] * arm_b[i];
     }
     const V moment = moment_t * t + moment_b * b;
-    c.push_linear(sum * n);
-    c.push_angular(moment, moment + sum * d_n);
+    c.apply_linear(sum * n);
+    c.apply_angular(moment, moment + sum * d_n);
   }
 
   V n, t, b, d_n;
@@ -93,9 +93,9 @@ class Points {
  public:
   using F = Lanes<W>;
 
-  Points(const LanesOf<W, P>& c, const F* mass, const F* share, const F* u0, const F* p0) {
+  Points(const LanesOf<W, P>& c, const F* mass, const F* fraction, const F* u0, const F* p0) {
     for (int i = 0; i < P; ++i) {
-      F e = share[i] * p0[i] - mass[i] * u0[i];
+      F e = fraction[i] * p0[i] - mass[i] * u0[i];
       for (int j = 0; j < P; ++j) {
         if (j == i) continue;
         k_[i][j] = mass[i] * c.get(c.block().off_diagonal[pair_index(i, j)]);
@@ -105,7 +105,7 @@ class Points {
     }
   }
   // Where it may also pull.
-  F wanted(int i, const F* p) const {
+  F target(int i, const F* p) const {
     F x = e_[i];
     for (int j = 1; j < P; ++j) {  // what has changed last comes last
       const int other = (i + j) % P;
@@ -114,7 +114,7 @@ class Points {
     return x;
   }
   // Where no point carries anything: m_i times the speed of closing that is left.
-  const F& closing(int i) const { return e_[i]; }
+  const F& approach_speed(int i) const { return e_[i]; }
 
  private:
   F e_[P], k_[P][P];
@@ -128,7 +128,7 @@ LaneMask<W> neither_bounces_nor_comes_to_touch(const LaneMask<W>& loaded, const 
 
 // Of the load: a contact that a round of pushing has changed by less is left alone by those after
 // it. Ten times as much does for piles, but a wall then takes longer to come to rest.
-inline constexpr float kSettledForNow = 1e-4f;
+inline constexpr float kConvergedForNow = 1e-4f;
 
 // --- friction
 // -------------------------------------------------------------------------------------
@@ -150,33 +150,34 @@ struct Grip {
 // 2x2 block where it sticks; where it slides by one mass, since the block would turn it away from
 // the slip.
 template <int W, int P>
-void grip_or_slide(const LanesOf<W, P>& c, const Lanes<W>* u, const Lanes<W>& most, Lanes<W>* p) {
+void grip_or_slide(const LanesOf<W, P>& c, const Lanes<W>* u, const Lanes<W>& max_value,
+                   Lanes<W>* p) {
   using F = Lanes<W>;
   auto& block = c.block();
   const F q0 = p[0], q1 = p[1], xy = c.get(block.stick[1]);
   p[0] = q0 - (c.get(block.stick[0]) * u[0] + xy * u[1]);
   p[1] = q1 - (xy * u[0] + c.get(block.stick[2]) * u[1]);
-  const auto slides = p[0] * p[0] + p[1] * p[1] > most * most;
+  const auto slides = p[0] * p[0] + p[1] * p[1] > max_value * max_value;
   if (none(slides)) return;
   const F mass = c.get(block.slide);
   const F s0 = q0 - mass * u[0], s1 = q1 - mass * u[1];
   const F size = sqrt(s0 * s0 + s1 * s1);
-  const F share = select(size > most, most / size, F(1.0f));
-  p[0] = select(slides, share * s0, p[0]);
-  p[1] = select(slides, share * s1, p[1]);
+  const F fraction = select(size > max_value, max_value / size, F(1.0f));
+  p[0] = select(slides, fraction * s0, p[0]);
+  p[1] = select(slides, fraction * s1, p[1]);
 }
 
 template <int W>
-LaneMask<W> within(const Lanes<W>& x, const Lanes<W>& most) {
-  return abs(x) <= most;
+LaneMask<W> within(const Lanes<W>& x, const Lanes<W>& max_value) {
+  return abs(x) <= max_value;
 }
 template <int W>
-Lanes<W> clamped(const Lanes<W>& x, const Lanes<W>& most) {
-  return larger(-most, smaller(x, most));
+Lanes<W> clamped(const Lanes<W>& x, const Lanes<W>& max_value) {
+  return larger(-max_value, smaller(x, max_value));
 }
 
 // Only of the lanes `acts`. Returns the lanes of which nothing has changed by more than a share
-// kSettledForNow of the load.
+// kConvergedForNow of the load.
 template <int W, int P>
 LaneMask<W> solve_friction(LanesOf<W, P>& c, const Normals<W, P>& normals,
                            const LaneMask<W>& acts) {
@@ -196,8 +197,8 @@ LaneMask<W> solve_friction(LanesOf<W, P>& c, const Normals<W, P>& normals,
   p[1] = select(acts, p[1], q[1]);
   c.put(block.tangent_impulse[0], p[0]);
   c.put(block.tangent_impulse[1], p[1]);
-  const F enough = F(kSettledForNow) * load;
-  auto settled = both(within(p[0] - q[0], enough), within(p[1] - q[1], enough));
+  const F enough = F(kConvergedForNow) * load;
+  auto converged = both(within(p[0] - q[0], enough), within(p[1] - q[1], enough));
   const V force = (p[0] - q[0]) * at.t + (p[1] - q[1]) * at.b;
 
   const V spin = c.w_b - c.w_a;
@@ -206,25 +207,26 @@ LaneMask<W> solve_friction(LanesOf<W, P>& c, const Normals<W, P>& normals,
       acts, clamped(twist - c.get(block.twist_mass) * dot(n, spin), c.get(block.twist_arm) * load),
       twist);
   c.put(block.twist_impulse, next);
-  settled = both(settled, within(next - twist, c.get(block.twist_arm) * enough));
+  converged = both(converged, within(next - twist, c.get(block.twist_arm) * enough));
   V moment = (next - twist) * n;
   const F mass = c.get(block.roll_mass);
   if (!none(mass > F(0.0f))) {
-    const F most = c.get(block.roll_arm) * load;
+    const F max_value = c.get(block.roll_arm) * load;
     const F r0 = c.get(block.roll_impulse[0]), r1 = c.get(block.roll_impulse[1]);
     const F s0 = r0 - mass * dot(at.t, spin), s1 = r1 - mass * dot(at.b, spin);
     const F size = sqrt(s0 * s0 + s1 * s1);
-    const F share = select(size > most, most / size, F(1.0f));
-    const F e0 = select(acts, share * s0, r0), e1 = select(acts, share * s1, r1);
+    const F fraction = select(size > max_value, max_value / size, F(1.0f));
+    const F e0 = select(acts, fraction * s0, r0), e1 = select(acts, fraction * s1, r1);
     c.put(block.roll_impulse[0], e0);
     c.put(block.roll_impulse[1], e1);
     const F lever = c.get(block.roll_arm);
-    settled = both(settled, both(within(e0 - r0, lever * enough), within(e1 - r1, lever * enough)));
+    converged =
+        both(converged, both(within(e0 - r0, lever * enough), within(e1 - r1, lever * enough)));
     moment += (e0 - r0) * at.t + (e1 - r1) * at.b;
   }
-  c.push_linear(force);
-  c.push_angular(cross(at.r_a, force) + moment, cross(at.r_b, force) + moment);
-  return settled;
+  c.apply_linear(force);
+  c.apply_angular(cross(at.r_a, force) + moment, cross(at.r_b, force) + moment);
+  return converged;
 }
 
 // --- the passes
@@ -239,24 +241,24 @@ void warm_start_lanes(LanesOf<W, P>& c) {
   const Normals<W, P> normals(c);
   F p[P];
   for (int i = 0; i < P; ++i) p[i] = c.get(block.impulse[i]);
-  normals.push(c, p);
+  normals.apply_impulse(c, p);
   const Grip<W, P> at(c, normals);
   const V force = c.get(block.tangent_impulse[0]) * at.t + c.get(block.tangent_impulse[1]) * at.b;
   const V moment = c.get(block.twist_impulse) * normals.n + c.get(block.roll_impulse[0]) * at.t +
                    c.get(block.roll_impulse[1]) * at.b;
-  c.push_linear(force);
-  c.push_angular(cross(at.r_a, force) + moment, cross(at.r_b, force) + moment);
+  c.apply_linear(force);
+  c.apply_angular(cross(at.r_a, force) + moment, cross(at.r_b, force) + moment);
   c.scatter_velocities();
 }
 
 // How often the points of one contact are gone through before the bodies are told.
 inline constexpr int kInnerSweeps = 4;
-inline constexpr float kSettled = 1e-3f;  // of the load: the change of a point that is enough
+inline constexpr float kConverged = 1e-3f;  // of the load: the change of a point that is enough
 inline constexpr float kLargestImpulse = 1e30f;  // [N s]
 
 // first, again: of a sub-step's rounds of pushing, the first and those after it; relax: without the
 // push.
-enum class Round { first, again, relax };
+enum class Pass { first, again, relax };
 
 // A contact deeper than so many of its slid_limit, a hundredth of the smaller shape's half extent,
 // is more than the solver can take out: half of that half extent.
@@ -273,55 +275,56 @@ Lanes<W> deepest_of(const Lanes<W>* s) {
 // The push is as fast with what the loss of the load takes from it; what is still lacking moves the
 // bodies apart: a velocity to which many deep contacts add would stay with them.
 template <int W, int P>
-void push_deep(LanesOf<W, P>& c, const Normals<W, P>& normals, const Soft& soft, const Lanes<W>* u,
-               const Lanes<W>* s, Lanes<W>* bias) {
+void apply_deep(LanesOf<W, P>& c, const Normals<W, P>& normals, const Soft& soft, const Lanes<W>* u,
+                const Lanes<W>* s, Lanes<W>* bias) {
   using F = Lanes<W>;
   auto& block = c.block();
-  const F share = c.share(), zero(0.0f);
+  const F fraction = c.fraction(), zero(0.0f);
   const F by_load = sum_of_impulses(c) * (c.inverse_mass_a() + c.inverse_mass_b());
-  const F fastest = F(soft.fastest_push) * share + F((1.0f - soft.share) / soft.share) * by_load;
-  const F shift = F(soft.fastest_shift) * share;
+  const F fastest =
+      F(soft.max_bias_velocity) * fraction + F((1.0f - soft.fraction) / soft.fraction) * by_load;
+  const F shift = F(soft.fastest_shift) * fraction;
   F lacking(0.0f);
   for (int i = 0; i < P; ++i) {
-    const F wanted = -(F(soft.rate) * s[i]);
-    bias[i] = select(s[i] > zero, bias[i], -smaller(wanted, fastest));
+    const F target = -(F(soft.rate) * s[i]);
+    bias[i] = select(s[i] > zero, bias[i], -smaller(target, fastest));
     c.put(block.bias[i], bias[i]);
-    lacking = larger(lacking, smaller(wanted, shift) - larger(fastest, u[i]));
+    lacking = larger(lacking, smaller(target, shift) - larger(fastest, u[i]));
   }
   F by_a, by_b;
   c.split(by_a, by_b);
-  const F way = F(soft.h) * lacking;
-  c.x_a -= (by_a * way) * normals.n;
-  c.x_b += (by_b * way) * normals.n;
-  c.scatter_ways();
+  const F displacement = F(soft.h) * lacking;
+  c.x_a -= (by_a * displacement) * normals.n;
+  c.x_b += (by_b * displacement) * normals.n;
+  c.scatter_displacements();
 }
 
 // What is wanted beyond the speeds of separation: of a gap, the speed that closes it, which is
 // positive; of what is not open, the push's, negative or zero. Rounds after the first take over
 // what it has found: nothing moves on between them. Returns the lanes that are too deep, of
 // relaxing in the last sub-step.
-template <int W, int P, Round kRound>
+template <int W, int P, Pass kPass>
 LaneMask<W> find_bias(LanesOf<W, P>& c, const Normals<W, P>& normals, const Soft& soft,
                       const Lanes<W>* u, Lanes<W>* bias) {
   using F = Lanes<W>;
   auto& block = c.block();
   LaneMask<W> too_deep = F(0.0f) > F(0.0f);
-  if constexpr (kRound == Round::again) {
+  if constexpr (kPass == Pass::again) {
     for (int i = 0; i < P; ++i) bias[i] = c.get(block.bias[i]);
     return too_deep;
   }
   F s[P];
   normals.separations(c, s);
-  F push(0.0f);
-  if constexpr (kRound == Round::first) push = F(-soft.fastest_push) * c.share();
+  F max_bias(0.0f);
+  if constexpr (kPass == Pass::first) max_bias = F(-soft.max_bias_velocity) * c.fraction();
   for (int i = 0; i < P; ++i) {
-    const F closed = kRound == Round::relax ? F(0.0f) : larger(F(soft.rate) * s[i], push);
+    const F closed = kPass == Pass::relax ? F(0.0f) : larger(F(soft.rate) * s[i], max_bias);
     bias[i] = select(s[i] > F(0.0f), F(soft.inverse_h) * s[i], closed);
-    if constexpr (kRound == Round::first) c.put(block.bias[i], bias[i]);
+    if constexpr (kPass == Pass::first) c.put(block.bias[i], bias[i]);
   }
-  if constexpr (kRound == Round::first) {
-    const auto deep = F(soft.rate) * deepest_of<W, P>(s) < push;
-    if (!none(deep)) push_deep(c, normals, soft, u, s, bias);
+  if constexpr (kPass == Pass::first) {
+    const auto deep = F(soft.rate) * deepest_of<W, P>(s) < max_bias;
+    if (!none(deep)) apply_deep(c, normals, soft, u, s, bias);
   } else if (soft.last) {
     const auto there = c.get(block.inverse[0]) > F(0.0f);  // no empty lane
     too_deep = both(there, deepest_of<W, P>(s) < F(-kTooDeep) * c.get(block.slid_limit));
@@ -330,58 +333,58 @@ LaneMask<W> find_bias(LanesOf<W, P>& c, const Normals<W, P>& normals, const Soft
 }
 
 // True if one is too deep.
-template <int W, int P, Round kRound>
+template <int W, int P, Pass kPass>
 bool solve_lanes(LanesOf<W, P>& c, const Soft& soft) {
   using F = Lanes<W>;
-  constexpr bool kPush = kRound != Round::relax;
+  constexpr bool kUseBias = kPass != Pass::relax;
   auto& block = c.block();
   LaneMask<W> acts = F(0.0f) <= F(0.0f);
-  if constexpr (kRound == Round::again) {
+  if constexpr (kPass == Pass::again) {
     acts = c.get(block.active) > F(0.0f);
     if (none(acts)) return false;
     c.gather_velocities();
   } else {
-    c.gather_velocities_and_ways();
+    c.gather_velocities_and_displacements();
   }
   const Normals<W, P> normals(c);
   const auto grips = solve_friction(c, normals, acts);
 
-  F u[P], bias[P], p0[P], p[P], mass[P], share[P], most[P];
+  F u[P], bias[P], p0[P], p[P], mass[P], fraction[P], max_value[P];
   normals.speeds(c, u);
-  const auto too_deep = find_bias<W, P, kRound>(c, normals, soft, u, bias);
+  const auto too_deep = find_bias<W, P, kPass>(c, normals, soft, u, bias);
   for (int i = 0; i < P; ++i) {
     const auto open = bias[i] > F(0.0f);
     u[i] += bias[i];
     p0[i] = p[i] = c.get(block.impulse[i]);
-    share[i] = kPush ? select(open, F(1.0f), F(soft.share)) : F(1.0f);
-    mass[i] = share[i] * c.get(block.inverse[i]);
-    if constexpr (kRound == Round::again) {
-      share[i] = select(acts, share[i], F(1.0f));
+    fraction[i] = kUseBias ? select(open, F(1.0f), F(soft.fraction)) : F(1.0f);
+    mass[i] = fraction[i] * c.get(block.inverse[i]);
+    if constexpr (kPass == Pass::again) {
+      fraction[i] = select(acts, fraction[i], F(1.0f));
       mass[i] = select(acts, mass[i], F(0.0f));
     }
     // Gaps that close in the next sub-step are its own affair: it may be a bounce.
-    if constexpr (!kPush) most[i] = select(open, p0[i], F(kLargestImpulse));
+    if constexpr (!kUseBias) max_value[i] = select(open, p0[i], F(kLargestImpulse));
   }
-  const Points<W, P> points(c, mass, share, u, p0);
+  const Points<W, P> points(c, mass, fraction, u, p0);
   const auto sweep = [&](const auto& next_of) {
     F moved(0.0f), load(0.0f);
     for (int i = 0; i < P; ++i) {
-      F next = larger(points.wanted(i, p), F(0.0f));
-      if constexpr (!kPush) next = smaller(next, most[i]);
+      F next = larger(points.target(i, p), F(0.0f));
+      if constexpr (!kUseBias) next = smaller(next, max_value[i]);
       next = next_of(next, p[i]);
       moved = larger(moved, abs(next - p[i]));
       load += next;
       p[i] = next;
     }
-    return moved <= F(kSettled) * load;
+    return moved <= F(kConverged) * load;
   };
-  auto settled = sweep([](const F& next, const F&) { return next; });
-  for (int k = 1; P > 1 && k < kInnerSweeps && !all(settled); ++k) {
+  auto converged = sweep([](const F& next, const F&) { return next; });
+  for (int k = 1; P > 1 && k < kInnerSweeps && !all(converged); ++k) {
     // A lane that has settled stays as it is, so that it does not matter which others it is with.
-    const auto before_it = settled;
+    const auto before_it = converged;
     const auto more =
         sweep([&](const F& next, const F& last) { return select(before_it, last, next); });
-    settled = either(before_it, more);
+    converged = either(before_it, more);
   }
   F change[P], load(0.0f), moved(0.0f);
   auto quiet = F(0.0f) <= F(0.0f);
@@ -391,17 +394,17 @@ bool solve_lanes(LanesOf<W, P>& c, const Soft& soft) {
     load += p[i];
     moved = larger(moved, abs(change[i]));
     // Of what carries nothing.
-    quiet = both(quiet, points.closing(i) + F(soft.reach) * mass[i] <= F(0.0f));
+    quiet = both(quiet, points.approach_speed(i) + F(soft.idle_speed) * mass[i] <= F(0.0f));
   }
-  normals.push(c, change);
+  normals.apply_impulse(c, change);
   c.scatter_velocities();
   const auto loaded = load > F(0.0f);
-  if constexpr (kPush) {
-    const auto rests = both(moved <= F(kSettledForNow) * load, either(loaded, quiet));
+  if constexpr (kUseBias) {
+    const auto rests = both(moved <= F(kConvergedForNow) * load, either(loaded, quiet));
     // What was left alone stays so: whether it was looked at turns on the lanes beside it.
     c.put(block.active, select(both(acts, !both(grips, rests)), F(1.0f), F(0.0f)));
   } else {
-    c.put(block.given, F(soft.kept) * c.get(block.given) + load);
+    c.put(block.given, F(soft.keeps_load) * c.get(block.given) + load);
     const auto idle = neither_bounces_nor_comes_to_touch(loaded, c.get(block.restitution));
     const auto there = c.get(block.inverse[0]) > F(0.0f);  // no empty lane
     c.put(block.active, select(both(!idle, there), F(1.0f), F(0.0f)));

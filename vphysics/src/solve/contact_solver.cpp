@@ -34,23 +34,23 @@ namespace {
 
 // With few contacts more rounds cost little, and a light ball between heavy men needs them: the
 // error shrinks by M / (M + m) a round. The rounds asked for are multiplied by kFewContacts /
-// contacts, at most kMostRounds times.
+// contacts, at most kMaxIterations times.
 constexpr std::size_t kFewContacts = 32;
-constexpr std::size_t kMostRounds = 8;
+constexpr std::size_t kMaxIterations = 8;
 // A small island that settles within so many, as one that stood in the last step too, needs no
 // matrix.
-constexpr int kRoundsWithoutMatrix = 3;
+constexpr int kIterationsWithoutMatrix = 3;
 // Share of the penetration beyond the slop that one solve takes out, the most it takes out [m], and
 // its rounds. A larger share makes stacks nervous.
-constexpr double kCorrectedShare = 0.2;
-constexpr double kMostCorrected = 0.002;
-constexpr int kCorrectionRounds = 8;
+constexpr double kCorrectionFraction = 0.2;
+constexpr double kMaxCorrected = 0.002;
+constexpr int kCorrectionIterations = 8;
 
 // Two links of a tree of which one hardly moves without the other along their normal, as two that
 // overlap near the joints between them, would have to swing far to come apart. Where they answer an
 // impulse on both by less than this share of what they answer each alone, they are pushed out by
 // less, so that joints go no faster for it than at that share.
-constexpr double kLeastLeverage = 0.01;
+constexpr double kMinLeverage = 0.01;
 
 // The speed along d2 that a unit impulse along d1 gives at a point; r1 and r2 are their rows.
 double response(const SolverBody& a, const SolverBody& b, const ContactConstraint& c,
@@ -97,31 +97,31 @@ double rolling_mass(const SolverBody& a, const SolverBody& b, const ContactConst
   const double x = std::fabs(K.xx) + std::fabs(K.xy) + std::fabs(K.zx);
   const double y = std::fabs(K.xy) + std::fabs(K.yy) + std::fabs(K.yz);
   const double z = std::fabs(K.zx) + std::fabs(K.yz) + std::fabs(K.zz);
-  const double most = std::max({x, y, z});
-  return most > 0.0 ? 1.0 / most : 0.0;
+  const double max_value = std::max({x, y, z});
+  return max_value > 0.0 ? 1.0 / max_value : 0.0;
 }
 
 void prepare_approach(const StepContext& s, const SolverBody& a, const SolverBody& b,
                       const ContactConstraint& c, ContactPoint& p) {
   const Vec3 forced =
       b.forced_v + cross(b.forced_w, p.arm_b) - a.forced_v - cross(a.forced_w, p.arm_a);
-  const double closing = -dot(c.normal, relative_velocity(a, b, c, p));
+  const double approach_speed = -dot(c.normal, relative_velocity(a, b, c, p));
   const double gain = -dot(c.normal, forced);  // g dt
   const double left = s.duration / s.step;
   // A swept body is at its contact; its gap is within the tolerance.
-  const double gap = c.swept ? 0.0 : std::max(0.0, p.separation);
+  const double separation = c.swept ? 0.0 : std::max(0.0, p.separation);
   p.early = gain * (left - 0.5);
-  p.fall = 2.0 * gain / s.step * gap;
-  const double speed = std::max(0.0, closing - p.early);
+  p.fall = 2.0 * gain / s.step * separation;
+  const double speed = std::max(0.0, approach_speed - p.early);
   p.approach = std::sqrt(std::max(0.0, speed * speed + p.fall));
-  p.hits = closing - gain * left > s.restitution_threshold;
+  p.hits = approach_speed - gain * left > s.restitution_threshold;
   p.bounces = false;
 }
 
-double corrected_share(const ContactConstraint& c, int row, double k) {
+double correction_fraction(const ContactConstraint& c, int row, double k) {
   if (!of_one_tree(c.side_a, c.side_b)) return 1.0;
   const double each = response(c.side_a, row, row) + response(c.side_b, row, row);
-  return k < kLeastLeverage * each ? std::sqrt(k / (kLeastLeverage * each)) : 1.0;
+  return k < kMinLeverage * each ? std::sqrt(k / (kMinLeverage * each)) : 1.0;
 }
 
 // What is apart may close its gap; what is deep is pushed out, in sub-steps: but for links of one
@@ -129,7 +129,7 @@ double corrected_share(const ContactConstraint& c, int row, double k) {
 double target_of(const StepContext& s, const ContactConstraint& c, const ContactPoint& p) {
   const bool pushed = !of_one_tree(c.side_a, c.side_b);
   const double deep = pushed ? std::max(0.0, -p.separation - s.slop) : 0.0;
-  return std::min(s.push_rate * deep, s.fastest_push) -
+  return std::min(s.bias_rate * deep, s.max_bias_velocity) -
          std::max(0.0, p.separation - s.slop) / s.duration;
 }
 
@@ -147,11 +147,11 @@ void prepare(const StepContext& s, ContactConstraint& c) {
     const int row = row_of(i, kNormal);
     const double k = response(a, b, c, p, c.normal, c.normal, row, row);
     p.normal_mass = k > 1e-12 ? 1.0 / k : 0.0;
-    p.corrected_share = corrected_share(c, row, k);
+    p.correction_fraction = correction_fraction(c, row, k);
     prepare_tangents(a, b, c, p, row_of(i, kTangent));
     prepare_approach(s, a, b, c, p);
     p.target = target_of(s, c, p);
-    p.push = 0.0;
+    p.position_impulse = 0.0;
   }
 }
 
@@ -228,8 +228,8 @@ double solve_contact(const StepContext& s, ContactConstraint& c) {
 }
 
 // Every other round goes the other way, so that a load runs up a stack as fast as down it.
-double one_round(const StepContext& s, std::span<const std::uint32_t> contacts,
-                 std::span<const std::uint32_t> joints, bool forward) {
+double one_iteration(const StepContext& s, std::span<const std::uint32_t> contacts,
+                     std::span<const std::uint32_t> joints, bool forward) {
   double change = 0.0;
   for (const std::uint32_t i : joints) change = std::max(change, solve_joint(s, s.joints[i]));
   const std::size_t n = contacts.size();
@@ -243,7 +243,7 @@ double one_round(const StepContext& s, std::span<const std::uint32_t> contacts,
 // An articulation that touches nothing has its rows to itself: they are settled before all else,
 // and the rounds that the contacts need pass them by. Rows of which none feels another, as of a
 // table's rod, need one round.
-void settle_untouched(const StepContext& s) {
+void integrate_untouched(const StepContext& s) {
   for (std::size_t begin = 0, end = 0; begin < s.joints.size(); begin = end) {
     if (s.joints[begin].pair != kNoPair) return;  // those between bodies come last
     const std::uint32_t own = s.joints[begin].articulation;
@@ -256,13 +256,13 @@ void settle_untouched(const StepContext& s) {
                 (end > begin && s.joints[end].dof == s.joints[end - 1].dof);
     }
     if (s.articulations[own].touched) continue;
-    const int most = coupled ? s.iterations * static_cast<int>(kMostRounds) : 1;
-    for (int i = 0; i < most; ++i) {
+    const int max_value = coupled ? s.iterations * static_cast<int>(kMaxIterations) : 1;
+    for (int i = 0; i < max_value; ++i) {
       double change = 0.0;
       for (std::size_t k = begin; k < end; ++k) {
         change = std::max(change, solve_joint(s, s.joints[k]));
       }
-      if (change < converged(s)) break;
+      if (change < convergence_tolerance(s)) break;
     }
   }
 }
@@ -270,18 +270,18 @@ void settle_untouched(const StepContext& s) {
 // In sub-steps others change what has been settled: they come again soon, and rounds will do. But
 // not for joints between bodies, whose rows feel one another, unless lanes push the bodies too.
 bool goes_to_the_end(const StepContext& s, const Island& island) {
-  if (s.push_rate == 0.0) return true;
+  if (s.bias_rate == 0.0) return true;
   const Islands& islands = s.scratch.islands;
-  const auto in_lanes = [&](std::uint32_t body) { return s.bodies[body].in_lanes; };
+  const auto in_blocks = [&](std::uint32_t body) { return s.bodies[body].in_blocks; };
   bool joined = false;
   for (const std::uint32_t i : islands.joints(island)) {
     if (s.joints[i].pair == kNoPair) continue;
     const JointPair& pair = s.pairs[s.joints[i].pair];
-    if (in_lanes(pair.a.body) || in_lanes(pair.b.body)) return false;
+    if (in_blocks(pair.a.body) || in_blocks(pair.b.body)) return false;
     joined = true;
   }
   for (const std::uint32_t i : islands.contacts(island)) {
-    if (in_lanes(s.contacts[i].a) || in_lanes(s.contacts[i].b)) return false;
+    if (in_blocks(s.contacts[i].a) || in_blocks(s.contacts[i].b)) return false;
   }
   return joined;
 }
@@ -292,17 +292,18 @@ void iterate(const StepContext& s) {
     const auto contacts = islands.contacts(island), joints = islands.joints(island);
     const bool to_the_end = island.rows <= DenseIsland::kMaxRows && goes_to_the_end(s, island);
     const std::size_t more =
-        to_the_end ? kMostRounds
-                   : std::clamp<std::size_t>(
-                         kFewContacts / std::max<std::size_t>(1, contacts.size()), 1, kMostRounds);
-    const int rounds = s.iterations * static_cast<int>(more);
-    const int first = to_the_end ? kRoundsWithoutMatrix : rounds;
-    bool settled = false;
-    for (int i = 0; i < std::min(first, rounds) && !settled; ++i) {
-      settled = one_round(s, contacts, joints, i % 2 == 0) < converged(s);
+        to_the_end
+            ? kMaxIterations
+            : std::clamp<std::size_t>(kFewContacts / std::max<std::size_t>(1, contacts.size()), 1,
+                                      kMaxIterations);
+    const int iterations = s.iterations * static_cast<int>(more);
+    const int first = to_the_end ? kIterationsWithoutMatrix : iterations;
+    bool converged = false;
+    for (int i = 0; i < std::min(first, iterations) && !converged; ++i) {
+      converged = one_iteration(s, contacts, joints, i % 2 == 0) < convergence_tolerance(s);
     }
-    if (settled || first >= rounds) continue;
-    DenseIsland(s, islands, island, s.scratch.dense).iterate(rounds - first);
+    if (converged || first >= iterations) continue;
+    DenseIsland(s, islands, island, s.scratch.dense).iterate(iterations - first);
   }
 }
 
@@ -312,7 +313,7 @@ void begin(const StepContext& s) {
   for (ContactConstraint& c : s.contacts) prepare(s, c);
   s.scratch.islands.find(s);
   warm_start(s);
-  settle_untouched(s);
+  integrate_untouched(s);
 }
 
 bool set_bounce_targets(const StepContext& s) {
@@ -341,44 +342,46 @@ bool correct_joint(const StepContext& s, const JointRow& row) {
   if ((row.upper > 0.0 && row.impulse >= row.upper) ||
       (row.lower < 0.0 && row.impulse <= row.lower))
     return false;
-  double next = pair.push - (pair.error + speed_of(s, pair, kShift)) / pair.answer;
+  double next = pair.position_impulse - (pair.error + speed_of(s, pair, kShift)) / pair.answer;
   if (row.lower >= 0.0) next = std::max(0.0, next);
   if (row.upper <= 0.0) next = std::min(0.0, next);
-  give(s, pair, next - pair.push, kShift);
-  pair.push = next;
+  give(s, pair, next - pair.position_impulse, kShift);
+  pair.position_impulse = next;
   return true;
 }
 
 // In sub-steps what velocities push out is left to them.
 void correct_positions(const StepContext& s) {
-  const bool sub_step = s.push_rate > 0.0;
-  for (int round = 0; round < kCorrectionRounds; ++round) {
+  const bool sub_step = s.bias_rate > 0.0;
+  for (int iteration = 0; iteration < kCorrectionIterations; ++iteration) {
     bool any = false;
     for (const JointRow& row : s.joints) any |= correct_joint(s, row);
     for (std::size_t k = 0; k < s.contacts.size(); ++k) {
-      ContactConstraint& c = s.contacts[round % 2 == 0 ? k : s.contacts.size() - 1 - k];
+      ContactConstraint& c = s.contacts[iteration % 2 == 0 ? k : s.contacts.size() - 1 - k];
       if (sub_step && !of_one_tree(c.side_a, c.side_b)) continue;
       SolverBody &a = s.bodies[c.a], &b = s.bodies[c.b];
       for (int i = 0; i < c.count; ++i) {
         ContactPoint& p = c.points[i];
-        const double wanted = p.corrected_share *
-                              std::min(kCorrectedShare * (-s.slop - p.separation), kMostCorrected);
-        if (wanted <= 0.0) continue;
+        const double target =
+            p.correction_fraction *
+            std::min(kCorrectionFraction * (-s.slop - p.separation), kMaxCorrected);
+        if (target <= 0.0) continue;
         any = true;
         const int row = row_of(i, kNormal);
         const double moved =
-            dot(c.normal, b.shift + cross(b.turn, p.arm_b) - a.shift - cross(a.turn, p.arm_a)) +
+            dot(c.normal,
+                b.shift + cross(b.rotation, p.arm_b) - a.shift - cross(a.rotation, p.arm_a)) +
             along(c.side_a, row, c.side_a.shift) + along(c.side_b, row, c.side_b.shift);
-        const double next = std::max(0.0, p.push + p.normal_mass * (wanted - moved));
-        const double change = next - p.push;
+        const double next = std::max(0.0, p.position_impulse + p.normal_mass * (target - moved));
+        const double change = next - p.position_impulse;
         const Vec3 impulse = change * c.normal;
-        p.push = next;
+        p.position_impulse = next;
         a.shift -= a.inverse_mass * impulse;
-        a.turn -= a.angular * cross(p.arm_a, impulse);
+        a.rotation -= a.angular * cross(p.arm_a, impulse);
         b.shift += b.inverse_mass * impulse;
-        b.turn += b.angular * cross(p.arm_b, impulse);
-        push(c.side_a, row, change, c.side_a.shift);
-        push(c.side_b, row, change, c.side_b.shift);
+        b.rotation += b.angular * cross(p.arm_b, impulse);
+        apply_impulse(c.side_a, row, change, c.side_a.shift);
+        apply_impulse(c.side_b, row, change, c.side_b.shift);
       }
     }
     if (!any) return;

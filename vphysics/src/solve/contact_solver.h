@@ -19,13 +19,13 @@ namespace vp::solve {
 
 struct SolverBody {
   Vec3 w, v;                // world frame; written by the solver
-  Vec3 turn, shift;         // position correction; written by the solver, applied by the world
+  Vec3 rotation, shift;     // position correction; written by the solver, applied by the world
   Sym3 angular;             // inverse inertia, world frame; zero for links and what nothing moves
   double inverse_mass;      // likewise
   Vec3 x;                   // the point, world frame
   Vec3 forced_w, forced_v;  // what this step's forces added to w and v
   int articulation, link;   // of a link; articulation is negative for all else
-  bool in_lanes;            // others push it between rounds
+  bool in_blocks;           // others push it between rounds
 };
 static_assert(sizeof(SolverBody) == 30 * sizeof(double));
 
@@ -48,8 +48,8 @@ struct ContactPoint {
   // Impulses; what they hold before the solve is the warm start.
   double normal_impulse;
   double tangent_impulse[2];
-  double push;             // of the position correction
-  double corrected_share;  // prepared: of what others are corrected by
+  double position_impulse;     // of the position correction
+  double correction_fraction;  // prepared: of what others are corrected by
   // Of a step with sub-steps, over those: impulse, approach and whether it hit (note_sub_step).
   double step_impulse = 0.0, step_approach = 0.0;
   bool step_hits = false;
@@ -94,7 +94,7 @@ struct StepContext {
   double restitution_threshold;
   int iterations;
   // Of a sub-step: share of a penetration that is pushed out, per time [1/s]; the fastest [m/s].
-  double push_rate = 0.0, fastest_push = 0.0;
+  double bias_rate = 0.0, max_bias_velocity = 0.0;
 };
 
 // Sets the unit normal and two tangents to it.

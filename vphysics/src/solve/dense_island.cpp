@@ -11,11 +11,11 @@ namespace {
 
 // The term that holds what no row feels, as a share of the diagonal: at first, and by how much it
 // grows and shrinks.
-constexpr double kHeld = 1e-6, kHeldMore = 30.0, kHeldLess = 10.0;
+constexpr double kAtBound = 1e-6, kAtBoundGrowth = 30.0, kAtBoundShrink = 10.0;
 // Steps of an island at most, and of those in a row that do not help.
-constexpr int kMostSteps = 24, kMostRefused = 3;
+constexpr int kMaxSteps = 24, kMaxRejected = 3;
 // Shares of a step that are tried: all of it, half of it, and so on.
-constexpr int kShares = 5;
+constexpr int kFractions = 5;
 // What still changes by so much in the end [m/s] contradicts itself; and no contact makes anything
 // so many times faster than it was or is to be. Impulses that grow by so much meanwhile are no
 // guess for the next step.
@@ -110,7 +110,7 @@ void DenseIsland::write() {
 inline void DenseIsland::change(std::uint32_t row, double by) {
   if (by == 0.0) return;
   const double size = W_[row * stride_ + row] * std::fabs(by);
-  if (!(size <= most_) && !std::isnan(most_)) most_ = size;  // what is no number stays
+  if (!(size <= max_) && !std::isnan(max_)) max_ = size;  // what is no number stays
   p_[row] += by;
   add_scaled(u_.data(), W_ + row * stride_, by, stride_);
 }
@@ -151,8 +151,8 @@ void DenseIsland::solve_friction(const ContactConstraint& c, const ContactPoint&
 }
 
 // Returns the largest change of a row's speed by its own impulse.
-double DenseIsland::round(bool forward) {
-  most_ = 0.0;
+double DenseIsland::eliminate(bool forward) {
+  max_ = 0.0;
   for (std::uint32_t r = 0; r < joints_.size(); ++r) change(r, joint_after(r) - p_[r]);
   for (std::uint32_t k = 0; k < contact_count_; ++k) {
     const Contact& contact = contacts_[forward ? k : contact_count_ - 1 - k];
@@ -166,7 +166,7 @@ double DenseIsland::round(bool forward) {
       change(r, normal_after(c.points[i], r) - p_[r]);
     }
   }
-  return most_;
+  return max_;
 }
 
 void DenseIsland::add_equation(std::uint32_t row, double error, double softness) {
@@ -174,14 +174,14 @@ void DenseIsland::add_equation(std::uint32_t row, double error, double softness)
 }
 
 void DenseIsland::add_disc(const Disc& disc, double load) {
-  const double most = disc.friction * load;
-  if (most <= 0.0 || disc.mass <= 0.0) return;
+  const double max_value = disc.friction * load;
+  if (max_value <= 0.0 || disc.mass <= 0.0) return;
   double q[3]{}, square = 0.0;
   for (std::uint32_t k = 0; k < disc.size; ++k) {
     q[k] = p_[disc.row + k] - disc.mass * disc.speed[k];
     square += q[k] * q[k];
   }
-  const bool within = square <= most * most;
+  const bool within = square <= max_value * max_value;
   const double size = std::sqrt(square);
   for (std::uint32_t k = 0; k < disc.size; ++k) {
     if (within) {
@@ -189,9 +189,9 @@ void DenseIsland::add_disc(const Disc& disc, double load) {
       continue;
     }
     Equation& e = sliding_[sliding_count_++];
-    e = {disc.row + k, disc, {}, most / size, 1.0 / disc.mass, 0.0};
+    e = {disc.row + k, disc, {}, max_value / size, 1.0 / disc.mass, 0.0};
     for (std::uint32_t n = 0; n < disc.size; ++n) e.direction[n] = q[n] / size;
-    e.error = (most * e.direction[k] - p_[e.row]) / disc.mass;
+    e.error = (max_value * e.direction[k] - p_[e.row]) / disc.mass;
   }
 }
 
@@ -245,7 +245,7 @@ void DenseIsland::write_equation(std::size_t i, double* A) const {
   const double* const W = W_ + e.row * stride_;
   if (e.disc.size == 0) {
     for (std::size_t j = 0; j < free_count_; ++j) A[j] = W[free_[j]];
-    A[i] += held_ * W[e.row] + e.softness;
+    A[i] += at_bound_ * W[e.row] + e.softness;
     return;
   }
   // Across the direction in which it slides the point turns with it: P = 1 - d d^T.
@@ -308,9 +308,9 @@ bool DenseIsland::solve_directly() {
 }
 
 // A share of the step from where p and u are, into the bounds.
-void DenseIsland::go(double share) {
+void DenseIsland::go(double fraction) {
   Rows next = p_;
-  for (std::size_t i = 0; i < free_count_; ++i) next[free_[i]] += share * step_[i];
+  for (std::size_t i = 0; i < free_count_; ++i) next[free_[i]] += fraction * step_[i];
   project(next);
   for (std::uint32_t r = 0; r < size_; ++r) change(r, next[r] - p_[r]);
 }
@@ -361,18 +361,18 @@ void DenseIsland::project(Rows& x) const {
       const std::uint32_t r = contact.row + static_cast<std::uint32_t>(row_of(i, kNormal));
       x[r] = std::max(0.0, x[r]);
       sum += x[r];
-      const double most = c.friction * x[r];
+      const double max_value = c.friction * x[r];
       const double size = std::sqrt(x[r + 1] * x[r + 1] + x[r + 2] * x[r + 2]);
-      if (size <= most) continue;
-      x[r + 1] *= most / size;
-      x[r + 2] *= most / size;
+      if (size <= max_value) continue;
+      x[r + 1] *= max_value / size;
+      x[r + 2] *= max_value / size;
     }
     if (!contact.rolls()) continue;
     const std::uint32_t r = contact.row_of_rolling();
-    const double most = c.rolling * sum;
+    const double max_value = c.rolling * sum;
     const double size = std::sqrt(x[r] * x[r] + x[r + 1] * x[r + 1] + x[r + 2] * x[r + 2]);
-    if (size <= most) continue;
-    for (std::uint32_t axis = 0; axis < 3; ++axis) x[r + axis] *= most / size;
+    if (size <= max_value) continue;
+    for (std::uint32_t axis = 0; axis < 3; ++axis) x[r + axis] *= max_value / size;
   }
 }
 
@@ -384,19 +384,21 @@ double DenseIsland::load() const {
 }
 
 double DenseIsland::fastest() const {
-  double most = 0.0;
-  for (std::uint32_t r = 0; r < size_; ++r) most = std::max(most, std::fabs(u_[r]));
-  return most;
+  double max_value = 0.0;
+  for (std::uint32_t r = 0; r < size_; ++r) max_value = std::max(max_value, std::fabs(u_[r]));
+  return max_value;
 }
 
 double DenseIsland::fastest_target() const {
-  double most = 0.0;
-  for (const std::uint32_t j : joints_) most = std::max(most, std::fabs(s_.joints[j].target));
+  double max_value = 0.0;
+  for (const std::uint32_t j : joints_)
+    max_value = std::max(max_value, std::fabs(s_.joints[j].target));
   for (std::uint32_t k = 0; k < contact_count_; ++k) {
     const ContactConstraint& c = *contacts_[k].constraint;
-    for (int i = 0; i < c.count; ++i) most = std::max(most, std::fabs(c.points[i].target));
+    for (int i = 0; i < c.count; ++i)
+      max_value = std::max(max_value, std::fabs(c.points[i].target));
   }
-  return most;
+  return max_value;
 }
 
 void DenseIsland::forget() {
@@ -409,10 +411,10 @@ bool DenseIsland::step() {
   if (!solve_directly()) return false;
   const Rows p = p_, u = u_;
   const double before = error();
-  double share = 1.0;
-  for (int k = 0; k < kShares; ++k, share *= 0.5) {
-    go(share);
-    if (error() < (1.0 - 0.5 * share) * before) return true;
+  double fraction = 1.0;
+  for (int k = 0; k < kFractions; ++k, fraction *= 0.5) {
+    go(fraction);
+    if (error() < (1.0 - 0.5 * fraction) * before) return true;
     p_ = p;
     u_ = u;
   }
@@ -424,39 +426,40 @@ bool DenseIsland::step() {
 // make them larger, steps by far more. Such an island goes back to before the first step and has
 // rounds alone; where its contacts carry more and more it forgets them, since they would go on to
 // grow from step to step.
-void DenseIsland::iterate(int rounds) {
+void DenseIsland::iterate(int iterations) {
   read();
-  const double wanted = std::max(fastest(), fastest_target()), load_before = load();
+  const double target = std::max(fastest(), fastest_target()), load_before = load();
   Rows p_first{}, u_first{};
   double before = 0.0;  // the change of the round before
   int next = 1, wait = 1, steps = 0, refused = 0;
-  bool settled = false;
-  held_ = kHeld;
-  for (int i = 0; i < rounds && !settled; ++i) {
-    if (i >= next && i + 1 < rounds && steps < kMostSteps && refused < kMostRefused) {
+  bool converged = false;
+  at_bound_ = kAtBound;
+  for (int i = 0; i < iterations && !converged; ++i) {
+    if (i >= next && i + 1 < iterations && steps < kMaxSteps && refused < kMaxRejected) {
       if (steps++ == 0) {
         p_first = p_;
         u_first = u_;
       }
       if (step()) {
-        held_ = std::max(kHeld, held_ / kHeldLess);
+        at_bound_ = std::max(kAtBound, at_bound_ / kAtBoundShrink);
         refused = 0;
       } else {
         next = i + 1 + wait;
         wait *= 2;
         ++refused;
-        held_ *= kHeldMore;
+        at_bound_ *= kAtBoundGrowth;
       }
     }
-    before = round(i % 2 == 0);
-    settled = before < converged(s_);
+    before = eliminate(i % 2 == 0);
+    converged = before < convergence_tolerance(s_);
   }
-  if (steps > 0 && ((!settled && before > kContradicts) || fastest() > kThrown * wanted)) {
+  if (steps > 0 && ((!converged && before > kContradicts) || fastest() > kThrown * target)) {
     p_ = p_first;
     u_ = u_first;
-    settled = false;
-    for (int i = 0; i < rounds && !settled; ++i) settled = round(i % 2 == 0) < converged(s_);
-    if (!settled && load() > kGrown * load_before) forget();
+    converged = false;
+    for (int i = 0; i < iterations && !converged; ++i)
+      converged = eliminate(i % 2 == 0) < convergence_tolerance(s_);
+    if (!converged && load() > kGrown * load_before) forget();
   }
   write();
 }

@@ -32,7 +32,7 @@ class DenseIsland {
   DenseIsland(const StepContext& context, const Islands& islands, const Island& island,
               DenseScratch& scratch);
   // From the velocities of now; impulses and velocities are then those of the end.
-  void iterate(int rounds);
+  void iterate(int iterations);
 
  private:
   using Rows = std::array<double, kMaxRows>;
@@ -50,7 +50,7 @@ class DenseIsland {
   void read();
   void write();
   void change(std::uint32_t row, double by);
-  double round(bool forward);
+  double eliminate(bool forward);
   double joint_after(std::uint32_t row) const;
   double normal_after(const ContactPoint& p, std::uint32_t row) const;
   void solve_rolling(const Contact& contact);
@@ -84,7 +84,7 @@ class DenseIsland {
   };
   bool step();
   bool solve_directly();
-  void go(double share);
+  void go(double fraction);
   double error() const;
   void find_equations();
   void add_equation(std::uint32_t row, double error, double softness);
@@ -100,8 +100,8 @@ class DenseIsland {
   const double* W_ = nullptr;
   std::size_t stride_;
   std::vector<double>& factor_;
-  double held_ = 0.0;  // e
-  double most_ = 0.0;  // of what change() has changed speeds by
+  double at_bound_ = 0.0;  // e
+  double max_ = 0.0;       // of what change() has changed speeds by
   std::uint32_t size_ = 0, contact_count_ = 0;
   std::uint32_t free_count_ = 0, symmetric_count_ = 0, sliding_count_ = 0;
   std::array<Contact, kMaxRows / 3 + 1> contacts_;

@@ -90,9 +90,9 @@ class Assembly {
     list_ends();
     auto& ends = scratch_.ends;
     for (std::size_t begin = 0, end = 0; begin < ends.size(); begin = end) {
-      const MoverKey key = ends[begin].mover;
+      const MovingBodyKey key = ends[begin].mover;
       while (end < ends.size() && ends[end].mover == key) ++end;
-      add_mover(key, std::span(ends).subspan(begin, end - begin));
+      add_moving_body(key, std::span(ends).subspan(begin, end - begin));
     }
     for (std::size_t i = 0; i < n_; ++i) {
       for (std::size_t j = 0; j < i; ++j) W_[j * stride_ + i] = W_[i * stride_ + j];
@@ -107,24 +107,24 @@ class Assembly {
     std::uint32_t row = 0;
     for (const std::uint32_t j : joints_) {
       const JointRow& joint = s_.joints[j];
-      const auto add = [&](MoverKey mover) { ends.push_back({mover, row, kNoContact}); };
+      const auto add = [&](MovingBodyKey mover) { ends.push_back({mover, row, kNoContact}); };
       if (joint.pair == kNoPair) {
         add(key_of_articulation(joint.articulation));
       } else {
-        for_movers(s_, s_.pairs[joint.pair], add);
+        for_moving_bodies(s_, s_.pairs[joint.pair], add);
       }
       ++row;
     }
     for (const std::uint32_t k : contacts_) {
       const ContactConstraint& c = s_.contacts[k];
-      for_movers(s_, c, [&](MoverKey mover) { ends.push_back({mover, row, k}); });
+      for_moving_bodies(s_, c, [&](MovingBodyKey mover) { ends.push_back({mover, row, k}); });
       row += static_cast<std::uint32_t>(rows_of(c));
     }
     std::sort(ends.begin(), ends.end());
     ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
   }
 
-  void add_mover(MoverKey key, std::span<const DenseEnd> ends) {
+  void add_moving_body(MovingBodyKey key, std::span<const DenseEnd> ends) {
     const bool is_body = key < key_of_articulation(0);
     const auto mover = static_cast<std::uint32_t>(key);
     size_ = is_body ? BodyAnswer::kSize : in_fours(s_.articulations[mover].factor->dofs());

@@ -14,7 +14,7 @@ inline constexpr std::uint32_t kMaxDenseRows = 128;
 
 // A joint row, or a contact by its first row, and something that it pushes.
 struct DenseEnd {
-  MoverKey mover;
+  MovingBodyKey mover;
   std::uint32_t row, contact;
   bool operator==(const DenseEnd&) const = default;
   bool operator<(const DenseEnd& other) const {

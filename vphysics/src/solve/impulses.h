@@ -11,7 +11,7 @@ namespace vp::solve {
 
 // Changes of speed below this [m/s] end the iteration: a twenty-thousandth of what gravity adds in
 // the step, and no less than rounding leaves.
-inline double converged(const StepContext& s) {
+inline double convergence_tolerance(const StepContext& s) {
   return std::max(1e-7, 5e-4 * s.step);
 }
 
@@ -38,21 +38,21 @@ inline void friction_after(const ContactConstraint& c, const ContactPoint& p, do
   const double before0 = impulse[0], before1 = impulse[1];
   impulse[0] = before0 - (p.tangent_mass[0] * u0 + p.tangent_mass[1] * u1);
   impulse[1] = before1 - (p.tangent_mass[1] * u0 + p.tangent_mass[2] * u1);
-  const double most = c.friction * normal_impulse;
-  if (impulse[0] * impulse[0] + impulse[1] * impulse[1] <= most * most) return;
+  const double max_value = c.friction * normal_impulse;
+  if (impulse[0] * impulse[0] + impulse[1] * impulse[1] <= max_value * max_value) return;
   impulse[0] = before0 - p.slide_mass * u0;
   impulse[1] = before1 - p.slide_mass * u1;
   const double size = std::sqrt(impulse[0] * impulse[0] + impulse[1] * impulse[1]);
-  if (size <= most) return;
-  impulse[0] *= most / size;
-  impulse[1] *= most / size;
+  if (size <= max_value) return;
+  impulse[0] *= max_value / size;
+  impulse[1] *= max_value / size;
 }
 // That against rolling, at so fast a relative rotation, of contacts that carry so much.
 inline Vec3 rolling_after(const ContactConstraint& c, const Vec3& before, const Vec3& rotation,
                           double load) {
   const Vec3 next = before - c.rolling_mass * rotation;
-  const double most = c.rolling * load, size = norm(next);
-  return size > most ? (most / size) * next : next;
+  const double max_value = c.rolling * load, size = norm(next);
+  return size > max_value ? (max_value / size) * next : next;
 }
 
 inline void apply(SolverBody& a, SolverBody& b, const ContactConstraint& c, const ContactPoint& p,
@@ -67,8 +67,8 @@ inline void apply(SolverBody& a, SolverBody& b, const ContactConstraint& c, cons
   }
 }
 inline void apply_to_links(const ContactConstraint& c, int row, double impulse) {
-  push(c.side_a, row, impulse, c.side_a.velocity);
-  push(c.side_b, row, impulse, c.side_b.velocity);
+  apply_impulse(c.side_a, row, impulse, c.side_a.velocity);
+  apply_impulse(c.side_b, row, impulse, c.side_b.velocity);
 }
 
 // --- rows of joints
@@ -80,7 +80,7 @@ struct Moved {
   double* LinkSide::*tree;
 };
 inline constexpr Moved kVelocity{&SolverBody::v, &SolverBody::w, &LinkSide::velocity};
-inline constexpr Moved kShift{&SolverBody::shift, &SolverBody::turn, &LinkSide::shift};
+inline constexpr Moved kShift{&SolverBody::shift, &SolverBody::rotation, &LinkSide::shift};
 
 inline double speed_of(const StepContext& s, const JointPair& pair, const Moved& moved) {
   double speed = 0.0;
@@ -93,7 +93,7 @@ inline double speed_of(const StepContext& s, const JointPair& pair, const Moved&
 }
 inline void give(const StepContext& s, const JointPair& pair, double impulse, const Moved& moved) {
   for (const PairEnd* end : {&pair.a, &pair.b}) {
-    push(end->side, 0, impulse, end->side.*moved.tree);
+    apply_impulse(end->side, 0, impulse, end->side.*moved.tree);
     if (!end->moves) continue;
     SolverBody& body = s.bodies[end->body];
     body.*moved.linear += (body.inverse_mass * impulse) * end->linear;
@@ -106,7 +106,7 @@ inline double speed_of(const StepContext& s, const JointRow& row) {
   return speed_of(s, s.pairs[row.pair], kVelocity);
 }
 inline void give(const StepContext& s, const JointRow& row, double impulse) {
-  if (row.pair == kNoPair) return push(row.side, 0, impulse, row.side.velocity);
+  if (row.pair == kNoPair) return apply_impulse(row.side, 0, impulse, row.side.velocity);
   give(s, s.pairs[row.pair], impulse, kVelocity);
 }
 // Returns the change of speed.

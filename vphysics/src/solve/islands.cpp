@@ -22,7 +22,8 @@ void Islands::join_nodes(const StepContext& s) {
   parent_.clear();
   const auto add = [&](const auto& contact_or_pair) {
     const auto node = static_cast<std::uint32_t>(parent_.size());
-    for_movers(s, contact_or_pair, [&](MoverKey mover) { ends_.emplace_back(mover, node); });
+    for_moving_bodies(s, contact_or_pair,
+                      [&](MovingBodyKey mover) { ends_.emplace_back(mover, node); });
     parent_.push_back(node);
   };
   for (const ContactConstraint& c : s.contacts) add(c);
@@ -63,7 +64,7 @@ void Islands::number_islands(const StepContext& s) {
 
 void Islands::add_joints(const StepContext& s) {
   const auto island_of = [&](std::uint32_t articulation) {
-    const MoverKey key = key_of_articulation(articulation);
+    const MovingBodyKey key = key_of_articulation(articulation);
     const auto end = std::lower_bound(ends_.begin(), ends_.end(), std::pair{key, 0u});
     const bool found = end != ends_.end() && end->first == key;
     return found ? island_of_[end->second] : kNoIsland;

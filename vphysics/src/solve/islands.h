@@ -13,28 +13,28 @@
 namespace vp::solve {
 
 // What answers impulses: a body, or an articulation as a whole.
-using MoverKey = std::uint64_t;
-inline MoverKey key_of_articulation(std::uint32_t articulation) {
-  return (MoverKey{1} << 32) | articulation;
+using MovingBodyKey = std::uint64_t;
+inline MovingBodyKey key_of_articulation(std::uint32_t articulation) {
+  return (MovingBodyKey{1} << 32) | articulation;
 }
 
 // f(mover) of all that an impulse of a contact, or of a row of a joint between bodies, pushes.
 template <class F>
-void for_movers_of(const StepContext& s, std::uint32_t body, bool moves, const LinkSide& side,
-                   const F& f) {
-  if (moves) f(MoverKey{body});
+void for_moving_bodies_of(const StepContext& s, std::uint32_t body, bool moves,
+                          const LinkSide& side, const F& f) {
+  if (moves) f(MovingBodyKey{body});
   if (side.depth == 0) return;
   f(key_of_articulation(static_cast<std::uint32_t>(s.bodies[body].articulation)));
 }
 template <class F>
-void for_movers(const StepContext& s, const ContactConstraint& c, const F& f) {
-  for_movers_of(s, c.a, c.moves_a, c.side_a, f);
-  for_movers_of(s, c.b, c.moves_b, c.side_b, f);
+void for_moving_bodies(const StepContext& s, const ContactConstraint& c, const F& f) {
+  for_moving_bodies_of(s, c.a, c.moves_a, c.side_a, f);
+  for_moving_bodies_of(s, c.b, c.moves_b, c.side_b, f);
 }
 template <class F>
-void for_movers(const StepContext& s, const JointPair& pair, const F& f) {
+void for_moving_bodies(const StepContext& s, const JointPair& pair, const F& f) {
   for (const PairEnd* end : {&pair.a, &pair.b}) {
-    for_movers_of(s, end->body, end->moves, end->side, f);
+    for_moving_bodies_of(s, end->body, end->moves, end->side, f);
   }
 }
 
@@ -79,9 +79,9 @@ class Islands {
   std::vector<Island> islands_;
   std::vector<std::uint32_t> contacts_, joints_;
   // Nodes are the contacts, then the rows of joints between bodies.
-  std::vector<std::pair<MoverKey, std::uint32_t>> ends_;  // what moves, and the nodes on it
-  std::vector<std::uint32_t> parent_;                     // of each node: union and find
-  std::vector<std::uint32_t> island_of_;                  // of each node
+  std::vector<std::pair<MovingBodyKey, std::uint32_t>> ends_;  // what moves, and the nodes on it
+  std::vector<std::uint32_t> parent_;                          // of each node: union and find
+  std::vector<std::uint32_t> island_of_;                       // of each node
   std::vector<std::uint32_t> island_of_joint_;
 };
 

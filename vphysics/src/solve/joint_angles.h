@@ -42,7 +42,7 @@ Lanes<W> angle_of(const Lanes<W>& y, const Lanes<W>& x) {
 
 // By a unit quaternion, less u itself.
 template <class F>
-Vec3T<F> turned_less(const Vec3T<F>& q, const F& w, const Vec3T<F>& u) {
+Vec3T<F> rotated_minus(const Vec3T<F>& q, const F& w, const Vec3T<F>& u) {
   const Vec3T<F> t = F(2.0f) * cross(q, u);
   return w * t + cross(q, t);
 }
@@ -51,9 +51,9 @@ Vec3T<F> turned_less(const Vec3T<F>& q, const F& w, const Vec3T<F>& u) {
 template <int W>
 void quaternion_of(const Vec3T<Lanes<W>>& theta, Vec3T<Lanes<W>>& q, Lanes<W>& w) {
   using F = Lanes<W>;
-  constexpr float kRound = 12582912.0f;  // 1.5 * 2^23: adding it leaves no place for a fraction
+  constexpr float kPass = 12582912.0f;  // 1.5 * 2^23: adding it leaves no place for a fraction
   const F size = sqrt(dot(theta, theta)), half = F(0.5f) * size;
-  const F turns = (half * F(static_cast<float>(1.0 / kPi)) + F(kRound)) - F(kRound);
+  const F turns = (half * F(static_cast<float>(1.0 / kPi)) + F(kPass)) - F(kPass);
   // pi as the sum of a short number and the rest, so that few turns lose nothing.
   const F r = (half - turns * F(3.140625f)) - turns * F(9.67653589793e-4f), s = r * r;
   const auto series = [&](int first) {  // of x^k / k!, every other k from first + 10 down
@@ -70,7 +70,7 @@ template <int W>
 struct GoneLanes {
   using F = Lanes<W>;
   using V = Vec3T<F>;
-  V q, way;
+  V q, displacement;
   F w;
   template <class Row>
   static GoneLanes of(const Row& row) {
@@ -78,8 +78,8 @@ struct GoneLanes {
     lanes::gather8<W>(row, r);
     return {{r[0], r[1], r[2]}, {r[4], r[5], r[6]}, r[3]};
   }
-  V less(const V& u) const { return turned_less(q, w, u); }
-  V turned(const V& u) const { return u + less(u); }
+  V less(const V& u) const { return rotated_minus(q, w, u); }
+  V rotated(const V& u) const { return u + less(u); }
 };
 
 // Axes of both frames where the bodies are now, and what is measured between them.
@@ -91,12 +91,12 @@ struct Frames {
 
   template <class C>
   Frames(const C& c, const AxesPart& axes, const GoneLanes<W>& a, const GoneLanes<W>& b)
-      : ax(a.turned(c.get(axes.a_x))),
-        ay(a.turned(c.get(axes.a_y))),
+      : ax(a.rotated(c.get(axes.a_x))),
+        ay(a.rotated(c.get(axes.a_y))),
         az(cross(ax, ay)),
-        bx(b.turned(c.get(axes.b_x))),
+        bx(b.rotated(c.get(axes.b_x))),
         by(),
-        bz(b.turned(c.get(axes.b_z))) {
+        bz(b.rotated(c.get(axes.b_z))) {
     by = cross(bz, bx);
   }
   V world(const V& u) const { return u.x * ax + u.y * ay + u.z * az; }

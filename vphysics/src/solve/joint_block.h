@@ -25,20 +25,20 @@
 namespace vphysics_solver {
 
 inline constexpr int kJointRows = 6;
-inline constexpr float kNowhere = 1e30f;     // a limit that is not there
-inline constexpr float kFastestTurn = 3.0f;  // by which velocities take out an error [rad/s]
+inline constexpr float kNowhere = 1e30f;        // a limit that is not there
+inline constexpr float kMaxAngularBias = 3.0f;  // by which velocities take out an error [rad/s]
 
 // What a row measures: slots 0 to 5 are those of JointAxis, the first three ways along a's axes.
 inline constexpr std::uint8_t kSwingX = 3, kSwingY = 4, kTwist = 5, kCone = 6;
 
 struct JointForm {
-  std::uint8_t rows = 0;  // beside the point's
-  std::uint8_t held = 0;  // of these; they come first
+  std::uint8_t rows = 0;    // beside the point's
+  std::uint8_t locked = 0;  // of these; they come first
   std::uint8_t slot[kJointRows] = {};
   bool operator==(const JointForm&) const = default;
-  bool has(std::uint8_t wanted) const {
+  bool has(std::uint8_t target) const {
     for (int i = 0; i < rows; ++i) {
-      if (slot[i] == wanted) return true;
+      if (slot[i] == target) return true;
     }
     return false;
   }
@@ -46,8 +46,9 @@ struct JointForm {
 
 // A point of b as one of a sees it, and what holds it there.
 struct PointPart {
-  Field3 start_arm_a, start_arm_b, start_gap;  // when the step began; the gap is p_b - p_a [m]
-  Field3 arm_a, arm_b;  // from the centres of mass to p_b: both forces act there
+  Field3 start_arm_a, start_arm_b,
+      start_separation;  // when the step began; the gap is p_b - p_a [m]
+  Field3 arm_a, arm_b;   // from the centres of mass to p_b: both forces act there
   Field3 impulse;
   Field rate, loss, relaxes;  // as those of a row
 };
@@ -65,9 +66,9 @@ struct RowPart {
   Field rate, loss, relaxes;
 };
 struct BoundPart {
-  Field stop;         // impulse of the limits: >= 0 of the lower one, <= 0 of the upper
-  Field holds;        // 1: holds as held rows do, but within bounds
-  Field least, most;  // of what holds within bounds or drives [N s]
+  Field stop;   // impulse of the limits: >= 0 of the lower one, <= 0 of the upper
+  Field holds;  // 1: holds as held rows do, but within bounds
+  Field min_impulse, max_impulse;  // of what holds within bounds or drives [N s]
   // Of a drive: impulse = h (stiffness (position - q) + damping (speed - q')), within its bounds.
   Field stiffness, damping, position, speed;
   Field lower, upper;  // of the coordinate
@@ -109,8 +110,8 @@ using RowsBlock = JointBlock<0, kJointRows, false>;
 
 // How a body has turned and moved since the step began: a unit quaternion x y z w, a way [m].
 struct alignas(32) Gone {
-  float turn[4];
-  float way[3];
+  float rotation[4];
+  float displacement[3];
   float unused;
 };
 

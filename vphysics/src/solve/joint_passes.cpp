@@ -16,15 +16,15 @@ void find_gone(const BodyRow* rows, const std::array<float, 6>* start, const std
   using F = Lanes<kWidth>;
   for (std::size_t first = 0; first < count; first += kWidth) {
     const int some = static_cast<int>(std::min<std::size_t>(kWidth, count - first));
-    Vec3T<F> way, theta, q;
+    Vec3T<F> displacement, theta, q;
     F w;
     for (int i = 0; i < some; ++i) {
       const std::uint32_t body = bodies[first + static_cast<std::size_t>(i)];
-      const float* to = rows[body + 1].way;
+      const float* to = rows[body + 1].displacement;
       const auto& from = start[body];
-      way.x.set(i, to[0] - from[0]);
-      way.y.set(i, to[1] - from[1]);
-      way.z.set(i, to[2] - from[2]);
+      displacement.x.set(i, to[0] - from[0]);
+      displacement.y.set(i, to[1] - from[1]);
+      displacement.z.set(i, to[2] - from[2]);
       theta.x.set(i, to[3] - from[3]);
       theta.y.set(i, to[4] - from[4]);
       theta.z.set(i, to[5] - from[5]);
@@ -32,7 +32,9 @@ void find_gone(const BodyRow* rows, const std::array<float, 6>* start, const std
     quaternion_of<kWidth>(theta, q, w);
     for (int i = 0; i < some; ++i) {
       gone[bodies[first + static_cast<std::size_t>(i)] + 1] = {
-          {q.x[i], q.y[i], q.z[i], w[i]}, {way.x[i], way.y[i], way.z[i]}, 0.0f};
+          {q.x[i], q.y[i], q.z[i], w[i]},
+          {displacement.x[i], displacement.y[i], displacement.z[i]},
+          0.0f};
     }
   }
 }
@@ -57,7 +59,7 @@ template <class B>
 [[gnu::flatten]] bool prepare_joints(const typename JointPasses<B>::Run& run) {
   bool some_far = false;
   for_joints<B>(run, [&](JointLanes<kWidth, B>& c, int at) {
-    some_far = prepare_lanes(c, run.gone, at, run.fastest_push) || some_far;
+    some_far = prepare_lanes(c, run.gone, at, run.max_bias_velocity) || some_far;
   });
   return some_far;
 }
@@ -66,14 +68,15 @@ template <class B>
   for_joints<B>(run, [](JointLanes<kWidth, B>& c, int) { warm_start_lanes(c); });
 }
 template <class B, bool kSomeFar, bool kFirst>
-[[gnu::flatten]] void push_joints_that(const typename JointPasses<B>::Run& run, float h) {
+[[gnu::flatten]] void solve_joint_run_if(const typename JointPasses<B>::Run& run, float h) {
   for_joints<B>(run, [&](JointLanes<kWidth, B>& c, int) {
-    push_lanes<kSomeFar>(c, h, run.fastest_push, kFirst);
+    solve_lanes<kSomeFar>(c, h, run.max_bias_velocity, kFirst);
   });
 }
 template <class B, bool kFirst>
-void push_joints(const typename JointPasses<B>::Run& run, float h) {
-  (run.some_far ? push_joints_that<B, true, kFirst> : push_joints_that<B, false, kFirst>)(run, h);
+void solve_joint_run(const typename JointPasses<B>::Run& run, float h) {
+  (run.some_far ? solve_joint_run_if<B, true, kFirst> : solve_joint_run_if<B, false, kFirst>)(run,
+                                                                                              h);
 }
 template <class B>
 [[gnu::flatten]] void relax_joints(const typename JointPasses<B>::Run& run, float h) {
@@ -82,8 +85,8 @@ template <class B>
 
 template <class B>
 constexpr JointPasses<B> passes_of() {
-  return {load_joint_inertias<B>, prepare_joints<B>,     warm_start_joints<B>,
-          push_joints<B, true>,   push_joints<B, false>, relax_joints<B>};
+  return {load_joint_inertias<B>,   prepare_joints<B>,         warm_start_joints<B>,
+          solve_joint_run<B, true>, solve_joint_run<B, false>, relax_joints<B>};
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ inline constexpr int kBoundedSweeps = 4;
 inline constexpr float kExplicit = 0.25f;
 // A pivot below this share of its row's own K is of a row that others hold already.
 inline constexpr float kDependent = 1e-6f;
-inline constexpr float kLeastResponse = 1e-30f;  // of a pivot whose inverse is a number
+inline constexpr float kMinResponse = 1e-30f;  // of a pivot whose inverse is a number
 // A hard row's error counts as no more than what gives it a steady load of so many times the speed
 // at which it is taken out. Larger loads pull the joint open: rows that contradict one another
 // would else hold a load that throws their bodies about.
@@ -28,7 +28,8 @@ inline constexpr float kStrongest = 2.0f;
 // In sub-steps shorter than a fifth of this [s] errors that small are taken out faster: they may be
 // what single precision leaves.
 inline constexpr float kBriefly = 3.3e-4f;
-inline constexpr float kSettledJoint = 1e-4f;  // of the load: the change of a round that is enough
+inline constexpr float kJointConverged =
+    1e-4f;  // of the load: the change of a round that is enough
 
 constexpr int factor_index(int i, int j) {
   return i * (i + 1) / 2 + j;  // j <= i
@@ -53,7 +54,7 @@ class JointLanes : public BlockLanes<W, BLOCK> {
   // That it is no more than there is room for is said to the compiler.
   int others() const { return std::min<int>(form_.rows, kOthers); }
   int count() const { return kPoint + others(); }
-  int held() const { return kPoint + std::min<int>(form_.held, kOthers); }
+  int locked() const { return kPoint + std::min<int>(form_.locked, kOthers); }
   const JointForm& form() const { return form_; }
   // A way, and no turn.
   bool is_along(int i) const { return BLOCK::kAxes && kPoint == 0 && form_.slot[i] < kSwingX; }
@@ -84,7 +85,7 @@ class JointLanes : public BlockLanes<W, BLOCK> {
     }
   }
   // Gives the bodies impulses of all rows.
-  void push(const F* p) {
+  void apply_impulse(const F* p) {
     V linear_a, angular_a, linear_b, angular_b;
     if constexpr (kPoint > 0) {
       const PointPart& point = block().point;
@@ -114,7 +115,7 @@ class JointLanes : public BlockLanes<W, BLOCK> {
         angular_b += x * get(J.angular_b);
       }
     }
-    Base::push(linear_a, angular_a, linear_b, angular_b);
+    Base::apply_impulse(linear_a, angular_a, linear_b, angular_b);
   }
   F impulse(int i) const {
     if constexpr (kPoint > 0) {
@@ -133,7 +134,7 @@ class JointLanes : public BlockLanes<W, BLOCK> {
   // With that of the limits.
   F all_impulse(int i) const {
     const F p = impulse(i);
-    return i < held() ? p : p + get(block().bounds[i - kPoint].stop);
+    return i < locked() ? p : p + get(block().bounds[i - kPoint].stop);
   }
   F rate(int i) const {
     if constexpr (kPoint > 0) {
@@ -163,28 +164,31 @@ class JointLanes : public BlockLanes<W, BLOCK> {
 // Arms and gap of the point, axes and coordinates of the rows, where the bodies are now. Residuals
 // of the point go to gap.
 template <int W, class B>
-void evaluate_lanes(JointLanes<W, B>& c, const Gone* gone, int at, float fastest_push,
-                    Vec3T<Lanes<W>>& gap) {
+void evaluate_lanes(JointLanes<W, B>& c, const Gone* gone, int at, float max_bias_velocity,
+                    Vec3T<Lanes<W>>& separation) {
   using F = Lanes<W>;
   using V = Vec3T<F>;
-  const auto a = GoneLanes<W>::of([&](int i) { return gone[c.block().a.lane[at + i]].turn; });
-  const auto b = GoneLanes<W>::of([&](int i) { return gone[c.block().b.lane[at + i]].turn; });
+  const auto a = GoneLanes<W>::of([&](int i) { return gone[c.block().a.lane[at + i]].rotation; });
+  const auto b = GoneLanes<W>::of([&](int i) { return gone[c.block().b.lane[at + i]].rotation; });
   if constexpr (B::kAxes) {
     PointPart& point = c.block().point;
     const V start_a = c.get(point.start_arm_a), start_b = c.get(point.start_arm_b);
     const V less_a = a.less(start_a), less_b = b.less(start_b);
-    gap = c.get(point.start_gap) + (b.way - a.way) + (less_b - less_a);
-    V arm_a = start_a + less_a + gap;
+    separation =
+        c.get(point.start_separation) + (b.displacement - a.displacement) + (less_b - less_a);
+    V arm_a = start_a + less_a + separation;
     if constexpr (B::kPointRows > 0) {
       // Of a point that is farther away than the bodies are large, a part: a body is no rod of any
       // length. Where it is pulled along the gap, that turns it as before.
-      const F pull = c.rate(0) * c.rate(0) * dot(gap, gap);
-      const LaneMask<W> strong = pull > F(kStrongest * kStrongest * fastest_push * fastest_push);
+      const F pull = c.rate(0) * c.rate(0) * dot(separation, separation);
+      const LaneMask<W> strong =
+          pull > F(kStrongest * kStrongest * max_bias_velocity * max_bias_velocity);
       if (!none(strong)) {
-        const F far = dot(gap, gap), near = dot(start_a, start_a) + dot(start_b, start_b);
+        const F far = dot(separation, separation),
+                near = dot(start_a, start_a) + dot(start_b, start_b);
         const LaneMask<W> too_far = both(strong, far > near);
         const F left = F(1.0f) - sqrt(near / select(too_far, far, F(1.0f)));
-        arm_a = arm_a - select(too_far, left, F(0.0f)) * gap;
+        arm_a = arm_a - select(too_far, left, F(0.0f)) * separation;
       }
     }
     c.put(point.arm_a, arm_a);
@@ -197,9 +201,9 @@ void evaluate_lanes(JointLanes<W, B>& c, const Gone* gone, int at, float fastest
     // Beyond whole turns, though no row be about it: who reads it later has only half a turn a
     // step to go by.
     const auto counted_twist = [&] {
-      constexpr float kTurn = static_cast<float>(2.0 * kPi), kRound = 12582912.0f;
-      const F twist = frames.twist(), turns = (c.get(axes.twist) - twist) * F(1.0f / kTurn);
-      const F counted = twist + F(kTurn) * ((turns + F(kRound)) - F(kRound));
+      constexpr float kRevolution = static_cast<float>(2.0 * kPi), kPass = 12582912.0f;
+      const F twist = frames.twist(), turns = (c.get(axes.twist) - twist) * F(1.0f / kRevolution);
+      const F counted = twist + F(kRevolution) * ((turns + F(kPass)) - F(kPass));
       c.put(axes.twist, counted);
       return counted;
     };
@@ -214,7 +218,7 @@ void evaluate_lanes(JointLanes<W, B>& c, const Gone* gone, int at, float fastest
           const V n = c.form().slot[i] == 0   ? frames.ax
                       : c.form().slot[i] == 1 ? frames.ay
                                               : frames.az;
-          c.put(row.residual, dot(n, gap));
+          c.put(row.residual, dot(n, separation));
           c.put(axis, n);
           break;
         }
@@ -227,7 +231,7 @@ void evaluate_lanes(JointLanes<W, B>& c, const Gone* gone, int at, float fastest
           c.put(axis, frames.world(swing.by_y));
           break;
         case kTwist:
-          c.put(row.residual, i < c.form().held ? frames.twist() : counted_twist());
+          c.put(row.residual, i < c.form().locked ? frames.twist() : counted_twist());
           c.put(axis, frames.twist_axis());
           break;
         case kCone: {
@@ -313,15 +317,15 @@ void find_response(const JointLanes<W, B>& c, Lanes<W> (*K)[B::kAll]) {
 
 // How fast a held row takes out its error; what the user made soft is a spring.
 template <int W, class B>
-Lanes<W> fastest_of(const JointLanes<W, B>& c, int i, float push) {
+Lanes<W> fastest_of(const JointLanes<W, B>& c, int i, float bias) {
   using F = Lanes<W>;
   const bool linear = i < B::kPointRows || c.is_along(i - B::kPointRows);
-  F fastest(linear ? push : kFastestTurn);
+  F fastest(linear ? bias : kMaxAngularBias);
   if constexpr (!B::kAxes) {
     const TwelvePart& J = c.block().jacobian[i];
     const auto square = [&](const Field3& f) { return dot(c.get(f), c.get(f)); };
-    fastest = larger(F(push) * sqrt(larger(square(J.linear_a), square(J.linear_b))),
-                     F(kFastestTurn) * sqrt(larger(square(J.angular_a), square(J.angular_b))));
+    fastest = larger(F(bias) * sqrt(larger(square(J.linear_a), square(J.linear_b))),
+                     F(kMaxAngularBias) * sqrt(larger(square(J.angular_a), square(J.angular_b))));
   }
   fastest = larger(fastest, c.rate(i) * (fastest * F(kBriefly)));
   return select(c.relaxes(i) > F(0.0f), fastest, F(kNowhere));
@@ -329,37 +333,37 @@ Lanes<W> fastest_of(const JointLanes<W, B>& c, int i, float push) {
 
 // True if an error of a hard row is too large to be taken out at once.
 template <int W, class B>
-bool prepare_lanes(JointLanes<W, B>& c, const Gone* gone, int at, float fastest_push) {
+bool prepare_lanes(JointLanes<W, B>& c, const Gone* gone, int at, float max_bias_velocity) {
   using F = Lanes<W>;
   constexpr int kAll = B::kAll;
   c.gather_velocities();
-  Vec3T<F> gap;
-  evaluate_lanes(c, gone, at, fastest_push, gap);
+  Vec3T<F> separation;
+  evaluate_lanes(c, gone, at, max_bias_velocity, separation);
   F K[kAll][kAll];
   find_response(c, K);
   B& block = c.block();
-  const int n = c.count(), held = c.held();
+  const int n = c.count(), locked = c.locked();
   LaneMask<W> far = F(0.0f) > F(0.0f);
   F own[kAll];
-  const F gaps[3] = {gap.x, gap.y, gap.z};
+  const F separations[3] = {separation.x, separation.y, separation.z};
   for (int i = 0; i < kAll && i < n; ++i) {
     own[i] = K[i][i];
     c.put(block.own[i], own[i]);
-    if (i >= held) continue;
+    if (i >= locked) continue;
     const F leak = c.loss(i) * own[i];
-    const F residual =
-        i < B::kPointRows ? gaps[i < 3 ? i : 0] : c.get(block.rows[i - B::kPointRows].residual);
-    const F fastest = fastest_of(c, i, fastest_push), most = F(kStrongest) * fastest;
-    const F bias = smaller(larger(c.rate(i) * residual, -most), most);
+    const F residual = i < B::kPointRows ? separations[i < 3 ? i : 0]
+                                         : c.get(block.rows[i - B::kPointRows].residual);
+    const F fastest = fastest_of(c, i, max_bias_velocity), max_impulse = F(kStrongest) * fastest;
+    const F bias = smaller(larger(c.rate(i) * residual, -max_impulse), max_impulse);
     c.put(block.bias[i], bias);
     far = either(far, abs(bias) > fastest);
     c.put(block.leak[i], leak);
     K[i][i] += leak;
   }
   // Below the diagonal L of the held columns; the rest becomes the Schur complement.
-  for (int j = 0; j < kAll && j < held; ++j) {
+  for (int j = 0; j < kAll && j < locked; ++j) {
     const LaneMask<W> independent =
-        both(K[j][j] > F(kDependent) * own[j], K[j][j] > F(kLeastResponse));
+        both(K[j][j] > F(kDependent) * own[j], K[j][j] > F(kMinResponse));
     const F inverse = select(independent, F(1.0f) / K[j][j], F(0.0f));
     for (int i = j + 1; i < n; ++i) {
       const F l = K[i][j] * inverse;
@@ -377,8 +381,8 @@ bool prepare_lanes(JointLanes<W, B>& c, const Gone* gone, int at, float fastest_
 // --- laws of bounded rows ------------------------------------------------------------------------
 
 template <class F>
-F clamped(const F& x, const F& least, const F& most) {
-  return smaller(larger(x, least), most);
+F clamped(const F& x, const F& min_impulse, const F& max_impulse) {
+  return smaller(larger(x, min_impulse), max_impulse);
 }
 
 // The change of a drive's impulse at the speed u, with K what an impulse does to that speed.
@@ -387,7 +391,7 @@ Lanes<W> drive_change(const JointLanes<W, B>& c, int i, const Lanes<W>& u, const
                       float h) {
   using F = Lanes<W>;
   const BoundPart& bound = c.block().bounds[i];
-  const F least = c.get(bound.least), most = c.get(bound.most);
+  const F min_impulse = c.get(bound.min_impulse), max_impulse = c.get(bound.max_impulse);
   const F impulse = c.get(c.block().rows[i].impulse);
   const F stiffness = c.get(bound.stiffness), damping = c.get(bound.damping);
   const F s = F(h * h) * stiffness * K;
@@ -395,10 +399,11 @@ Lanes<W> drive_change(const JointLanes<W, B>& c, int i, const Lanes<W>& u, const
   const F implicit = select(stiff, F(1.0f) - F(kExplicit) / select(stiff, s, F(1.0f)), F(0.0f));
   const F g = F(h) * damping + implicit * F(h * h) * stiffness;
   const F error = c.get(c.block().rows[i].residual) - c.get(bound.position);
-  const F wanted =
+  const F target =
       impulse - (F(h) * stiffness * error + g * u - F(h) * damping * c.get(bound.speed) + impulse) /
                     (F(1.0f) + g * K);
-  return select(most > least, clamped(wanted, least, most) - impulse, F(0.0f));
+  return select(max_impulse > min_impulse, clamped(target, min_impulse, max_impulse) - impulse,
+                F(0.0f));
 }
 
 // The same of what holds within bounds. Where these let it go one way only, a gap may close.
@@ -409,24 +414,25 @@ Lanes<W> hold_change(const JointLanes<W, B>& c, int i, const Lanes<W>& u, const 
   const F zero(0.0f);
   const BoundPart& bound = c.block().bounds[i];
   const RowPart& row = c.block().rows[i];
-  const F least = c.get(bound.least), most = c.get(bound.most), residual = c.get(row.residual);
+  const F min_impulse = c.get(bound.min_impulse), max_impulse = c.get(bound.max_impulse),
+          residual = c.get(row.residual);
   const F impulse = c.get(row.impulse), loss = c.get(row.loss);
-  const LaneMask<W> open =
-      either(both(least >= zero, residual > zero), both(most <= zero, residual < zero));
+  const LaneMask<W> open = either(both(min_impulse >= zero, residual > zero),
+                                  both(max_impulse <= zero, residual < zero));
   const LaneMask<W> gives = K > zero;
   const F mass = select(gives, F(1.0f) / select(gives, K, F(1.0f)), zero);
   const F closes = impulse - mass * (u + residual * F(1.0f / h));
-  const F held = pushes ? impulse - (mass * (u + c.get(row.rate) * residual) + loss * impulse) /
-                                        (F(1.0f) + loss)
-                        : impulse - c.get(row.relaxes) * mass * u;
-  const F wanted = select(open, closes, held);
-  return select(gives, clamped(wanted, least, most) - impulse, zero);
+  const F locked = pushes ? impulse - (mass * (u + c.get(row.rate) * residual) + loss * impulse) /
+                                          (F(1.0f) + loss)
+                          : impulse - c.get(row.relaxes) * mass * u;
+  const F target = select(open, closes, locked);
+  return select(gives, clamped(target, min_impulse, max_impulse) - impulse, zero);
 }
 
 // The same of the limits. An open one lets the gap close; one that is passed is pushed out.
 template <int W, class B>
 Lanes<W> stop_change(const JointLanes<W, B>& c, int i, const Lanes<W>& u, const Lanes<W>& K,
-                     float h, float fastest_push, bool pushes) {
+                     float h, float max_bias_velocity, bool pushes) {
   using F = Lanes<W>;
   const F zero(0.0f);
   const BoundPart& bound = c.block().bounds[i];
@@ -434,19 +440,20 @@ Lanes<W> stop_change(const JointLanes<W, B>& c, int i, const Lanes<W>& u, const 
   const F stop = c.get(bound.stop), residual = c.get(row.residual), loss = c.get(row.loss);
   const F below = residual - c.get(bound.lower), above = c.get(bound.upper) - residual;
   const LaneMask<W> at_lower = below <= above;
-  const F gap = select(at_lower, below, above), side = select(at_lower, F(1.0f), F(-1.0f));
+  const F separation = select(at_lower, below, above), side = select(at_lower, F(1.0f), F(-1.0f));
   const F p = side * stop, speed = side * u;
   const LaneMask<W> gives = K > zero;
   const F mass = select(gives, F(1.0f) / select(gives, K, F(1.0f)), zero);
-  F apart = p - mass * (speed + gap * F(1.0f / h));
-  if (!pushes) apart = smaller(apart, p);  // what closes next is the next sub-step's affair
+  F unbiased = p - mass * (speed + separation * F(1.0f / h));
+  if (!pushes) unbiased = smaller(unbiased, p);  // what closes next is the next sub-step's affair
   const bool linear = !B::kAxes || c.is_along(i);
-  const F push = larger(c.get(row.rate) * gap, F(linear ? -fastest_push : -kFastestTurn));
-  const F passed = pushes ? p - (mass * (speed + push) + loss * p) / (F(1.0f) + loss)
+  const F bias =
+      larger(c.get(row.rate) * separation, F(linear ? -max_bias_velocity : -kMaxAngularBias));
+  const F passed = pushes ? p - (mass * (speed + bias) + loss * p) / (F(1.0f) + loss)
                           : p - c.get(row.relaxes) * mass * speed;
-  const F next = larger(select(gap > zero, apart, passed), zero);
+  const F next = larger(select(separation > zero, unbiased, passed), zero);
   // Of the other limit, or of one that is not there.
-  const LaneMask<W> lets_go = either(p < zero, !(gap < F(0.5f * kNowhere)));
+  const LaneMask<W> lets_go = either(p < zero, !(separation < F(0.5f * kNowhere)));
   return select(lets_go, -stop, side * (next - p));
 }
 
@@ -456,27 +463,27 @@ Lanes<W> stop_change(const JointLanes<W, B>& c, int i, const Lanes<W>& u, const 
 // the changes of impulses; none in lanes that do not go on.
 template <int W, class B>
 void solve_rows(JointLanes<W, B>& c, const LaneMask<W>& goes_on, Lanes<W>* u, Lanes<W>* change,
-                float h, float fastest_push, bool pushes) {
+                float h, float max_bias_velocity, bool pushes) {
   using F = Lanes<W>;
   B& block = c.block();
   const F zero(0.0f);
-  const int n = c.count(), held = c.held();
+  const int n = c.count(), locked = c.locked();
   const auto L = [&](int i, int j) { return c.get(block.factor[factor_index(i, j)]); };
-  for (int j = 0; j < held; ++j) {
+  for (int j = 0; j < locked; ++j) {
     for (int i = j + 1; i < n; ++i) u[i] -= L(i, j) * u[j];
   }
   if constexpr (B::kOtherRows > 0) {
-    for (int i = held; i < n; ++i) change[i] = zero;
-    const int sweeps = n > held + 1 ? kBoundedSweeps : n > held ? 1 : 0;
+    for (int i = locked; i < n; ++i) change[i] = zero;
+    const int sweeps = n > locked + 1 ? kBoundedSweeps : n > locked ? 1 : 0;
     for (int sweep = 0; sweep < sweeps; ++sweep) {
-      for (int i = held; i < n; ++i) {
+      for (int i = locked; i < n; ++i) {
         const int k = i - B::kPointRows;
         const F K = L(i, i);
-        const auto give = [&](Field& of, const F& wanted) {
-          const F p = select(goes_on, wanted, zero);
+        const auto give = [&](Field& of, const F& target) {
+          const F p = select(goes_on, target, zero);
           c.put(of, c.get(of) + p);
           change[i] += p;
-          for (int j = held; j < n; ++j) u[j] += (j < i ? L(i, j) : L(j, i)) * p;
+          for (int j = locked; j < n; ++j) u[j] += (j < i ? L(i, j) : L(j, i)) * p;
         };
         const LaneMask<W> holds = c.get(block.bounds[k].holds) > zero;
         F by_drive = drive_change(c, k, u[i], K, h);
@@ -486,16 +493,16 @@ void solve_rows(JointLanes<W, B>& c, const LaneMask<W>& goes_on, Lanes<W>* u, La
         }
         if (!none(holds)) by_drive = select(holds, hold_change(c, k, u[i], K, h, pushes), by_drive);
         give(block.rows[k].impulse, by_drive);
-        give(block.bounds[k].stop, stop_change(c, k, u[i], K, h, fastest_push, pushes));
+        give(block.bounds[k].stop, stop_change(c, k, u[i], K, h, max_bias_velocity, pushes));
       }
     }
   }
-  for (int i = held - 1; i >= 0; --i) {
+  for (int i = locked - 1; i >= 0; --i) {
     F x = -(L(i, i) * u[i]);
     for (int k = i + 1; k < n; ++k) x -= L(k, i) * change[k];
     change[i] = x;
   }
-  for (int i = 0; i < held; ++i) {
+  for (int i = 0; i < locked; ++i) {
     change[i] = select(goes_on, change[i], zero);
     c.set_impulse(i, c.impulse(i) + change[i]);
   }
@@ -506,14 +513,14 @@ void warm_start_lanes(JointLanes<W, B>& c) {
   Lanes<W> p[B::kAll];
   for (int i = 0; i < c.count(); ++i) p[i] = c.all_impulse(i);
   c.gather_velocities();
-  c.push(p);
+  c.apply_impulse(p);
   c.scatter_velocities();
 }
 
 // A round of pushing. Those after the first of a sub-step pass by what has settled. kSomeFar:
 // some joints of the world have errors too large to be taken out at once.
 template <bool kSomeFar, int W, class B>
-void push_lanes(JointLanes<W, B>& c, float h, float fastest_push, bool first) {
+void solve_lanes(JointLanes<W, B>& c, float h, float max_bias_velocity, bool first) {
   using F = Lanes<W>;
   const F zero(0.0f), one(1.0f);
   B& block = c.block();
@@ -522,20 +529,20 @@ void push_lanes(JointLanes<W, B>& c, float h, float fastest_push, bool first) {
   F u[B::kAll], change[B::kAll];
   c.gather_velocities();
   c.speeds(u);
-  for (int i = 0; i < c.held(); ++i) {
+  for (int i = 0; i < c.locked(); ++i) {
     const F bias = c.get(block.bias[i]);
     const F lost = c.get(block.leak[i]) * c.impulse(i);
-    F wanted = bias + lost;
+    F target = bias + lost;
     if constexpr (kSomeFar) {
       // As fast with what the loss of the load takes from it; the loss itself stays whole.
-      const F fastest = fastest_of(c, i, fastest_push);
-      const F most = larger(fastest - select(bias > zero, lost, -lost), zero);
-      wanted = select(abs(bias) > fastest, clamped(bias, -most, most) + lost, wanted);
+      const F fastest = fastest_of(c, i, max_bias_velocity);
+      const F max_impulse = larger(fastest - select(bias > zero, lost, -lost), zero);
+      target = select(abs(bias) > fastest, clamped(bias, -max_impulse, max_impulse) + lost, target);
     }
-    u[i] += wanted;
+    u[i] += target;
   }
-  solve_rows(c, goes_on, u, change, h, fastest_push, true);
-  c.push(change);
+  solve_rows(c, goes_on, u, change, h, max_bias_velocity, true);
+  c.apply_impulse(change);
   c.scatter_velocities(goes_on);
   F moved = zero, load = zero;  // by what they do: rows are of forces and of moments
   for (int i = 0; i < c.count(); ++i) {
@@ -543,8 +550,8 @@ void push_lanes(JointLanes<W, B>& c, float h, float fastest_push, bool first) {
     moved += (change[i] * own) * change[i];  // squares of impulses may be below what floats hold
     load += (p * own) * p;
   }
-  const LaneMask<W> settled = moved <= F(kSettledJoint * kSettledJoint) * load;
-  c.put(block.active, select(both(goes_on, !settled), one, zero));
+  const LaneMask<W> converged = moved <= F(kJointConverged * kJointConverged) * load;
+  c.put(block.active, select(both(goes_on, !converged), one, zero));
 }
 
 // Takes from velocities what the push has added, and adds up what the sub-step's force was.
@@ -556,9 +563,9 @@ void relax_lanes(JointLanes<W, B>& c, float h) {
   B& block = c.block();
   c.gather_velocities();
   c.speeds(u);
-  for (int i = 0; i < c.held(); ++i) u[i] *= c.relaxes(i);
+  for (int i = 0; i < c.locked(); ++i) u[i] *= c.relaxes(i);
   solve_rows(c, F(0.0f) < F(1.0f), u, change, h, 0.0f, false);
-  c.push(change);
+  c.apply_impulse(change);
   c.scatter_velocities();
   V force = c.get(block.force), torque = c.get(block.torque);
   if constexpr (B::kPointRows > 0) force += c.get(block.point.impulse);

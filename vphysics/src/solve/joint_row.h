@@ -33,7 +33,7 @@ struct JointPair {
   double loss = 0.0;  // softness, as a share of what a unit impulse does
   // Prepared: softness without it; what a unit impulse of the position correction counts.
   double floor = 0.0, answer = 0.0;
-  double push = 0.0;  // of the position correction so far
+  double position_impulse = 0.0;  // of the position correction so far
   // A drive: impulse = -h (stiffness * drive_error + damping * (u - drive_speed)), in its bounds.
   bool drives = false;
   double stiffness = 0.0, damping = 0.0, drive_error = 0.0, drive_speed = 0.0;

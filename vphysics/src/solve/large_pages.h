@@ -27,10 +27,10 @@ struct LargePages {
   T* allocate(std::size_t count) {
     const std::size_t bytes = count * sizeof(T);
     if (bytes < 2 * kPage) return static_cast<T*>(::operator new (bytes, std::align_val_t{64}));
-    const std::size_t whole = (bytes + kPage - 1) / kPage * kPage;
-    void* memory = ::operator new (whole, std::align_val_t{kPage});
+    const std::size_t rounded_up = (bytes + kPage - 1) / kPage * kPage;
+    void* memory = ::operator new (rounded_up, std::align_val_t{kPage});
 #ifdef __linux__
-    (void)madvise(memory, whole, MADV_HUGEPAGE);  // may be refused
+    (void)madvise(memory, rounded_up, MADV_HUGEPAGE);  // may be refused
 #endif
     return static_cast<T*>(memory);
   }

@@ -88,11 +88,11 @@ double response_of(const StepContext& s, const JointPair& pair) {
 // What answers less [1/kg or 1/(kg m^2)] than this cannot be held by an impulse.
 constexpr double kNoAnswer = 1e-12;
 // A row answers, with what it gives way by, at least this share of what its ends answer in any
-// direction, and where an error is taken out by moving them, kLeastMoved of it: where a tree is
+// direction, and where an error is taken out by moving them, kMinMoved of it: where a tree is
 // stretched, so that its end cannot go on, joints that pull it would else throw its links about.
 // The square of the angle [rad] to which it must bend to answer as much. In sub-steps velocities
 // are relaxed, and a heavy load on such a tree needs more.
-constexpr double kLeastAnswer = 1e-2, kLeastInSubSteps = 1e-4, kLeastMoved = 1e-3;
+constexpr double kMinAnswer = 1e-2, kMinInSubSteps = 1e-4, kMinMoved = 1e-3;
 // A drive's spring that is softer than this, in (steps times natural frequency)^2, is integrated so
 // that it neither loses nor gains energy; a stiffer one ever more implicitly.
 constexpr double kExplicitDrive = 0.25;
@@ -104,12 +104,13 @@ void prepare_drive(const StepContext& s, const JointPair& pair, JointRow& row) {
   const double h = s.step, stiff = h * h * pair.stiffness * row.inverse_mass;
   const double implicit = stiff > kExplicitDrive ? 1.0 - kExplicitDrive / stiff : 0.0;
   const double gain = h * pair.damping + implicit * h * h * pair.stiffness;
-  const double push = h * (pair.damping * pair.drive_speed - pair.stiffness * pair.drive_error);
+  const double drive_impulse =
+      h * (pair.damping * pair.drive_speed - pair.stiffness * pair.drive_error);
   if (gain * row.inverse_mass > kNoGain) {
-    row.target = push / gain;
+    row.target = drive_impulse / gain;
     row.softness = 1.0 / gain;
   } else {
-    row.lower = row.upper = std::clamp(push, row.lower, row.upper);
+    row.lower = row.upper = std::clamp(drive_impulse, row.lower, row.upper);
   }
   row.impulse = std::clamp(row.impulse, row.lower, row.upper);
 }
@@ -130,22 +131,22 @@ double largest_answer(const StepContext& s, const PairEnd& end) {
   // Where a force has the row's moment.
   const Vec3 at = turns ? Vec3{} : body.x + (1.0 / force) * cross(end.linear, end.angular);
   double* const y = s.rows.data() + (s.rows.size() - end.side.depth);  // behind all rows
-  double most = 0.0;
+  double max_value = 0.0;
   for (const Vec3& d : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) {
     turns ? factor.moment_row(body.link, d, y) : factor.force_row(body.link, at, d, y);
     double answer = 0.0;
     for (std::uint32_t k = 0; k < end.side.depth; ++k) answer += y[k] * y[k];
-    most = std::max(most, answer);
+    max_value = std::max(max_value, answer);
   }
-  return (turns ? dot(end.angular, end.angular) : force) * most;
+  return (turns ? dot(end.angular, end.angular) : force) * max_value;
 }
 
 // Rows of one joint, which follow one another. largest: what one of them that is like it answers,
 // or could, a force or a moment.
 void prepare(const StepContext& s, JointPair& pair, double largest, JointRow& row) {
-  const double least = s.push_rate > 0.0 ? kLeastInSubSteps : kLeastAnswer;
-  pair.floor = std::max(0.0, least * largest - row.inverse_mass);
-  pair.answer = std::max(row.inverse_mass, kLeastMoved * largest);
+  const double min_value = s.bias_rate > 0.0 ? kMinInSubSteps : kMinAnswer;
+  pair.floor = std::max(0.0, min_value * largest - row.inverse_mass);
+  pair.answer = std::max(row.inverse_mass, kMinMoved * largest);
   row.softness = pair.loss * row.inverse_mass + pair.floor;
   if (pair.drives) prepare_drive(s, pair, row);
   const bool answers = row.inverse_mass > kNoAnswer;
@@ -159,9 +160,9 @@ void prepare_joint(const StepContext& s, std::span<JointRow> rows) {
   for (JointRow& row : rows) {
     const JointPair& pair = s.pairs[row.pair];
     row.inverse_mass = response_of(s, pair);
-    double& most = largest[is_about_an_axis(pair) ? 1 : 0];
-    most =
-        std::max({most, row.inverse_mass, largest_answer(s, pair.a) + largest_answer(s, pair.b)});
+    double& max_value = largest[is_about_an_axis(pair) ? 1 : 0];
+    max_value = std::max(
+        {max_value, row.inverse_mass, largest_answer(s, pair.a) + largest_answer(s, pair.b)});
   }
   for (JointRow& row : rows) {
     JointPair& pair = s.pairs[row.pair];

@@ -42,7 +42,7 @@ inline double along(const LinkSide& side, int row, const double* z) {
   return sum;
 }
 // z += y p
-inline void push(const LinkSide& side, int row, double p, double* z) {
+inline void apply_impulse(const LinkSide& side, int row, double p, double* z) {
   const double* y = side.row(row);
   for (std::uint32_t k = 0, d = side.first; k < side.depth; ++k, d = side.next[d]) {
     z[d] += y[k] * p;

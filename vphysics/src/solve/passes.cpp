@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "solve/contact_passes.h"
-#include "solve/strike_pass.h"
+#include "solve/restitution_pass.h"
 
 namespace vp::solve {
 namespace {
@@ -26,22 +26,26 @@ void accelerate(BodyRow* rows, const std::uint32_t* bodies, std::size_t count, f
   }
 }
 
-void keep(BodyRow* rows, Gain* gains, const std::uint32_t* bodies, std::size_t count) {
+void keep(BodyRow* rows, VelocityChange* velocity_changes, const std::uint32_t* bodies,
+          std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
-    lanes::store<8>(gains[bodies[i]].velocity, lanes::load<8>(rows[bodies[i] + 1].velocity));
+    lanes::store<8>(velocity_changes[bodies[i]].velocity,
+                    lanes::load<8>(rows[bodies[i] + 1].velocity));
   }
 }
-void find_gains(BodyRow* rows, Gain* gains, const std::uint32_t* bodies, std::size_t count) {
+void find_velocity_changes(BodyRow* rows, VelocityChange* velocity_changes,
+                           const std::uint32_t* bodies, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
-    Gain& gain = gains[bodies[i]];
+    VelocityChange& gain = velocity_changes[bodies[i]];
     lanes::store<8>(gain.velocity,
                     lanes::load<8>(rows[bodies[i] + 1].velocity) - lanes::load<8>(gain.velocity));
   }
 }
-void repeat(BodyRow* rows, Gain* gains, const std::uint32_t* bodies, std::size_t count) {
+void repeat(BodyRow* rows, VelocityChange* velocity_changes, const std::uint32_t* bodies,
+            std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
     BodyRow& row = rows[bodies[i] + 1];
-    Gain& gain = gains[bodies[i]];
+    VelocityChange& gain = velocity_changes[bodies[i]];
     const Row8 before = lanes::load<8>(row.velocity);
     lanes::store<8>(row.velocity, before + lanes::load<8>(gain.velocity));
     lanes::store<8>(gain.velocity, before);
@@ -52,7 +56,8 @@ void move(BodyRow* rows, const std::uint32_t* bodies, std::size_t count, float h
   const Row8 step = {h, h, h, h, h, h, 0, 0};
   for (std::size_t i = 0; i < count; ++i) {
     BodyRow& row = rows[bodies[i] + 1];
-    lanes::store<8>(row.way, lanes::load<8>(row.way) + step * lanes::load<8>(row.velocity));
+    lanes::store<8>(row.displacement,
+                    lanes::load<8>(row.displacement) + step * lanes::load<8>(row.velocity));
   }
 }
 
@@ -74,10 +79,11 @@ void load_inertias(const typename ContactPasses<P>::Run& run) {
   for_lanes<P>(run, [](LanesOf<W, P>& c, std::size_t, int) { c.load_inertias(); });
 }
 template <int P>
-[[gnu::flatten]] bool strike(const typename ContactPasses<P>::Run& run, float h, float threshold) {
+[[gnu::flatten]] bool apply_restitution(const typename ContactPasses<P>::Run& run, float h,
+                                        float threshold) {
   bool bounced = false;
   for_lanes<P>(run, [&](LanesOf<W, P>& c, std::size_t, int) {
-    bounced = strike_lanes<W, P>(c, h, threshold) || bounced;
+    bounced = apply_restitution_lanes<W, P>(c, h, threshold) || bounced;
   });
   return bounced;
 }
@@ -85,16 +91,15 @@ template <int P>
 [[gnu::flatten]] void warm_start(const typename ContactPasses<P>::Run& run) {
   for_lanes<P>(run, [](LanesOf<W, P>& c, std::size_t, int) { warm_start_lanes<W, P>(c); });
 }
-template <int P, Round kRound>
+template <int P, Pass kPass>
 [[gnu::flatten]] void solve(const typename ContactPasses<P>::Run& run, const Soft& soft) {
-  for_lanes<P>(run,
-               [&](LanesOf<W, P>& c, std::size_t, int) { solve_lanes<W, P, kRound>(c, soft); });
+  for_lanes<P>(run, [&](LanesOf<W, P>& c, std::size_t, int) { solve_lanes<W, P, kPass>(c, soft); });
 }
 template <int P>
 [[gnu::flatten]] bool relax(const typename ContactPasses<P>::Run& run, const Soft& soft) {
   bool too_deep = false;
   for_lanes<P>(run, [&](LanesOf<W, P>& c, std::size_t, int) {
-    too_deep = solve_lanes<W, P, Round::relax>(c, soft) || too_deep;
+    too_deep = solve_lanes<W, P, Pass::relax>(c, soft) || too_deep;
   });
   return too_deep;
 }
@@ -104,28 +109,28 @@ std::uint32_t used(std::uint32_t lanes, std::uint32_t stride, std::size_t block)
   return (1u << count) - 1u;
 }
 template <int P>
-[[gnu::flatten]] void find_moved(const typename ContactPasses<P>::Run& run, float dt, float turn,
-                                 std::uint32_t* bits) {
+[[gnu::flatten]] void find_moved(const typename ContactPasses<P>::Run& run, float dt,
+                                 float rotation, std::uint32_t* bits) {
   for_lanes<P>(run, [&](LanesOf<W, P>& c, std::size_t block, int at) {
-    const std::uint32_t found = find_moved_lanes<W, P>(c, dt, turn) << at;
+    const std::uint32_t found = find_moved_slots<W, P>(c, dt, rotation) << at;
     const std::uint32_t before = at == 0 ? 0u : bits[block];
     bits[block] = before | (found & used(run.lanes, run.stride, block));
   });
 }
 template <int P>
-[[gnu::flatten]] void find_news(const typename ContactPasses<P>::Run& run, std::uint32_t* bits) {
+[[gnu::flatten]] void find_changes(const typename ContactPasses<P>::Run& run, std::uint32_t* bits) {
   for_lanes<P>(run, [&](LanesOf<W, P>& c, std::size_t block, int at) {
-    const std::uint32_t found = find_news_lanes<W, P>(c, at) << at;
+    const std::uint32_t found = find_changed_slots<W, P>(c, at) << at;
     const std::uint32_t lanes = used(run.lanes, run.stride, block);
     bits[block] = (at == 0 ? 0u : bits[block]) | (found & (lanes | lanes << kLanes));
   });
 }
-[[gnu::flatten]] void find_closer(NearBlock* blocks, std::size_t count, BodyRow* rows, float dt,
-                                  std::uint32_t* bits) {
+[[gnu::flatten]] void find_closer(SpeculativeBlock* blocks, std::size_t count, BodyRow* rows,
+                                  float dt, std::uint32_t* bits) {
   for (std::size_t b = 0; b < count; ++b) {
     std::uint32_t found = 0;
     for (int at = 0; at < kLanes; at += W) {
-      found |= find_closer_lanes<W>(blocks[b], at, rows, dt) << at;
+      found |= find_closer_slots<W>(blocks[b], at, rows, dt) << at;
     }
     bits[b] = found;
   }
@@ -133,8 +138,9 @@ template <int P>
 
 template <int P>
 constexpr ContactPasses<P> contact_passes() {
-  return {load_inertias<P>,       strike<P>, warm_start<P>, solve<P, Round::first>,
-          solve<P, Round::again>, relax<P>,  find_moved<P>, find_news<P>};
+  return {load_inertias<P>,      apply_restitution<P>,  warm_start<P>,
+          solve<P, Pass::first>, solve<P, Pass::again>, relax<P>,
+          find_moved<P>,         find_changes<P>};
 }
 
 }  // namespace
@@ -142,7 +148,7 @@ constexpr ContactPasses<P> contact_passes() {
 
 const vphysics_solver::Passes vphysics_solver::VP_PASSES = {vp::solve::accelerate,
                                                             vp::solve::keep,
-                                                            vp::solve::find_gains,
+                                                            vp::solve::find_velocity_changes,
                                                             vp::solve::repeat,
                                                             vp::solve::move,
                                                             vp::solve::find_closer,

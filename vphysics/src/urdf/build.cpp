@@ -79,8 +79,8 @@ SE3 to_pose(const urdf::Pose& pose) {
 // The rotation that takes z to the axis.
 Mat3 frame_of_plane(const Vec3& axis) {
   const Vec3 z = (1.0 / norm(axis)) * axis;
-  const Vec3 across = cross(z, std::fabs(z.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0});
-  const Vec3 x = (1.0 / norm(across)) * across;
+  const Vec3 perpendicular = cross(z, std::fabs(z.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0});
+  const Vec3 x = (1.0 / norm(perpendicular)) * perpendicular;
   return {x, cross(z, x), z};
 }
 

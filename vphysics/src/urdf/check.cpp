@@ -323,9 +323,9 @@ class Checker {
       limit->SetAttribute("upper", written(lower).c_str());
     }
     for (const char* bound : {"effort", "velocity"}) {
-      const double most = number(*limit, bound, Need::optional);
-      if (limit->Attribute(bound) && most >= 0.0) continue;
-      note(*limit, std::string(bound) + (most < 0.0 ? " is negative" : " is not given") +
+      const double max_value = number(*limit, bound, Need::optional);
+      if (limit->Attribute(bound) && max_value >= 0.0) continue;
+      note(*limit, std::string(bound) + (max_value < 0.0 ? " is negative" : " is not given") +
                        ", and taken as unlimited");
       limit->SetAttribute(bound, written(kUrdfUnbounded).c_str());
     }
@@ -360,9 +360,9 @@ class Checker {
       const std::string name = a->Name();
       const int line = a->GetLineNum();
       a = a->Next();
-      bool wanted = false;
-      for (const char* each : known) wanted = wanted || name == each;
-      if (wanted) continue;
+      bool is_known = false;
+      for (const char* each : known) is_known = is_known || name == each;
+      if (is_known) continue;
       leave_out("attribute " + quoted(name) + " of " + tag(element), line);
       element.DeleteAttribute(name.c_str());
     }
@@ -373,11 +373,11 @@ class Checker {
     for (XMLNode* node = parent.FirstChild(); node && !fault_;) {
       XMLNode* const next = node->NextSibling();
       const XMLElement* element = node->ToElement();
-      bool wanted = false;
+      bool is_known = false;
       for (const char* each : known) {
-        wanted = wanted || (element && std::strcmp(element->Name(), each) == 0);
+        is_known = is_known || (element && std::strcmp(element->Name(), each) == 0);
       }
-      if (!wanted) {
+      if (!is_known) {
         if (element) leave_out(tag(*element) + " of " + tag(parent), element->GetLineNum());
         parent.DeleteChild(node);
       }

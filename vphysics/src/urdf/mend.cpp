@@ -49,13 +49,14 @@ Scale scale_of(const std::vector<LinkSpec>& links) {
   Scale scale;
   std::vector<double> reaches;
   for (const LinkSpec& link : links) {
-    double reach = 0.0;
+    double max_offset = 0.0;
     if (link.parent != kWorld) {
-      reach = reaches[static_cast<std::size_t>(link.parent)] + norm(link.T_parent_joint.position());
+      max_offset =
+          reaches[static_cast<std::size_t>(link.parent)] + norm(link.T_parent_joint.position());
     }
-    reaches.push_back(reach);
+    reaches.push_back(max_offset);
     scale.mass += link.inertia.mass();
-    scale.length = std::max(scale.length, reach);
+    scale.length = std::max(scale.length, max_offset);
   }
   if (!(scale.mass > 0.0)) scale.mass = 1.0;
   if (!(scale.length > 0.0)) scale.length = 1.0;
@@ -83,10 +84,10 @@ Sym3 without_negative(const Sym3& moments) {
 std::vector<int> give_armatures(std::vector<LinkSpec>& links) {
   std::vector<int> given;
   const Scale scale = scale_of(links);
-  std::vector<AInertia> felt(links.size());  // of what hangs on each link
+  std::vector<AInertia> carried(links.size());  // of what hangs on each link
   for (std::size_t i = links.size(); i-- > 0;) {
     LinkSpec& link = links[i];
-    const AInertia J = felt[i] + link.inertia;
+    const AInertia J = carried[i] + link.inertia;
     const std::vector<se3> columns = columns_of(link.joint);
     AInertia beyond = J;
     if (!let_go(beyond, columns, link.armature)) {
@@ -97,7 +98,7 @@ std::vector<int> give_armatures(std::vector<LinkSpec>& links) {
       let_go(beyond, columns, link.armature);
     }
     if (link.parent == kWorld) continue;
-    AInertia& below = felt[static_cast<std::size_t>(link.parent)];
+    AInertia& below = carried[static_cast<std::size_t>(link.parent)];
     below = below + beyond.Xform(Inv(link.T_parent_joint));
   }
   std::reverse(given.begin(), given.end());

@@ -133,9 +133,9 @@ class Importer {
       return tl::make_unexpected(
           Error{Errc::bad_data, "the mesh \"" + collision.mesh + "\": " + what});
     };
-    constexpr double kLeastScale = 1e-9;
+    constexpr double kMinScale = 1e-9;
     for (int k = 0; k < 3; ++k) {
-      if (!(std::fabs(collision.size[k]) >= kLeastScale)) return bad("a scale of zero");
+      if (!(std::fabs(collision.size[k]) >= kMinScale)) return bad("a scale of zero");
     }
     const auto format = mesh_format(collision.mesh);
     if (!format) return bad("not a kind that is read; make it .stl, .obj or .dae");

@@ -17,8 +17,8 @@ Velocity Approach::pull_of(const Body& body) const {
   if (body.motion != Motion::dynamic || body.is_link || body.asleep) return {};
   const Velocity a = loads.acceleration(body, desc.gravity);
   if (body.load == kNone && dot(a.v, a.v) <= kBornePull * kBornePull) return {};
-  const double most = norm(a.v) + body.reach * norm(a.w);
-  if (most <= kBornePull || dt * dt * most <= desc.contact_slop) return {};
+  const double max_value = norm(a.v) + body.bounding_radius * norm(a.w);
+  if (max_value <= kBornePull || dt * dt * max_value <= desc.contact_slop) return {};
   const double mean = 0.5 * dt * (1.0 + 1.0 / sub_steps_in(desc, speed_unit, dt));
   return {mean * a.w, mean * a.v};
 }
@@ -39,15 +39,15 @@ double Approach::of(const Collider& a, const Collider& b) const {
                           at.radius * norm(body_b.w - body_a.w) +
                           pulled(body_a, pull_a, at.centre, at.radius) +
                           pulled(body_b, pull_b, at.centre, at.radius);
-  const auto turned = [&](const Collider& c, const Body& body, const Velocity& pull) {
-    const double turn = dt * (norm(body.w) + norm(pull.w));
-    return c.geometry.kind == collide::Kind::sphere ? 0.0 : c.radius * std::min(turn, 2.0);
+  const auto rotated = [&](const Collider& c, const Body& body, const Velocity& pull) {
+    const double rotation = dt * (norm(body.w) + norm(pull.w));
+    return c.geometry.kind == collide::Kind::sphere ? 0.0 : c.radius * std::min(rotation, 2.0);
   };
   const Vec3 end_a = body_a.T * a.centre, end_b = body_b.T * b.centre;
-  const double apart = norm(velocity(body_b, end_b) - velocity(body_a, end_a)) +
-                       pulled(body_a, pull_a, end_a, 0.0) + pulled(body_b, pull_b, end_b, 0.0);
+  const double separation = norm(velocity(body_b, end_b) - velocity(body_a, end_a)) +
+                            pulled(body_a, pull_a, end_a, 0.0) + pulled(body_b, pull_b, end_b, 0.0);
   return std::min(dt * together,
-                  dt * apart + turned(a, body_a, pull_a) + turned(b, body_b, pull_b));
+                  dt * separation + rotated(a, body_a, pull_a) + rotated(b, body_b, pull_b));
 }
 
 }  // namespace vp

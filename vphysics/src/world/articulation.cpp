@@ -43,7 +43,7 @@ bool continues_axis(const detail::Node<double>& node) {
 
 // The floating tree that a link is of, or -1.
 int tree_of(const Model& model, const std::vector<FloatingTree>& floating, int link) {
-  int node = model.tree().places[static_cast<std::size_t>(link)].node;
+  int node = model.tree().frames[static_cast<std::size_t>(link)].node;
   if (node == kWorld) return -1;
   for (int parent = node; parent != kWorld;) {
     node = parent;
@@ -72,10 +72,10 @@ Articulation::Articulation(const Model& model, const Vec3& gravity)
   v.resize(n);
   dofs.resize(n);
   for (std::vector<double>* scratch : {&damping_, &forced_, &moving_, &drift_, &rate_, &change_,
-                                       &force_, &zero_, &pushed_, &velocity_, &shift_}) {
+                                       &force_, &zero_, &impulse_applied_, &velocity_, &shift_}) {
     scratch->resize(n);
   }
-  whole_.resize(floating_.size());
+  composites_.resize(floating_.size());
   joint_loads_.resize(n);
   loads_.resize(static_cast<std::size_t>(model.links()));
   for (int l = 0; l < model.links(); ++l) floating_of_.push_back(tree_of(model, floating_, l));
@@ -89,12 +89,12 @@ Articulation::Articulation(const Model& model, const Vec3& gravity)
       damped_ = damped_ || link.damping > 0.0;
       JointDof& dof = dofs[i];
       if (!link.forces.empty()) dof.forces = link.forces[static_cast<std::size_t>(k)];
-      const bool gives_way = std::isfinite(dof.forces.limit_stiffness);
+      const bool is_compliant = std::isfinite(dof.forces.limit_stiffness);
       dof.locked = std::isinf(dof.forces.friction);
-      dof.passive = dof.forces.friction > 0.0 || dof.forces.stiffness > 0.0 || gives_way;
+      dof.passive = dof.forces.friction > 0.0 || dof.forces.stiffness > 0.0 || is_compliant;
       if (!has_coordinate(link.joint)) continue;
       dof.coordinate = model.first_coordinate(l) + k;
-      if (gives_way) continue;
+      if (is_compliant) continue;
       dof.lower = std::max(dof.lower, dof.forces.lower);
       dof.upper = std::min(dof.upper, dof.forces.upper);
       if (std::isfinite(dof.forces.lower) || std::isfinite(dof.forces.upper)) stopped_.push_back(i);
@@ -123,7 +123,7 @@ Articulation::Articulation(const Model& model, const Vec3& gravity)
 
 void Articulation::refresh() {
   if (constant_) {
-    place_on_lines();
+    update_line_poses();
     update_twists();
     return;
   }
@@ -142,12 +142,12 @@ void Articulation::find_lines() {
     const auto& node = nodes[i];
     line[i] = node.parent == kWorld ? node.T_parent : line[static_cast<std::size_t>(node.parent)];
     const Vec3 z = detail::pose_of(data_.work(), static_cast<int>(i)).rotation().cz;
-    const double way = dot(z, line[i].rotation().cz) > 0.0 ? 1.0 : -1.0;
+    const double displacement = dot(z, line[i].rotation().cz) > 0.0 ? 1.0 : -1.0;
     const bool turns = node.kind != NodeKind::prismatic;
-    on_line_.push_back({.slides = turns ? way * node.pitch : way,
-                        .turns = turns ? way : 0.0,
+    on_line_.push_back({.slides = turns ? displacement * node.pitch : displacement,
+                        .turns = turns ? displacement : 0.0,
                         .slide = 0.0,
-                        .turn = 0.0,
+                        .rotation = 0.0,
                         .sine = 0.0,
                         .cosine = 1.0});
     if (on_line_.back().slides != 0.0) {
@@ -156,7 +156,7 @@ void Articulation::find_lines() {
     }
   }
   for (int l = 0; l < model_.links(); ++l) {
-    const int node = model_.tree().places[static_cast<std::size_t>(l)].node;
+    const int node = model_.tree().frames[static_cast<std::size_t>(l)].node;
     const SE3 T = vp::T_world_link(model_, data_, l);
     T_world_line_.push_back(node == kWorld ? T : line[static_cast<std::size_t>(node)]);
     T_line_link_.push_back(Inv(T_world_line_.back()) * T);
@@ -189,8 +189,8 @@ bool Articulation::stops_are_far(double h) const {
   for (const std::size_t i : stopped_) {
     const JointDof& dof = dofs[i];
     const double x = q[static_cast<std::size_t>(dof.coordinate)];
-    const double near = reach_of_stop(h, v[i]);
-    if (dof.lower - x > -near || dof.upper - x < near) return false;
+    const double range = stop_range(h, v[i]);
+    if (dof.lower - x > -range || dof.upper - x < range) return false;
   }
   return true;
 }
@@ -205,7 +205,7 @@ void Articulation::compare_drives() {
 
 // p = push - gain (v + response p). Neighbours that move and are driven alike have one impulse.
 // There is a coordinate for each velocity (constant_).
-bool Articulation::settle_alone(double h) {
+bool Articulation::integrate_alone(double h) {
   if (responses_.empty() || !stops_are_far(h)) return false;
   if (!drives_are_compared_) compare_drives();
   double impulse = 0.0, x_before = 0.0, v_before = 0.0, v_after = 0.0;
@@ -218,8 +218,8 @@ bool Articulation::settle_alone(double h) {
       x_before = x;
       v_before = speed;
       const Motor motor = motor_of(dof, h, x);
-      const double p = (motor.push - motor.gain * speed) / (1.0 + motor.gain * responses_[i]);
-      impulse = std::clamp(p, -motor.most, motor.most);
+      const double p = (motor.constant - motor.gain * speed) / (1.0 + motor.gain * responses_[i]);
+      impulse = std::clamp(p, -motor.limit, motor.limit);
       v_after = standing_or(speed + responses_[i] * impulse);
     }
     dof.impulses = {impulse};
@@ -248,28 +248,28 @@ Vec3 Articulation::line_of(int link) const {
   return constant_ && is_plain_[l] ? T_world_line_[l].rotation().cz : Vec3{};
 }
 
-void Articulation::place_on_lines() {
+void Articulation::update_line_poses() {
   const auto& nodes = model_.tree().nodes;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const auto& node = nodes[i];
     const double x = q[static_cast<std::size_t>(node.q)];
     OnLine& on = on_line_[i];
     on.slide = on.slides * x;
-    on.turn = on.turns * x;
+    on.rotation = on.turns * x;
     if (node.parent == kWorld) continue;
     on.slide += on_line_[static_cast<std::size_t>(node.parent)].slide;
-    on.turn += on_line_[static_cast<std::size_t>(node.parent)].turn;
+    on.rotation += on_line_[static_cast<std::size_t>(node.parent)].rotation;
   }
   // Neighbours often turn together: one sine serves them all.
   const OnLine* last = nullptr;
   for (OnLine& on : on_line_) {
-    if (on.turn == 0.0) {
+    if (on.rotation == 0.0) {
       on.sine = 0.0;
       on.cosine = 1.0;
       continue;
     }
-    if (!last || on.turn != last->turn) {
-      const auto [s, c] = sin_cos(on.turn);
+    if (!last || on.rotation != last->rotation) {
+      const auto [s, c] = sin_cos(on.rotation);
       on.sine = s;
       on.cosine = c;
     } else {
@@ -283,7 +283,7 @@ void Articulation::place_on_lines() {
 SE3 Articulation::T_world_link(int link) const {
   if (!constant_) return vp::T_world_link(model_, data_, link);
   const auto l = static_cast<std::size_t>(link);
-  const int node = model_.tree().places[l].node;
+  const int node = model_.tree().frames[l].node;
   const SE3& X = T_world_line_[l];
   if (node == kWorld) return X;
   const OnLine& on = on_line_[static_cast<std::size_t>(node)];
@@ -309,7 +309,7 @@ void Articulation::update_twists() {
 }
 
 se3 Articulation::twist_in_data(int link, const Vec3& p) const {
-  const int node = model_.tree().places[static_cast<std::size_t>(link)].node;
+  const int node = model_.tree().frames[static_cast<std::size_t>(link)].node;
   if (node == kWorld) return {};
   const se3 V = detail::velocity_of(data_.work(), node);
   return {V.w, V.v + cross(V.w, p - detail::origin_of(data_.work(), node))};
@@ -325,7 +325,7 @@ void Articulation::advance(double h) {
   }
   if (constant_) {  // a coordinate for each velocity; and it keeps its twists
     for (std::size_t i = 0; i < v.size(); ++i) q[i] += h * v[i];
-    if (!remote) place_on_lines();
+    if (!remote) update_line_poses();
     return;
   }
   if (!floating_.empty()) {
@@ -343,7 +343,7 @@ void Articulation::look_ahead(double h) {
   moved_q_ = q;
   if (constant_) {
     for (std::size_t i = 0; i < v.size(); ++i) q[i] += rate_[i];
-    place_on_lines();
+    update_line_poses();
     return;
   }
   integrate<double>(model_, moved_q_, rate_, q);
@@ -351,7 +351,7 @@ void Articulation::look_ahead(double h) {
 }
 void Articulation::look_back() {
   q = moved_q_;
-  if (constant_) return place_on_lines();
+  if (constant_) return update_line_poses();
   forward_kinematics<double>(model_, data_, q, v);
 }
 
@@ -359,19 +359,21 @@ void Articulation::look_back() {
 void Articulation::advance_floating(double h) {
   if (factored_ == Factored::no) update_factor();
   factor_.twists(v);
-  for (std::size_t i = 0; i < floating_.size(); ++i) whole_[i] = floating_[i].whole(data_, factor_);
+  for (std::size_t i = 0; i < floating_.size(); ++i)
+    composites_[i] = floating_[i].composite(data_, factor_);
   for (std::size_t i = 0; i < v.size(); ++i) rate_[i] = 0.5 * h * v[i];
   integrate<double>(model_, q, rate_, moved_q_);
   forward_kinematics<double>(model_, data_, moved_q_, v);
   rate_ = v;
   for (std::size_t i = 0; i < floating_.size(); ++i) {
-    floating_[i].set_momentum(model_, data_, floating_[i].whole(model_, data_), whole_[i], rate_);
+    floating_[i].set_momentum(model_, data_, floating_[i].composite(model_, data_), composites_[i],
+                              rate_);
   }
   for (double& r : rate_) r *= h;
   integrate<double>(model_, q, rate_, q);
   forward_kinematics<double>(model_, data_, q, v);
   for (std::size_t i = 0; i < floating_.size(); ++i) {
-    const WholeTree &from = whole_[i], now = floating_[i].whole(model_, data_);
+    const CompositeBody &from = composites_[i], now = floating_[i].composite(model_, data_);
     const Vec3 centre = from.centre + (h / from.mass) * from.linear;
     floating_[i].shift(model_, centre - now.centre, q);
     floating_[i].set_momentum(model_, data_, now, from, v);

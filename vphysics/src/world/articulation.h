@@ -41,14 +41,14 @@ struct JointDof {
 // A motor for h. With f = k (p - q - h v) + d (v_t - v) its impulse is push - gain v, v being the
 // velocity after it, and at most `most`; without a motor both are 0.
 struct Motor {
-  double push = 0.0, gain = 0.0, most = 0.0;
+  double constant = 0.0, gain = 0.0, limit = 0.0;
 };
 inline Motor motor_of(const JointDof& dof, double h, double position) {
   const JointDrive& d = dof.drive;
-  const double most = h * std::min(d.max_force, dof.forces.motor_limit);
+  const double limit = h * std::min(d.max_force, dof.forces.motor_limit);
   const double gain = h * (h * d.stiffness + d.damping);
-  if (!(gain > 0.0 && most > 0.0)) return {};
-  return {h * (d.stiffness * (d.position - position) + d.damping * d.velocity), gain, most};
+  if (!(gain > 0.0 && limit > 0.0)) return {};
+  return {h * (d.stiffness * (d.position - position) + d.damping * d.velocity), gain, limit};
 }
 
 class Articulation {
@@ -110,7 +110,7 @@ class Articulation {
   // What the solver does for an articulation that nothing touches and of which no joint feels
   // another, at the first instant of a step: its motors, whose impulses for h are known at once.
   // False, and nothing done, where it needs the solver.
-  bool settle_alone(double h);
+  bool integrate_alone(double h);
   bool settles_alone() const { return !responses_.empty(); }
   // After a change of any dof's drive.
   void drives_changed() { drives_are_compared_ = false; }
@@ -167,7 +167,7 @@ class Articulation {
   bool in_range() const;
   // Of what the step's forces have added to the velocities, a share, as far as that made them
   // faster.
-  void take_back_forces(double share);
+  void take_back_forces(double fraction);
 
   // Where it was when the step began, at rest.
   void mark_start() {
@@ -204,10 +204,10 @@ class Articulation {
   void find_responses();
   void compare_drives();
   bool stops_are_far(double h) const;
-  void place_on_lines();
+  void update_line_poses();
   se3 twist_in_data(int link, const Vec3& point) const;
   void find_change(double dt, std::span<const double> at);
-  void find_pushed();
+  void find_force_response();
   void add_loads_of_trees(double dt);
   void add_impulse(int link, double dt);
   void add_joint_impulse(std::uint32_t dof, double dt);
@@ -240,7 +240,7 @@ class Articulation {
   // And how far each node has slid along its line and turned about it.
   struct OnLine {
     double slides, turns;  // for one of its own coordinate
-    double slide, turn;
+    double slide, rotation;
     double sine, cosine;  // of the turn
   };
   std::vector<OnLine> on_line_;         // of each node
@@ -268,9 +268,10 @@ class Articulation {
   // Scratch.
   std::vector<double> moving_, drift_;  // sub-steps: v as it moves; mean velocity less v
   std::vector<double> forced_;          // what the forces of this step have added to v
-  std::vector<double> start_q_, moved_q_, rate_, change_, force_, zero_, pushed_, velocity_, shift_;
+  std::vector<double> start_q_, moved_q_, rate_, change_, force_, zero_, impulse_applied_,
+      velocity_, shift_;
   std::vector<double> remote_q_;
-  std::vector<WholeTree> whole_;
+  std::vector<CompositeBody> composites_;
   std::vector<double> fall_;  // the acceleration of a constant one
 };
 

@@ -3,9 +3,9 @@
 
 #include "vphysics/assert.h"
 #include "world/impl.h"
+#include "world/invalid.h"
 #include "world/recorded_call.h"
-#include "world/refuse.h"
-#include "world/structure.h"
+#include "world/topology_hash.h"
 #include "world/validate.h"
 
 namespace vp {
@@ -21,34 +21,34 @@ Articulation* World::Impl::find(ArticulationId id) {
 
 namespace {
 
-bool turns_about_a_point(const Joint& joint) {
+bool rotates_about_a_point(const Joint& joint) {
   return std::holds_alternative<RevoluteJoint>(joint) ||
          std::holds_alternative<UniversalJoint>(joint) || std::holds_alternative<BallJoint>(joint);
 }
 
 // Ancestors come before what hangs on them.
-void find_places(const Model& model, const Articulation& art, Bodies& bodies) {
+void find_neighbours(const Model& model, const Articulation& art, Bodies& bodies) {
   constexpr double kOnePoint = 1e-6;  // [m]: files have rounded numbers
   std::vector<SE3> T_leader_link;
   for (int l = 0; l < model.links(); ++l) {
     const LinkSpec& link = model.link(l);
-    LinkPlace parent;
+    LinkNeighbours parent;
     SE3 T_leader_joint = link.T_parent_joint;
     if (link.parent != kWorld) {
-      parent = bodies[art.body_of(link.parent)].place_in_tree;
+      parent = bodies[art.body_of(link.parent)].neighbours;
       T_leader_joint = T_leader_link[static_cast<std::size_t>(link.parent)] * T_leader_joint;
     }
-    LinkPlace& place = bodies[art.body_of(l)].place_in_tree;
+    LinkNeighbours& neighbours = bodies[art.body_of(l)].neighbours;
     if (velocities_of(link.joint) == 0) {
-      place = parent;
+      neighbours = parent;
       T_leader_link.push_back(T_leader_joint);
       continue;
     }
-    const bool continues_joint = parent.leader != kWorld && turns_about_a_point(link.joint) &&
-                                 turns_about_a_point(model.link(parent.leader).joint) &&
+    const bool continues_joint = parent.leader != kWorld && rotates_about_a_point(link.joint) &&
+                                 rotates_about_a_point(model.link(parent.leader).joint) &&
                                  norm(T_leader_joint.position()) <= kOnePoint;
-    place =
-        continues_joint ? LinkPlace{l, parent.head, parent.base} : LinkPlace{l, l, parent.leader};
+    neighbours = continues_joint ? LinkNeighbours{l, parent.head, parent.base}
+                                 : LinkNeighbours{l, l, parent.leader};
     T_leader_link.emplace_back();
   }
 }
@@ -56,12 +56,12 @@ void find_places(const Model& model, const Articulation& art, Bodies& bodies) {
 }  // namespace
 
 Expected<ArticulationId> World::create_articulation(const ArticulationDesc& desc) {
-  if (auto problem = problem_with(desc)) return refuse("create_articulation: " + *problem);
+  if (auto problem = problem_with(desc)) return invalid("create_articulation: " + *problem);
   Articulation art(desc.model, impl_->desc.gravity);
   if (!art.is_regular()) {
-    return refuse(Errc::singular,
-                  "create_articulation: a joint moves no inertia; give its links an inertia about "
-                  "its axis, or the joint an armature");
+    return invalid(Errc::singular,
+                   "create_articulation: a joint moves no inertia; give its links an inertia about "
+                   "its axis, or the joint an armature");
   }
   auto number = static_cast<std::uint32_t>(impl_->articulations.size());
   if (!impl_->free_articulations.empty()) {
@@ -79,10 +79,10 @@ Expected<ArticulationId> World::create_articulation(const ArticulationDesc& desc
     body.link = link;
     art.bodies.push_back(index);
   }
-  if (desc.links_collide) find_places(desc.model, art, impl_->bodies);
-  Structure structure(impl_->structure);
-  structure.add(0x400u + art.bodies.front());
-  structure.add(desc);
+  if (desc.links_collide) find_neighbours(desc.model, art, impl_->bodies);
+  TopologyHash topology_hash(impl_->topology_hash);
+  topology_hash.add(0x400u + art.bodies.front());
+  topology_hash.add(desc);
   impl_->follow(art);
   if (number < impl_->articulations.size()) {
     impl_->articulations[number] = std::move(art);
@@ -128,8 +128,8 @@ std::span<const double> World::velocities(ArticulationId id) const {
 Expected<void> World::set_joint_states(ArticulationId id, std::span<const double> q,
                                        std::span<const double> v) {
   Articulation* art = impl_->find(id);
-  if (!art) return refuse("set_joint_states: no such articulation");
-  if (auto problem = problem_with(*art, q, v)) return refuse("set_joint_states: " + *problem);
+  if (!art) return invalid("set_joint_states: no such articulation");
+  if (auto problem = problem_with(*art, q, v)) return invalid("set_joint_states: " + *problem);
   art->keep_end_of_step();
   std::copy(q.begin(), q.end(), art->q.begin());
   std::copy(v.begin(), v.end(), art->v.begin());
@@ -171,16 +171,16 @@ Expected<void> World::set_joint_state(ArticulationId id, int link, int dof, doub
   Articulation* art = impl_->find(id);
   const int i = coordinate_dof(art, link, dof);
   if (i < 0) {
-    return refuse(
+    return invalid(
         "set_joint_state: no such joint coordinate; check articulation, link and dof, and set ball "
         "and free joints by set_joint_states");
   }
   if (!in_range(position) || !in_range(velocity)) {
-    return refuse("set_joint_state: position and velocity must be finite and at most 1e9");
+    return invalid("set_joint_state: position and velocity must be finite and at most 1e9");
   }
   const JointDof& joint = art->dofs[static_cast<std::size_t>(i)];
   if (position < joint.lower || position > joint.upper) {
-    return refuse("set_joint_state: the position must lie between the joint's stops");
+    return invalid("set_joint_state: the position must lie between the joint's stops");
   }
   art->keep_end_of_step();
   art->q[static_cast<std::size_t>(joint.coordinate)] = position;
@@ -208,7 +208,7 @@ Expected<void> World::set_drive(ArticulationId id, int link, int dof, const Join
   const int i = art ? art->dof_index(link, dof) : -1;
   JointDof* joint = i >= 0 ? &art->dofs[static_cast<std::size_t>(i)] : nullptr;
   if (!joint || !can_drive(*joint, drive)) {
-    return refuse("set_drive: " + why_no_drive(joint != nullptr, drive));
+    return invalid("set_drive: " + why_no_drive(joint != nullptr, drive));
   }
   joint->drive = drive;
   art->drives_changed();
@@ -219,13 +219,13 @@ Expected<void> World::set_drive(ArticulationId id, int link, int dof, const Join
 Expected<void> World::set_drives(ArticulationId id, std::span<const JointDrive> drives) {
   Articulation* art = impl_->find(id);
   if (!art || drives.size() != art->dofs.size()) {
-    return refuse("set_drives: give each degree of freedom of an articulation a drive");
+    return invalid("set_drives: give each degree of freedom of an articulation a drive");
   }
   bool changed = false;
   for (std::size_t i = 0; i < drives.size(); ++i) {
     if (art->dofs[i].drive == drives[i]) continue;  // accepted before
     if (!can_drive(art->dofs[i], drives[i]))
-      return refuse("set_drives: " + why_no_drive(true, drives[i]));
+      return invalid("set_drives: " + why_no_drive(true, drives[i]));
     changed = true;
   }
   if (changed) {

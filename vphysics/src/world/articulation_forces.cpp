@@ -18,7 +18,7 @@ void Articulation::find_change(double dt, std::span<const double> at) {
     factor_.bias(gravity_, force_);
   }
   for (std::size_t i = 0; i < v.size(); ++i) {
-    change_[i] = dt * (pushed_[i] - force_[i] - damping_[i] * v[i]);
+    change_[i] = dt * (impulse_applied_[i] - force_[i] - damping_[i] * v[i]);
   }
   factor_.solve(change_);
 }
@@ -28,37 +28,37 @@ void Articulation::clear_loads() {
   loaded_ = false;
   std::fill(loads_.begin(), loads_.end(), dse3{});
   std::fill(joint_loads_.begin(), joint_loads_.end(), 0.0);
-  std::fill(pushed_.begin(), pushed_.end(), 0.0);
+  std::fill(impulse_applied_.begin(), impulse_applied_.end(), 0.0);
 }
 
 // All of the user's, along the joints.
-void Articulation::find_pushed() {
-  pushed_ = joint_loads_;
+void Articulation::find_force_response() {
+  impulse_applied_ = joint_loads_;
   for (std::size_t l = 0; l < loads_.size(); ++l) {
     if (loads_[l] == dse3{}) continue;
     const int link = static_cast<int>(l);
-    factor_.add_load(link, T_world_link(link).position(), loads_[l], pushed_);
+    factor_.add_load(link, T_world_link(link).position(), loads_[l], impulse_applied_);
   }
 }
 
 // What they add to the momentum of trees whose roots are free: those on links, and those of the
 // root's own joint, which are in its frame.
 void Articulation::add_loads_of_trees(double dt) {
-  const auto add = [&](WholeTree& tree, const Vec3& at, const dse3& load) {
+  const auto add = [&](CompositeBody& tree, const Vec3& at, const dse3& load) {
     tree.linear += dt * load.f;
     tree.angular += dt * (load.m + cross(at - tree.centre, load.f));
   };
   for (std::size_t l = 0; l < loads_.size(); ++l) {
     if (floating_of_[l] < 0) continue;
     const SE3 T = T_world_link(static_cast<int>(l));
-    add(whole_[static_cast<std::size_t>(floating_of_[l])], T.position(), loads_[l]);
+    add(composites_[static_cast<std::size_t>(floating_of_[l])], T.position(), loads_[l]);
   }
   for (std::size_t i = 0; i < floating_.size(); ++i) {
     const int root = floating_[i].root();
     const Mat3 R = detail::pose_of(data_.work(), root).rotation();
     const double* f = joint_loads_.data() + model_.tree().nodes[static_cast<std::size_t>(root)].v;
-    const WholeTree& tree = whole_[i];
-    add(whole_[i], tree.root, {R * Vec3{f[0], f[1], f[2]}, R * Vec3{f[3], f[4], f[5]}});
+    const CompositeBody& tree = composites_[i];
+    add(composites_[i], tree.root, {R * Vec3{f[0], f[1], f[2]}, R * Vec3{f[3], f[4], f[5]}});
   }
 }
 
@@ -121,9 +121,9 @@ void Articulation::add_damping_efforts(std::span<const double> gained) {
   }
 }
 
-void Articulation::take_back_forces(double share) {
+void Articulation::take_back_forces(double fraction) {
   for (std::size_t i = 0; i < v.size(); ++i) {
-    const double added = share * forced_[i];
+    const double added = fraction * forced_[i];
     if (added * v[i] > 0.0)
       v[i] -= std::copysign(std::min(std::fabs(added), std::fabs(v[i])), v[i]);
   }
@@ -140,19 +140,21 @@ bool Articulation::add_forces(double dt, bool& changed) {
   factored_ = Factored::for_the_step;
   factored_time_ = dt;
   if (!floating_.empty()) factor_.twists(v);
-  for (std::size_t i = 0; i < floating_.size(); ++i) whole_[i] = floating_[i].whole(data_, factor_);
-  if (loaded_) find_pushed();
+  for (std::size_t i = 0; i < floating_.size(); ++i)
+    composites_[i] = floating_[i].composite(data_, factor_);
+  if (loaded_) find_force_response();
   find_change(dt, v);
   for (std::size_t i = 0; i < v.size(); ++i) rate_[i] = v[i] + 0.5 * change_[i];
   find_change(dt, rate_);
   for (std::size_t i = 0; i < v.size(); ++i) v[i] += change_[i];
   if (!floating_.empty()) factor_.twists(v);
   for (std::size_t i = 0; i < floating_.size(); ++i) {
-    whole_[i].linear += (dt * whole_[i].mass) * gravity_;
+    composites_[i].linear += (dt * composites_[i].mass) * gravity_;
   }
   if (loaded_) add_loads_of_trees(dt);
   for (std::size_t i = 0; i < floating_.size(); ++i) {
-    floating_[i].set_momentum(model_, data_, floating_[i].whole(data_, factor_), whole_[i], v);
+    floating_[i].set_momentum(model_, data_, floating_[i].composite(data_, factor_), composites_[i],
+                              v);
   }
   update_twists();
   return fine;

@@ -17,7 +17,7 @@ void World::Impl::follow(Articulation& art) {
     art.remote = false;
     art.refresh();
     for (const std::uint32_t b : art.bodies) impacts.remote_bodies[b] = 0;
-    impacts.bodies_are_stale = true;
+    impacts.bodies_are_dirty = true;
   }
   follow_poses(art);
   follow_velocities(art, false);
@@ -86,7 +86,7 @@ class JointRows {
   // With memory, rows start from what they were in the last step, and are remembered. share: of a
   // step, for which what is remembered is, the rows have.
   JointRows(std::vector<solve::JointRow>& rows, std::uint32_t articulation, std::uint32_t i,
-            Articulation& art, bool with_memory, double share)
+            Articulation& art, bool with_memory, double fraction)
       : rows_(rows),
         dof_(art.dofs[i]),
         speed_(art.v[i]),
@@ -95,14 +95,14 @@ class JointRows {
         with_memory_(with_memory) {
     if (dof_.coordinate >= 0) q_ = art.q[static_cast<std::size_t>(dof_.coordinate)];
     if (!with_memory_) return;
-    for (std::size_t k = 0; k < before_.size(); ++k) before_[k] = share * dof_.impulses[k];
+    for (std::size_t k = 0; k < before_.size(); ++k) before_[k] = fraction * dof_.impulses[k];
     dof_.impulses = {};
   }
 
   void add_motor(double h) {
     const Motor motor = motor_of(dof_, h, q_);
-    if (motor.most <= 0.0) return;
-    add(kMotorRow, motor.push / motor.gain, -motor.most, motor.most, 1.0 / motor.gain);
+    if (motor.limit <= 0.0) return;
+    add(kMotorRow, motor.constant / motor.gain, -motor.limit, motor.limit, 1.0 / motor.gain);
   }
   // Spring, dry friction, and limits that give way.
   void add_passive(double h) {
@@ -127,9 +127,9 @@ class JointRows {
     if (dof_.locked) add(kFrictionRow, 0.0, -kAny, kAny);
     if (dof_.coordinate < 0) return;
     const double below = dof_.lower - q_, above = dof_.upper - q_;
-    const double near = reach_of_stop(h, speed_);
-    if (below > -near) add(kLowerRow, below / (below > 0.0 ? dt : h), 0.0, kAny);
-    if (above < near) add(kUpperRow, above / (above < 0.0 ? dt : h), -kAny, 0.0);
+    const double range = stop_range(h, speed_);
+    if (below > -range) add(kLowerRow, below / (below > 0.0 ? dt : h), 0.0, kAny);
+    if (above < range) add(kUpperRow, above / (above < 0.0 ? dt : h), -kAny, 0.0);
   }
 
  private:
@@ -166,13 +166,13 @@ class JointRows {
 // Motors, springs and friction are felt once a step, or once a sub-step; impacts are over too soon
 // for them.
 void World::Impl::add_joint_rows(double h, double dt, RowsOf of) {
-  const double share = h / dt_now;
+  const double fraction = h / dt_now;
   impacts.joint_rows.clear();
   impacts.joint_pairs.clear();
   for (std::uint32_t a = 0; a < articulations.size(); ++a) {
     Articulation& art = articulations[a];
     if (!art.alive || (of == RowsOf::sub_step && !art.sub_stepped)) continue;
-    if (of == RowsOf::first_instant && !art.sub_stepped && !art.touched && art.settle_alone(h)) {
+    if (of == RowsOf::first_instant && !art.sub_stepped && !art.touched && art.integrate_alone(h)) {
       if (!art.remote) follow_velocities(art, false);
       continue;
     }
@@ -182,7 +182,7 @@ void World::Impl::add_joint_rows(double h, double dt, RowsOf of) {
     }
     const bool first = of == RowsOf::sub_step || (of == RowsOf::first_instant && !art.sub_stepped);
     for (std::uint32_t i = 0; i < art.dofs.size(); ++i) {
-      JointRows rows(impacts.joint_rows, a, i, art, first, share);
+      JointRows rows(impacts.joint_rows, a, i, art, first, fraction);
       if (first) {
         rows.add_motor(h);
         if (art.dofs[i].passive) rows.add_passive(h);
@@ -218,7 +218,7 @@ void World::Impl::end_solve_articulations(bool first) {
 
 void World::Impl::advance_articulations(double h) {
   for (Articulation& art : articulations) {
-    if (!art.alive || impacts.held[art.bodies.front()]) continue;
+    if (!art.alive || impacts.stopped[art.bodies.front()]) continue;
     art.advance(h);
     if (stop_if_out_of_range(art)) {
       hold(art.bodies.front());
@@ -243,7 +243,7 @@ bool World::Impl::stop_if_out_of_range(Articulation& art) {
 // A link is held with all of its articulation.
 void World::Impl::hold(std::uint32_t index) {
   const auto stand = [&](std::uint32_t b) {
-    impacts.held[b] = 1;
+    impacts.stopped[b] = 1;
     impacts.motions[b].v = impacts.motions[b].w = {};
   };
   if (!bodies[index].is_link) return stand(index);

@@ -15,15 +15,17 @@ constexpr double kMargin = 0.1;
 // Half a margin of the least collider is within all enlarged bounds (update_bounds). Sums of
 // components, no less than the lengths, will do.
 bool stays_within_bounds(const Body& body, const solve::BodyRow& row, float dt) {
-  const float *at = body.bounded_at, *way = row.way, *velocity = row.velocity;
-  const auto gone = [&](int i) { return std::fabs(way[i] - at[i]) + dt * std::fabs(velocity[i]); };
-  const float linear = gone(0) + gone(1) + gone(2), turned = gone(3) + gone(4) + gone(5);
-  return static_cast<double>(linear) + body.reach * static_cast<double>(turned) <
-         0.5 * kMargin * body.least_size;
+  const float *at = body.bounded_at, *displacement = row.displacement, *velocity = row.velocity;
+  const auto gone = [&](int i) {
+    return std::fabs(displacement[i] - at[i]) + dt * std::fabs(velocity[i]);
+  };
+  const float linear = gone(0) + gone(1) + gone(2), rotated = gone(3) + gone(4) + gone(5);
+  return static_cast<double>(linear) + body.bounding_radius * static_cast<double>(rotated) <
+         0.5 * kMargin * body.min_size;
 }
 // Of all that a collider passes in a step.
-collide::Bounds bounds_along(const collide::Bounds& b, const Vec3& way, double more) {
-  const collide::Bounds end{b.lower + way, b.upper + way};
+collide::Bounds bounds_along(const collide::Bounds& b, const Vec3& displacement, double more) {
+  const collide::Bounds end{b.lower + displacement, b.upper + displacement};
   return grown(merged(b, end), more);
 }
 
@@ -42,15 +44,15 @@ void place(Body& body, const Vec3& reference, const Mat3& R) {
   body.moved();
 }
 
-bool never_meet(const Body& a, const Body& b) {
+bool never_collide(const Body& a, const Body& b) {
   if (!a.is_link || a.articulation != b.articulation) return false;
-  const LinkPlace &p = a.place_in_tree, &q = b.place_in_tree;
+  const LinkNeighbours &p = a.neighbours, &q = b.neighbours;
   return p.leader == q.leader || p.head == q.head || p.base == q.leader || p.leader == q.base;
 }
 
-bool may_meet(const Body& a, const Body& b) {
+bool may_overlap(const Body& a, const Body& b) {
   if (!(a.categories & b.masks) || !(b.categories & a.masks)) return false;
-  if (never_meet(a, b)) return false;
+  if (never_collide(a, b)) return false;
   const bool pushable = a.motion == Motion::dynamic || b.motion == Motion::dynamic;
   return pushable || a.has_sensor || b.has_sensor;
 }
@@ -62,9 +64,9 @@ solve::ContactGraph::End end_of(const Bodies& bodies, std::uint32_t body) {
 }
 
 bool BodyLists::refresh(const Bodies& bodies) {
-  if (!stale_) return false;
-  stale_ = false;
-  movers.clear();
+  if (!dirty_) return false;
+  dirty_ = false;
+  awake_bodies.clear();
   links.clear();
   some_continuous = some_sub_stepped = some_sleep = false;
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
@@ -75,7 +77,7 @@ bool BodyLists::refresh(const Bodies& bodies) {
     } else if (body.asleep) {
       some_sleep = true;
     } else if (body.motion != Motion::fixed) {
-      movers.push_back(i);
+      awake_bodies.push_back(i);
       (body.continuous ? some_continuous : some_sub_stepped) = true;
     }
   }
@@ -85,7 +87,7 @@ bool BodyLists::refresh(const Bodies& bodies) {
 void World::Impl::list_bodies() {
   if (!lists.refresh(bodies)) return;
   impacts.swept_body_pairs.invalidate();
-  regions.sort(bodies, lists.movers);
+  regions.sort(bodies, lists.awake_bodies);
   list_remote_articulations();
   impacts.discrete_body_pairs.list_filters(bodies);
   reserve_link_rows();
@@ -93,50 +95,53 @@ void World::Impl::list_bodies() {
 
 // Contacts that have points are looked at again; of the others the clearance becomes less by what
 // has been used of it.
-void World::Impl::start_way_anew(std::uint32_t index) {
-  const auto for_near = [&](const auto& f) {
+void World::Impl::restart_displacement(std::uint32_t index) {
+  const auto for_speculative = [&](const auto& f) {
     contact_store.for_each_of(bodies[index], [&](std::uint32_t contact, const Contact& c) {
-      if (!c.stale && !c.parked && !c.of_link && c.place.points == 0) f(contact, c);
+      if (!c.dirty && !c.parked && !c.of_link && c.slot.points == 0) f(contact, c);
     });
   };
-  for_near([&](std::uint32_t, const Contact& c) { contact_store.use_clearance(c, body_set); });
-  std::fill_n(body_rows[index + 1].way, 6, 0.0f);
-  std::fill_n(sub_step.start_ways[index].begin(), 6, 0.0f);
+  for_speculative(
+      [&](std::uint32_t, const Contact& c) { contact_store.use_clearance(c, body_set); });
+  std::fill_n(body_rows[index + 1].displacement, 6, 0.0f);
+  std::fill_n(sub_step.start_displacements[index].begin(), 6, 0.0f);
   std::fill_n(bodies[index].bounded_at, 6, 1e9f);
-  for_near([&](std::uint32_t contact, const Contact& c) {
+  for_speculative([&](std::uint32_t contact, const Contact& c) {
     const double left = contact_store.clearance(c);
     if (left > 0.0) return contact_store.set_clearance(c, left, body_set);
-    contact_store.reset_near(c, body_set);
-    contact_store.mark_stale(contact);
+    contact_store.reset_speculative(c, body_set);
+    contact_store.mark_dirty(contact);
   });
   contact_store.for_each_of(bodies[index], [&](std::uint32_t contact, const Contact& c) {
-    if (c.place.points > 0 || c.sensor || c.of_link || c.parked) contact_store.mark_stale(contact);
+    if (c.slot.points > 0 || c.sensor || c.of_link || c.parked) contact_store.mark_dirty(contact);
   });
 }
 
 void World::Impl::load_rows(double dt) {
   constexpr std::uint8_t kFar = 1, kLeaves = 2, kPulled = 4;
-  sub_step.mover_news.resize(lists.movers.size());
+  sub_step.awake_body_changed.resize(lists.awake_bodies.size());
   const BodyRows step = rows_in(dt);
   const Approach approach = approach_in(dt);
-  workers.in_parallel(lists.movers.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      const std::uint32_t i = lists.movers[k];
-      Body& body = bodies[i];
-      if (body.motion == Motion::kinematic) prescribe_velocity(body, dt);
-      const bool far = step.load(body, i);
-      const bool stays = joins_sub_steps(body) &&
-                         stays_within_bounds(body, body_rows[i + 1], static_cast<float>(dt));
-      const bool pulled = !(approach.pull_of(body) == Velocity{});
-      sub_step.mover_news[k] = static_cast<std::uint8_t>((far ? kFar : 0) | (pulled ? kPulled : 0) |
-                                                         (far || !stays ? kLeaves : 0));
-    }
-  });
-  for (std::size_t k = 0; k < lists.movers.size(); ++k) {
-    if (sub_step.mover_news[k] == 0) continue;
-    const std::uint32_t i = lists.movers[k];
-    if ((sub_step.mover_news[k] & kFar) != 0) start_way_anew(i);
-    if ((sub_step.mover_news[k] & kPulled) != 0) contact_store.mark_stale_of(bodies[i]);
+  workers.in_parallel(
+      lists.awake_bodies.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+          const std::uint32_t i = lists.awake_bodies[k];
+          Body& body = bodies[i];
+          if (body.motion == Motion::kinematic) prescribe_velocity(body, dt);
+          const bool far = step.load(body, i);
+          const bool stays = joins_sub_steps(body) &&
+                             stays_within_bounds(body, body_rows[i + 1], static_cast<float>(dt));
+          const bool pulled = !(approach.pull_of(body) == Velocity{});
+          sub_step.awake_body_changed[k] = static_cast<std::uint8_t>(
+              (far ? kFar : 0) | (pulled ? kPulled : 0) | (far || !stays ? kLeaves : 0));
+        }
+      });
+  for (std::size_t k = 0; k < lists.awake_bodies.size(); ++k) {
+    if (sub_step.awake_body_changed[k] == 0) continue;
+    const std::uint32_t i = lists.awake_bodies[k];
+    if ((sub_step.awake_body_changed[k] & kFar) != 0) restart_displacement(i);
+    if ((sub_step.awake_body_changed[k] & kPulled) != 0)
+      contact_store.mark_contacts_dirty(bodies[i]);
     if (bodies[i].first_collider != kNone) update_bounds(i, dt, joins_sub_steps(bodies[i]));
   }
 }
@@ -146,23 +151,23 @@ void World::Impl::update_bounds(std::uint32_t index, double dt, bool by_rows) {
   Body& body = bodies[index];
   pose_colliders(bodies[index], colliders);
   const Velocity pull = approach_in(dt).pull_of(body);
-  const double turn = dt * (norm(body.w) + norm(pull.w));
+  const double rotation = dt * (norm(body.w) + norm(pull.w));
   const Vec3 reference = reference_point(body);
   for (std::uint32_t c = body.first_collider; c != kNone; c = colliders[c].next) {
     const Collider& collider = colliders[c];
     // Its centre goes along an arc, which leaves its tangent by half of the square of the turn.
     const Vec3 arm = body.T * collider.centre - reference;
-    const Vec3 way = dt * (body.v + cross(body.w, arm));
+    const Vec3 displacement = dt * (body.v + cross(body.w, arm));
     const double own = collider.geometry.kind == collide::Kind::sphere ? 0.0 : collider.radius;
-    const double more = turn * own + 0.5 * turn * turn * norm(arm) + desc.contact_slop;
+    const double more = rotation * own + 0.5 * rotation * rotation * norm(arm) + desc.contact_slop;
     // Half of the margin is left now, whether the enlarged bounds are new or those of before.
     const double half = 0.5 * kMargin * collider.size;
     const Vec3 pulled = dt * (pull.v + cross(pull.w, arm));
     const collide::Bounds start = bounds_along(collider.bounds, pulled, 0.0);
-    finder.set_bounds(collider.proxy, bounds_along(start, way, more + half), half,
-                      2.0 * (way + pulled));
+    finder.set_bounds(collider.proxy, bounds_along(start, displacement, more + half), half,
+                      2.0 * (displacement + pulled));
   }
-  if (by_rows) std::copy_n(body_rows[index + 1].way, 6, body.bounded_at);
+  if (by_rows) std::copy_n(body_rows[index + 1].displacement, 6, body.bounded_at);
 }
 
 Velocity World::Impl::settle(const BodyRows& rows, std::uint32_t index) {
@@ -178,7 +183,7 @@ Velocity World::Impl::settle(const BodyRows& rows, std::uint32_t index) {
 // and no way that is no number gets into a contact that is kept.
 void World::Impl::forget_lost_bodies() {
   for (const std::uint32_t i : lost_bodies) {
-    std::fill_n(body_rows[i + 1].way, 6, 0.0f);
+    std::fill_n(body_rows[i + 1].displacement, 6, 0.0f);
     std::fill_n(bodies[i].bounded_at, 6, 1e9f);
   }
   for (const std::uint32_t i : lost_bodies) {
@@ -191,14 +196,14 @@ void World::Impl::forget_lost_bodies() {
 // What its lanes hold is no good to start from.
 void World::Impl::forget_contacts(std::uint32_t body) {
   contact_store.for_each_of(bodies[body], [&](std::uint32_t index, const Contact& c) {
-    contact_store.mark_stale(index);
+    contact_store.mark_dirty(index);
     if (c.is_part()) {
       contact_store.forget_part(index, body_set);
-    } else if (c.place.points > 0) {
-      contact_store.take_out_of_lane(index, body_set);
-      contact_store.set_near(index, 0.0, body_set);
+    } else if (c.slot.points > 0) {
+      contact_store.release_slot(index, body_set);
+      contact_store.set_speculative(index, 0.0, body_set);
     } else if (!c.parked) {
-      contact_store.reset_near(c, body_set);
+      contact_store.reset_speculative(c, body_set);
     }
   });
 }
@@ -209,7 +214,7 @@ void World::Impl::jumped(std::uint32_t index) {
   Body& body = bodies[index];
   wake(index);
   wake_neighbours(index);
-  contact_store.mark_stale_of(bodies[index]);
+  contact_store.mark_contacts_dirty(bodies[index]);
   std::fill_n(body.bounded_at, 6, 1e9f);
   if (body.motion != Motion::fixed) return;
   impacts.swept_body_pairs.invalidate();
@@ -232,7 +237,7 @@ void World::Impl::add_proxy(std::uint32_t index) {
   proxy.category = body.continuous ? 0 : collider.filter.category;
   proxy.mask = body.continuous ? 0 : collider.filter.mask;
   // Of links that meet one another: what moves as one.
-  const int leader = body.place_in_tree.leader;
+  const int leader = body.neighbours.leader;
   proxy.owner = !body.is_link      ? collider.body
                 : leader == kWorld ? 0x80000000u + body.articulation
                                    : articulations[body.articulation].body_of(leader);

@@ -20,7 +20,7 @@ struct Velocity {
 
 // Where a link is among those of its articulation, by which it knows its neighbours: links'
 // numbers, kWorld of what is fixed to the world. All are kWorld where links do not meet each other.
-struct LinkPlace {
+struct LinkNeighbours {
   int leader = kWorld;  // of all that is fixed together: the one that a joint moves
   int head = kWorld;    // of joints that turn about one point: the leader of the first
   int base = kWorld;    // the leader of what that joint hangs on
@@ -38,7 +38,7 @@ struct alignas(64) Body {
   // Follow from the pose when they are needed. A link's T, w and v are refreshed only if it has
   // colliders; else ask its articulation.
   bool asleep = false;
-  bool wanted = false;     // its colliders' poses are about to be computed
+  bool target = false;     // its colliders' poses are about to be computed
   bool posed = false;      // the colliders' poses and bounds are those of T
   bool bounded = false;    // so are `bounds`
   bool untouched = false;  // by what its row met in this step, so it has turned freely
@@ -52,7 +52,7 @@ struct alignas(64) Body {
   float bounded_at[6] = {};    // its way when its proxies' bounds were last set
   // To the farthest point of its bounded colliders from the reference point; half of the least
   // extent of one [m].
-  double reach = 0.0, least_size = 1e9;
+  double bounding_radius = 0.0, min_size = 1e9;
   // State, with what is constant of it.
   Vec3 w, v;  // world frame; v of the reference point (centre of mass; a link's origin)
   double inverse_mass = 0.0;
@@ -78,7 +78,7 @@ struct alignas(64) Body {
   std::uint32_t generation = 0;
   std::uint32_t articulation = kNone;
   int link = 0;  // of it
-  LinkPlace place_in_tree;
+  LinkNeighbours neighbours;
   std::uint32_t last_collider = kNone;
   std::uint32_t first_edge = kNone;         // of its contacts
   std::uint32_t categories = 0, masks = 0;  // union over its colliders
@@ -91,7 +91,7 @@ struct alignas(64) Body {
   // Its row of the solver tells how it goes; else it falls freely.
   bool by_rows() const { return lanes > 0 || first_joint != kNone || on_link; }
   bool tumbles() const { return motion == Motion::dynamic && !is_link && !isotropic; }
-  bool turns_freely() const { return !by_rows() || untouched; }
+  bool rotates_freely() const { return !by_rows() || untouched; }
   void moved() {
     posed = bounded = false;
     ++pose_number;
@@ -103,18 +103,18 @@ using Bodies = Slots<Body, BodyId>;
 // Which bodies a step goes through, ascending.
 class BodyLists {
  public:
-  std::vector<std::uint32_t> movers;  // that are awake and not fixed, but links
-  std::vector<std::uint32_t> links;   // with colliders
+  std::vector<std::uint32_t> awake_bodies;  // that are awake and not fixed, but links
+  std::vector<std::uint32_t> links;         // with colliders
   bool some_continuous = false, some_sub_stepped = false;  // of the movers
   bool some_sleep = false;
 
   // Bodies or colliders have come or gone, fallen asleep or woken.
-  void invalidate() { stale_ = true; }
+  void invalidate() { dirty_ = true; }
   // False: they are as before.
   bool refresh(const Bodies& bodies);
 
  private:
-  bool stale_ = true;
+  bool dirty_ = true;
 };
 
 // Whether it takes part in the sub-stepped solver.
@@ -125,9 +125,9 @@ inline bool is_still(const Body& body) {
   return body.asleep || body.motion == Motion::fixed;
 }
 // Links of one articulation that never meet: neighbours, or all of it (ArticulationDesc).
-bool never_meet(const Body& a, const Body& b);
+bool never_collide(const Body& a, const Body& b);
 // Whether any collider of the one may meet any of the other.
-bool may_meet(const Body& a, const Body& b);
+bool may_overlap(const Body& a, const Body& b);
 // What the solver wants to know of a body that a contact or a joint holds.
 solve::ContactGraph::End end_of(const Bodies& bodies, std::uint32_t body);
 
@@ -138,21 +138,21 @@ inline Vec3 reference_point(const Body& body) {
 void place(Body& body, const Vec3& reference, const Mat3& R);
 
 // Distance from the body's reference point to the farthest point of its local bounds.
-double reach_of(const Body& body);
+double bounding_radius_of(const Body& body);
 // Of a dynamic body; its velocities are not those of the new centre of mass.
 void set_mass(Body& body, const Inertia& inertia);
 
 // Where a body comes to in h, and its rate there, if nothing touches it; world frame.
-struct Turned {
+struct Rotated {
   Mat3 R;
   Vec3 w;
 };
 // With more_w: it turns as at the rate w + more_w, and ends with the angular momentum of w.
-Turned turned_freely(const Body& body, double h, const Vec3& more_w = {});
+Rotated rotated_freely(const Body& body, double h, const Vec3& more_w = {});
 // The rate of a body that is turned to R at a rate of its contacts' choice: as seen from the body
 // where its energy would grow else.
 Vec3 rate_at(const Body& body, const Mat3& R);
 // The rotation R after a small turn, a vector of the outer frame.
-Mat3 turned(const Mat3& R, const Vec3& turn);
+Mat3 rotated(const Mat3& R, const Vec3& rotation);
 
 }  // namespace vp

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "solve/row_vector.h"
-#include "world/free_turn.h"
+#include "world/free_rotation.h"
 #include "world/solver_limits.h"
 #include "world/validate.h"
 
@@ -18,7 +18,7 @@ namespace {
 // A row's way begins again at zero beyond this [length units], and so many more steps of it, so
 // that single precision tells small steps; and beyond this turn [rad], since turns are added up as
 // vectors.
-constexpr float kFarWay = 0.0625f, kFarSteps = 8.0f, kFarTurn = 0.25f;
+constexpr float kMaxDisplacement = 0.0625f, kFarSteps = 8.0f, kMaxRotation = 0.25f;
 
 // The rotation nearest to one that rounding has worn: a step of Newton's method, M (3 - M^T M) / 2,
 // which unlike Gram and Schmidt's way turns nothing.
@@ -30,7 +30,7 @@ Mat3 straightened(const Mat3& M) {
           (1.5 - 0.5 * dot(z, z)) * z - zx * x - yz * y};
 }
 
-Mat3 turned_nearly(const Mat3& R, const Vec3& t) {
+Mat3 rotated_approximately(const Mat3& R, const Vec3& t) {
   const double tt = dot(t, t);
   if (tt > 1e-3) return orthonormalized(Exp(t).matrix() * R);
   const double s = 1.0 - tt * (1.0 / 6.0 - tt * (1.0 / 120.0 - tt * (1.0 / 5040.0)));
@@ -52,21 +52,21 @@ bool is_worn(const Mat3& R) {
 // What makes of its rate in dt that of a free body, as seen from the body: where it is in the
 // solver, at the start of the step, its energy stays.
 Vec3 gyroscopic_acceleration(const Body& body, double dt) {
-  if (body.isotropic || hardly_turns(body.w, dt)) return {};
+  if (body.isotropic || hardly_rotates(body.w, dt)) return {};
   const Mat3& R = body.T.rotation();
   const Vec3 w = transposed_times(R, body.w);
-  const FreeTurn turn = free_turn(body.central, body.inverse_central, w, dt);
-  return R * ((1.0 / dt) * (turn.w - w));
+  const FreeRotation rotation = free_rotation(body.central, body.inverse_central, w, dt);
+  return R * ((1.0 / dt) * (rotation.w - w));
 }
 
 }  // namespace
 
-Turned turned_freely(const Body& body, double h, const Vec3& more_w) {
+Rotated rotated_freely(const Body& body, double h, const Vec3& more_w) {
   const Mat3& R = body.T.rotation();
   const Vec3 w = transposed_times(R, body.w), L = R * (body.central * w);
   const Vec3 mean = more_w == Vec3{} ? w : transposed_times(R, body.w + more_w);
-  const FreeTurn turn = free_turn(body.central, body.inverse_central, mean, h);
-  Mat3 next = R * from_quaternion(turn.q);
+  const FreeRotation rotation = free_rotation(body.central, body.inverse_central, mean, h);
+  Mat3 next = R * from_quaternion(rotation.q);
   next = straightened(next);
   // What stays to rounding is the angular momentum of the world's frame.
   return {next, next * (body.inverse_central * transposed_times(next, L))};
@@ -81,8 +81,8 @@ Vec3 rate_at(const Body& body, const Mat3& R) {
 
 // R after a small turn by the vector t: Rodrigues' formula with its coefficients to sixth order,
 // exact to rounding for turns of a step; larger ones take the long way.
-Mat3 turned(const Mat3& R, const Vec3& t) {
-  return straightened(turned_nearly(R, t));
+Mat3 rotated(const Mat3& R, const Vec3& t) {
+  return straightened(rotated_approximately(R, t));
 }
 
 bool BodyRows::load(Body& body, std::uint32_t index) const {
@@ -99,12 +99,12 @@ bool BodyRows::load(Body& body, std::uint32_t index) const {
     row.inertia[solve::kKeepLinear] = static_cast<float>(1.0 / (1.0 + h * body.linear_damping));
     row.inertia[solve::kKeepAngular] = static_cast<float>(1.0 / (1.0 + h * body.angular_damping));
   }
-  row.way[solve::kCarried] = 0.0f;
-  row.way[solve::kShareLessOne] = 0.0f;
+  row.displacement[solve::kCarried] = 0.0f;
+  row.displacement[solve::kFractionMinusOne] = 0.0f;
   if (pushed && body.lanes > kCrowd)
-    row.way[solve::kShareLessOne] =
+    row.displacement[solve::kFractionMinusOne] =
         static_cast<float>(kCrowd / static_cast<double>(body.lanes) - 1.0);
-  const float* way = row.way;
+  const float* displacement = row.displacement;
   if (!pushed) {
     std::fill(std::begin(row.rate), std::end(row.rate), 0.0f);
     std::fill_n(row.inertia, 6, 0.0f);
@@ -118,16 +118,16 @@ bool BodyRows::load(Body& body, std::uint32_t index) const {
     const Vec3 gyroscopic = gyroscopic_acceleration(body, dt);
     put(row.rate + 3, loads.is_torqued(body) ? gyroscopic + a.w : gyroscopic);
   }
-  std::copy_n(way, 6, start_ways[index].begin());
+  std::copy_n(displacement, 6, start_displacements[index].begin());
   const float* v = row.velocity;
   const float speed = std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])});
-  const float far =
-      kFarWay * static_cast<float>(desc.length_unit) + kFarSteps * static_cast<float>(dt) * speed;
-  const auto beyond = [way](int first, float limit) {
-    return std::any_of(way + first, way + first + 3,
+  const float far = kMaxDisplacement * static_cast<float>(desc.length_unit) +
+                    kFarSteps * static_cast<float>(dt) * speed;
+  const auto beyond = [displacement](int first, float limit) {
+    return std::any_of(displacement + first, displacement + first + 3,
                        [limit](float x) { return !(std::fabs(x) <= limit); });  // NaN too
   };
-  return beyond(0, far) || beyond(3, kFarTurn);
+  return beyond(0, far) || beyond(3, kMaxRotation);
 }
 
 // Whether nothing has changed how it turns, though lanes hold it. Then it turns freely, in double,
@@ -136,7 +136,7 @@ bool BodyRows::leave_untouched(Body& body, std::uint32_t index) const {
   solve::BodyRow& row = rows[index + 1];
   if (!body.tumbles() || body.first_joint != kNone || body.on_link) return false;
   if (loads.is_torqued(body)) return false;
-  if (hardly_turns(body.w, dt)) return false;
+  if (hardly_rotates(body.w, dt)) return false;
   const float h = static_cast<float>(dt / sub_steps);
   float w[3];
   put(w, body.w);
@@ -145,15 +145,16 @@ bool BodyRows::leave_untouched(Body& body, std::uint32_t index) const {
     if (w[i] != row.velocity[3 + i]) return false;
   }
   const Mat3& R = body.T.rotation();
-  const FreeTurn turn =
-      free_turn(body.central, body.inverse_central, transposed_times(R, body.w), dt);
-  put(row.way + 3, vector_of(start_ways[index].data() + 3) + R * constant_turn(turn));
+  const FreeRotation rotation =
+      free_rotation(body.central, body.inverse_central, transposed_times(R, body.w), dt);
+  put(row.displacement + 3,
+      vector_of(start_displacements[index].data() + 3) + R * mean_rotation(rotation));
   return body.untouched = true;
 }
 
 bool BodyRows::settle(Body& body, std::uint32_t index, Velocity& more) const {
   solve::BodyRow& row = rows[index + 1];
-  body.rested = row.way[solve::kCarried] > 0.0f;
+  body.rested = row.displacement[solve::kCarried] > 0.0f;
   more = {};
   if (!body.by_rows()) {
     const double half = 0.5 * dt * (1.0 + 1.0 / sub_steps);
@@ -167,13 +168,13 @@ bool BodyRows::settle(Body& body, std::uint32_t index, Velocity& more) const {
     if (torqued) more.w = w + half * a.w - body.w;
     return true;
   }
-  const float* start = start_ways[index].data();
+  const float* start = start_displacements[index].data();
   body.v = vector_of(row.velocity);
   const double per_step = 1.0 / dt;
-  more.v = per_step * (vector_of(row.way) - vector_of(start)) - body.v;
+  more.v = per_step * (vector_of(row.displacement) - vector_of(start)) - body.v;
   if (!leave_untouched(body, index)) {
     body.w = vector_of(row.velocity + 3);
-    more.w = per_step * (vector_of(row.way + 3) - vector_of(start + 3)) - body.w;
+    more.w = per_step * (vector_of(row.displacement + 3) - vector_of(start + 3)) - body.w;
   }
   if (in_range(body.v) && in_range(body.w) && in_range(more.v) && in_range(more.w)) return true;
   body.v = body.w = {};
@@ -183,24 +184,24 @@ bool BodyRows::settle(Body& body, std::uint32_t index, Velocity& more) const {
 
 bool BodyRows::advance(Body& body, std::uint32_t index) const {
   const solve::BodyRow& row = rows[index + 1];
-  const float* start = start_ways[index].data();
+  const float* start = start_displacements[index].data();
   const Vec3 v = vector_of(row.velocity), w = vector_of(row.velocity + 3);
-  const Vec3 gone = vector_of(row.way) - vector_of(start),
-             turn = vector_of(row.way + 3) - vector_of(start + 3);
+  const Vec3 gone = vector_of(row.displacement) - vector_of(start),
+             rotation = vector_of(row.displacement + 3) - vector_of(start + 3);
   const Vec3 x = body.T * body.centre + gone;
-  if (!in_range(v) || !in_range(w) || !in_range(x) || !in_range(turn)) return false;
-  body.rested = row.way[solve::kCarried] > 0.0f;
+  if (!in_range(v) || !in_range(w) || !in_range(x) || !in_range(rotation)) return false;
+  body.rested = row.displacement[solve::kCarried] > 0.0f;
   body.v = v;
   Mat3 R;
   if (leave_untouched(body, index)) {
-    const Turned free = turned_freely(body, dt);
+    const Rotated free = rotated_freely(body, dt);
     R = free.R;
     body.w = free.w;
   } else {
-    R = turned_nearly(body.T.rotation(), turn);
+    R = rotated_approximately(body.T.rotation(), rotation);
     if (is_worn(R)) R = straightened(R);
     body.w = w;
-    if (!body.isotropic && !hardly_turns(w, dt)) body.w = rate_at(body, R);
+    if (!body.isotropic && !hardly_rotates(w, dt)) body.w = rate_at(body, R);
   }
   body.T = SE3(R, x - R * body.centre);
   body.moved();

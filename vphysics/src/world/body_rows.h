@@ -12,8 +12,9 @@
 namespace vp {
 
 struct BodyRows {
-  std::span<solve::BodyRow> rows;              // i + 1 is of body i
-  std::span<std::array<float, 6>> start_ways;  // of each body: its row's way when the step began
+  std::span<solve::BodyRow> rows;  // i + 1 is of body i
+  std::span<std::array<float, 6>>
+      start_displacements;  // of each body: its row's way when the step began
   const BodyLoads& loads;
   const WorldDesc& desc;
   double dt;

@@ -1,15 +1,15 @@
 // Changes of what a world is made of, while it runs.
 //
-// All of these are constants of the world: they enter its digest (structure.h), so that a snapshot
-// of before is not taken after them. What hangs together with a changed body is woken. Contacts
-// whose constants changed are looked at again in the next step; those that are no more end, with an
-// event of the next step.
+// All of these are constants of the world: they enter its digest (topology_hash.h), so that a
+// snapshot of before is not taken after them. What hangs together with a changed body is woken.
+// Contacts whose constants changed are looked at again in the next step; those that are no more
+// end, with an event of the next step.
 #include <algorithm>
 
 #include "world/impl.h"
+#include "world/invalid.h"
 #include "world/recorded_call.h"
-#include "world/refuse.h"
-#include "world/structure.h"
+#include "world/topology_hash.h"
 #include "world/validate.h"
 
 namespace vp {
@@ -30,7 +30,7 @@ enum class Change : std::uint64_t {
   removed_collider,
   destroyed_articulation,
 };
-std::uint64_t word_of(Change change, std::uint32_t index) {
+std::uint64_t change_bits(Change change, std::uint32_t index) {
   return (static_cast<std::uint64_t>(change) << 32) | index;
 }
 
@@ -76,12 +76,12 @@ void World::Impl::change_mass(std::uint32_t index, const Inertia& inertia) {
   const Vec3 v = body.v + cross(body.w, body.T.position() - before);
   const se3 V{body.T.unrotate(body.w), body.T.unrotate(v)};
   set_mass(body, inertia);
-  body.reach = reach_of(body);
+  body.bounding_radius = bounding_radius_of(body);
   if (body.motion != Motion::dynamic) return;
   body.w = body.T.rotate(V.w);
   body.v = body.T.rotate(V.v + cross(V.w, body.centre));
   loads.shift(body, before - reference_point(body));
-  contact_store.mark_stale_of(bodies[index]);
+  contact_store.mark_contacts_dirty(bodies[index]);
 }
 
 // Of a dynamic body that takes its mass from its colliders; they have changed.
@@ -102,8 +102,8 @@ Body* World::Impl::find_body_to_change(BodyId id) {
   return body && !body->is_link ? body : nullptr;
 }
 tl::unexpected<Error> World::Impl::no_body_to_change(const char* call, BodyId id) const {
-  if (!find(id)) return stale(call, "the body");
-  return refuse(std::string(call) + ": a link is as its articulation's model has it");
+  if (!find(id)) return unknown_id(call, "the body");
+  return invalid(std::string(call) + ": a link is as its articulation's model has it");
 }
 
 // --- bodies --------------------------------------------------------------------------------------
@@ -112,20 +112,20 @@ Expected<void> World::set_motion(BodyId id, Motion motion) {
   Body* body = impl_->find_body_to_change(id);
   if (!body) return impl_->no_body_to_change("set_motion", id);
   const std::uint32_t index = id.index - 1;
-  if (motion > Motion::dynamic) return refuse("set_motion: fixed, kinematic or dynamic");
+  if (motion > Motion::dynamic) return invalid("set_motion: fixed, kinematic or dynamic");
   if (motion == body->motion) return {};
   if (auto problem = why_not(*body, impl_->colliders, motion)) {
-    return refuse(Errc::unsupported, "set_motion: " + *problem);
+    return invalid(Errc::unsupported, "set_motion: " + *problem);
   }
   for (std::uint32_t e = body->first_joint; e != kNone; e = impl_->joints[e / 2].next[e % 2]) {
     const BodyJoint& joint = impl_->joints[e / 2];
     const Body& other = impl_->bodies[joint.a == index ? joint.b : joint.a];
     if (motion != Motion::dynamic && other.motion != Motion::dynamic) {
-      return refuse("set_motion: a joint would be left without a dynamic body; destroy it first");
+      return invalid("set_motion: a joint would be left without a dynamic body; destroy it first");
     }
     if (motion == Motion::dynamic && other.motion == Motion::dynamic &&
         !can_be_joined(body->wants_continuous, other)) {
-      return refuse(Errc::unsupported, std::string("set_motion: it is joined, and ") + kNotJoined);
+      return invalid(Errc::unsupported, std::string("set_motion: it is joined, and ") + kNotJoined);
     }
   }
   std::optional<Inertia> inertia;  // none: what the body has
@@ -133,19 +133,19 @@ Expected<void> World::set_motion(BodyId id, Motion motion) {
   if (motion == Motion::dynamic && body->mass_from_colliders) {
     inertia = inertia_of_colliders(*body, impl_->colliders);
     if (inertia->mass() == 0.0) inertia = kUnitInertia;
-    if (auto problem = problem_with(*inertia)) return refuse("set_motion: " + *problem);
+    if (auto problem = problem_with(*inertia)) return invalid("set_motion: " + *problem);
     centre = inertia->centre_of_mass();
   }
   const se3 V = velocity(id);
   if (motion == Motion::dynamic && !is_slow_enough(V, centre)) {
-    return refuse("set_motion: the centre of mass would move faster than 1e9 m/s");
+    return invalid("set_motion: the centre of mass would move faster than 1e9 m/s");
   }
   if (motion == Motion::kinematic && !in_range(V)) {
-    return refuse("set_motion: the body moves faster than 1e9 m/s or rad/s; slow it down first");
+    return invalid("set_motion: the body moves faster than 1e9 m/s or rad/s; slow it down first");
   }
   impl_->change_motion(index, motion, inertia, V);
-  Structure(impl_->structure)
-      .add(word_of(Change::motion, id.index), static_cast<std::uint64_t>(motion));
+  TopologyHash(impl_->topology_hash)
+      .add(change_bits(Change::motion, id.index), static_cast<std::uint64_t>(motion));
   if (impl_->recorder) impl_->log({calls::SetMotion{id, motion}});
   return {};
 }
@@ -173,7 +173,7 @@ void World::Impl::change_motion(std::uint32_t index, Motion motion,
     body.w = body.T.rotate(V.w);
     body.v = body.T.rotate(V.v + cross(V.w, body.centre));
   }
-  body.reach = reach_of(body);
+  body.bounding_radius = bounding_radius_of(body);
   body.moved();
   if (index + 1 < body_rows.size()) body_rows[index + 1] = {};
   std::fill_n(body.bounded_at, 6, 1e9f);
@@ -185,11 +185,11 @@ Expected<void> World::set_inertia(BodyId id, const Inertia& inertia) {
   Body* body = impl_->find_body_to_change(id);
   if (!body) return impl_->no_body_to_change("set_inertia", id);
   if (auto problem = impl_->problem_with_mass(*body, velocity(id), inertia)) {
-    return refuse("set_inertia: " + *problem);
+    return invalid("set_inertia: " + *problem);
   }
   body->mass_from_colliders = false;
   impl_->change_mass(id.index - 1, inertia);
-  Structure(impl_->structure).add(word_of(Change::inertia, id.index), inertia);
+  TopologyHash(impl_->topology_hash).add(change_bits(Change::inertia, id.index), inertia);
   if (impl_->recorder) impl_->log({calls::SetInertia{id, inertia}});
   return {};
 }
@@ -198,12 +198,12 @@ Expected<void> World::set_damping(BodyId id, double linear, double angular) {
   Body* body = impl_->find_body_to_change(id);
   if (!body) return impl_->no_body_to_change("set_damping", id);
   if (!in_range(linear) || !in_range(angular) || linear < 0.0 || angular < 0.0) {
-    return refuse("set_damping: damping must be from 0 to 1e9 1/s");
+    return invalid("set_damping: damping must be from 0 to 1e9 1/s");
   }
   impl_->wake(id.index - 1);
   body->linear_damping = linear;
   body->angular_damping = angular;
-  Structure(impl_->structure).add(word_of(Change::damping, id.index), linear, angular);
+  TopologyHash(impl_->topology_hash).add(change_bits(Change::damping, id.index), linear, angular);
   if (impl_->recorder) impl_->log({calls::SetDamping{id, linear, angular}});
   return {};
 }
@@ -212,11 +212,11 @@ Expected<void> World::set_gravity_scale(BodyId id, double scale) {
   Body* body = impl_->find_body_to_change(id);
   if (!body) return impl_->no_body_to_change("set_gravity_scale", id);
   if (!is_gravity_scale(scale)) {
-    return refuse("set_gravity_scale: the scale must be finite and at most 1e6 either way");
+    return invalid("set_gravity_scale: the scale must be finite and at most 1e6 either way");
   }
   impl_->wake(id.index - 1);
   body->gravity_scale = scale;
-  Structure(impl_->structure).add(word_of(Change::gravity_scale, id.index), scale);
+  TopologyHash(impl_->topology_hash).add(change_bits(Change::gravity_scale, id.index), scale);
   if (impl_->recorder) impl_->log({calls::SetGravityScale{id, scale}});
   return {};
 }
@@ -226,8 +226,8 @@ Expected<void> World::set_allow_sleep(BodyId id, bool allow) {
   if (!body) return impl_->no_body_to_change("set_allow_sleep", id);
   impl_->wake(id.index - 1);
   body->allow_sleep = allow;
-  Structure(impl_->structure)
-      .add(word_of(Change::allow_sleep, id.index), static_cast<std::uint64_t>(allow));
+  TopologyHash(impl_->topology_hash)
+      .add(change_bits(Change::allow_sleep, id.index), static_cast<std::uint64_t>(allow));
   if (impl_->recorder) impl_->log({calls::SetAllowSleep{id, allow}});
   return {};
 }
@@ -244,13 +244,13 @@ BodyId World::body_of(ColliderId id) const {
 
 Expected<void> World::set_material(ColliderId id, const Material& material) {
   Collider* c = impl_->find(id);
-  if (!c) return stale("set_material", "the collider");
-  if (auto problem = problem_with(material)) return refuse("set_material: " + *problem);
+  if (!c) return unknown_id("set_material", "the collider");
+  if (auto problem = problem_with(material)) return invalid("set_material: " + *problem);
   c->material = material;
   impl_->wake_all_about(c->body);
-  impl_->contact_store.mark_stale_of(impl_->bodies[c->body]);
-  Structure(impl_->structure)
-      .add(word_of(Change::material, id.index), material.friction, material.restitution,
+  impl_->contact_store.mark_contacts_dirty(impl_->bodies[c->body]);
+  TopologyHash(impl_->topology_hash)
+      .add(change_bits(Change::material, id.index), material.friction, material.restitution,
            material.rolling_friction, material.spinning_friction);
   if (impl_->recorder) impl_->log({calls::SetMaterial{id, material}});
   return {};
@@ -258,26 +258,26 @@ Expected<void> World::set_material(ColliderId id, const Material& material) {
 
 Expected<void> World::set_surface_velocity(ColliderId id, const Vec3& velocity) {
   Collider* c = impl_->find(id);
-  if (!c) return stale("set_surface_velocity", "the collider");
+  if (!c) return unknown_id("set_surface_velocity", "the collider");
   if (!in_range(velocity)) {
-    return refuse("set_surface_velocity: every entry must be finite and at most 1e9");
+    return invalid("set_surface_velocity: every entry must be finite and at most 1e9");
   }
   c->surface_velocity = velocity;
   impl_->wake_all_about(c->body);
-  impl_->contact_store.mark_stale_of(impl_->bodies[c->body]);
-  Structure(impl_->structure).add(word_of(Change::surface_velocity, id.index), velocity);
+  impl_->contact_store.mark_contacts_dirty(impl_->bodies[c->body]);
+  TopologyHash(impl_->topology_hash).add(change_bits(Change::surface_velocity, id.index), velocity);
   if (impl_->recorder) impl_->log({calls::SetSurfaceVelocity{id, velocity}});
   return {};
 }
 
 Expected<void> World::set_filter(ColliderId id, const CollisionFilter& filter) {
   Collider* c = impl_->find(id);
-  if (!c) return stale("set_filter", "the collider");
+  if (!c) return unknown_id("set_filter", "the collider");
   Body& body = impl_->bodies[c->body];
   c->filter = filter;
   impl_->wake_all_about(c->body);
   if (!body.continuous) impl_->finder.set_filter(c->proxy, filter.category, filter.mask);
-  impl_->contact_store.mark_stale_of(impl_->bodies[c->body]);  // some may be no more
+  impl_->contact_store.mark_contacts_dirty(impl_->bodies[c->body]);  // some may be no more
   body.categories = body.masks = 0;
   for (std::uint32_t i = body.first_collider; i != kNone; i = impl_->colliders[i].next) {
     body.categories |= impl_->colliders[i].filter.category;
@@ -285,26 +285,27 @@ Expected<void> World::set_filter(ColliderId id, const CollisionFilter& filter) {
   }
   impl_->ready_for_queries = false;
   impl_->lists.invalidate();
-  Structure(impl_->structure)
-      .add(word_of(Change::filter, id.index), std::uint64_t{filter.category} << 32 | filter.mask);
+  TopologyHash(impl_->topology_hash)
+      .add(change_bits(Change::filter, id.index),
+           std::uint64_t{filter.category} << 32 | filter.mask);
   if (impl_->recorder) impl_->log({calls::SetFilter{id, filter}});
   return {};
 }
 
 Expected<void> World::remove_collider(ColliderId id) {
   const Collider* c = impl_->find(id);
-  if (!c) return stale("remove_collider", "the collider");
+  if (!c) return unknown_id("remove_collider", "the collider");
   const std::uint32_t body = c->body;
   if (impl_->bodies[body].mass_from_colliders && impl_->bodies[body].motion == Motion::dynamic) {
     const Inertia sum = inertia_of_colliders(impl_->bodies[body], impl_->colliders, id.index - 1);
     const se3 V = velocity(impl_->bodies.id(body));
     const Inertia left = sum.mass() > 0.0 ? sum : kUnitInertia;
     if (auto problem = impl_->problem_with_mass(impl_->bodies[body], V, left)) {
-      return refuse("remove_collider: of what is left, " + *problem);
+      return invalid("remove_collider: of what is left, " + *problem);
     }
   }
   impl_->take_collider_off(id.index - 1);
-  Structure(impl_->structure).add(word_of(Change::removed_collider, id.index));
+  TopologyHash(impl_->topology_hash).add(change_bits(Change::removed_collider, id.index));
   if (impl_->recorder) impl_->log({calls::RemoveCollider{id}});
   return {};
 }
@@ -320,7 +321,7 @@ void World::Impl::take_collider_off(std::uint32_t index) {
   if (body.last_collider == index) body.last_collider = previous;
   summarize_colliders(owner);
   update_mass(owner);
-  contact_store.mark_stale_of(bodies[owner]);
+  contact_store.mark_contacts_dirty(bodies[owner]);
   body.moved();
   lists.invalidate();
 }
@@ -333,8 +334,8 @@ void World::Impl::summarize_colliders(std::uint32_t index) {
   body.has_sensor = body.unbounded = false;
   body.local = none.local;
   body.around_line = none.around_line;
-  body.least_size = none.least_size;
-  body.reach = none.reach;
+  body.min_size = none.min_size;
+  body.bounding_radius = none.bounding_radius;
   for (std::uint32_t c = body.first_collider; c != kNone; c = colliders[c].next) note_collider(c);
 }
 
@@ -346,7 +347,7 @@ bool World::contains(ArticulationId id) const {
 
 Expected<void> World::destroy_articulation(ArticulationId id) {
   Articulation* art = impl_->find(id);
-  if (!art) return refuse("destroy_articulation: no such articulation");
+  if (!art) return invalid("destroy_articulation: no such articulation");
   impl_->look_at(*art);
   for (const std::uint32_t b : art->bodies) {
     Body& body = impl_->bodies[b];
@@ -361,8 +362,8 @@ Expected<void> World::destroy_articulation(ArticulationId id) {
   art->destroy();
   impl_->free_articulations.push_back(id.index - 1);
   impl_->lists.invalidate();
-  impl_->impacts.bodies_are_stale = true;
-  Structure(impl_->structure).add(word_of(Change::destroyed_articulation, id.index));
+  impl_->impacts.bodies_are_dirty = true;
+  TopologyHash(impl_->topology_hash).add(change_bits(Change::destroyed_articulation, id.index));
   if (impl_->recorder) impl_->log({calls::DestroyArticulation{id}});
   return {};
 }

@@ -12,11 +12,11 @@ namespace {
 double size_of(const collide::Geometry& g) {
   if (collide::is_surface(g)) return 0.0;
   if (g.kind == collide::Kind::compound) {
-    double least = collide::kFar;
+    double min_value = collide::kFar;
     for (const collide::Geometry& part : g.compound->geometries) {
-      least = std::min(least, size_of(part));
+      min_value = std::min(min_value, size_of(part));
     }
-    return least;
+    return min_value;
   }
   const collide::Bounds own = bounds_of(g, SE3{});
   const Vec3 extents = own.upper - own.lower;
@@ -29,12 +29,12 @@ collide::Bounds bounds_around(const Vec3& line, const collide::Bounds& box) {
   if (line == Vec3{}) return {};
   const double x = std::max(-box.lower.x, box.upper.x), y = std::max(-box.lower.y, box.upper.y);
   const double radius = std::sqrt(x * x + y * y);
-  const double half = 0.5 * (box.upper.z - box.lower.z), middle = 0.5 * (box.upper.z + box.lower.z);
+  const double half = 0.5 * (box.upper.z - box.lower.z), mid = 0.5 * (box.upper.z + box.lower.z);
   const auto extent = [&](double u) {
     return std::fabs(u) * half + radius * std::sqrt(std::max(0.0, 1.0 - u * u));
   };
   const Vec3 extents{extent(line.x), extent(line.y), extent(line.z)};
-  return collide::grown({middle * line - extents, middle * line + extents}, 1e-12 * radius);
+  return collide::grown({mid * line - extents, mid * line + extents}, 1e-12 * radius);
 }
 
 }  // namespace
@@ -58,7 +58,7 @@ const collide::Bounds& bounds_at_pose(Body& body, Colliders& colliders) {
 }
 
 void pose_colliders(Body& body, Colliders& colliders) {
-  body.wanted = false;
+  body.target = false;
   if (body.posed) return;
   body.posed = true;
   for (std::uint32_t c = body.first_collider; c != kNone; c = colliders[c].next) {
@@ -86,12 +86,12 @@ void note_collider(Body& body, Collider& c, const Vec3& line) {
                                                       : 0.5 * norm(local.upper - local.lower);
   body.local = merged(body.local, local);
   c.size = size_of(c.geometry);
-  body.reach = reach_of(body);
+  body.bounding_radius = bounding_radius_of(body);
   if (body.is_link) {
     c.around_line = bounds_around(line, local);
     body.around_line = bounds_around(line, body.local);
   }
-  body.least_size = std::min(body.least_size, c.size);
+  body.min_size = std::min(body.min_size, c.size);
 }
 
 Inertia inertia_of_colliders(const Body& body, const Colliders& colliders, std::uint32_t without) {
@@ -109,7 +109,7 @@ ColliderPair make_pair(const Colliders& colliders, std::uint32_t i, std::uint32_
   return {(std::uint64_t{colliders[i].serial} << 32) | colliders[j].serial, i, j};
 }
 
-bool should_meet(const Collider& a, const Collider& b) {
+bool should_collide(const Collider& a, const Collider& b) {
   return (a.filter.category & b.filter.mask) && (b.filter.category & a.filter.mask) &&
          !(a.sensor && b.sensor);
 }

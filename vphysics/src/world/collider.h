@@ -67,7 +67,7 @@ struct ColliderPair {
 
 // Orders a pair by creation.
 ColliderPair make_pair(const Colliders& colliders, std::uint32_t i, std::uint32_t j);
-bool should_meet(const Collider& a, const Collider& b);
+bool should_collide(const Collider& a, const Collider& b);
 
 // The ball around the smaller of two colliders, where they meet if they do. World frame. The one
 // rule of how near they come: relative velocity at its centre, and relative rotation times its

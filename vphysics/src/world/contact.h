@@ -29,23 +29,23 @@ struct Contact {
   bool of_link = false;  // one of the two is of a link: never in a lane (link_contacts.cpp)
   bool touching = false;
   bool parked = false;  // of bodies that are asleep
-  bool stale = true;    // must be looked at in the next step, wherever the two are
-  solve::Place place;
+  bool dirty = true;    // must be looked at in the next step, wherever the two are
+  solve::ContactSlot slot;
   collide::PairCache cache;  // of the narrow phase
 
   bool has_parts = false;                 // it is the whole
   std::uint32_t first_part = kNoContact;  // of them, in the order of the narrow phase
   // Of a part: the whole, the next one, and which parts of the shapes touch.
-  std::uint32_t whole = kNoContact, next_part = kNoContact;
+  std::uint32_t aggregate = kNoContact, next_part = kNoContact;
   std::uint32_t sub_a = 0, sub_b = 0;
-  bool is_part() const { return whole != kNoContact; }
+  bool is_part() const { return aggregate != kNoContact; }
 
   // Points, if it has any.
   std::uint8_t count = 0;
   std::uint32_t feature[collide::kMaxPoints] = {};
   Vec3 position[collide::kMaxPoints] = {};  // world frame, when they were found
 
-  std::uint32_t near_index = 0;  // if it has none: its lane in the near list
+  std::uint32_t speculative_index = 0;  // if it has none: its lane in the near list
 };
 
 }  // namespace vp

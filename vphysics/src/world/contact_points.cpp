@@ -13,7 +13,7 @@ namespace {
 template <int P>
 void add_points_of(const Contact& c, const solve::ContactBlock<P>& block, bool of_a,
                    const Colliders& colliders, std::vector<ContactPoint>& points) {
-  const int lane = solve::ContactGraph::lane(c.place);
+  const int lane = solve::ContactGraph::lane(c.slot);
   const double sign = of_a ? -1.0 : 1.0, all = get(block.given, lane);
   double last = 0.0;
   for (int i = 0; i < c.count; ++i) last += get(block.impulse[i], lane);
@@ -22,14 +22,14 @@ void add_points_of(const Contact& c, const solve::ContactBlock<P>& block, bool o
       get(block.tangent_impulse[0], lane) * t + get(block.tangent_impulse[1], lane) * cross(n, t);
   const double scale = last > 0.0 ? all / last : 0.0;
   for (int i = 0; i < c.count; ++i) {
-    const double share = last > 0.0 ? get(block.impulse[i], lane) / last : 1.0 / c.count;
+    const double fraction = last > 0.0 ? get(block.impulse[i], lane) / last : 1.0 / c.count;
     ContactPoint& p = points.emplace_back();
     p.collider = colliders.id(of_a ? c.a : c.b);
     p.other = colliders.id(of_a ? c.b : c.a);
     p.point = c.position[i];
     p.normal = sign * n;
-    p.normal_impulse = share * all;
-    p.friction_impulse = (sign * share * scale) * friction;
+    p.normal_impulse = fraction * all;
+    p.friction_impulse = (sign * fraction * scale) * friction;
   }
 }
 
@@ -56,12 +56,12 @@ void World::contacts_of(BodyId id, std::vector<ContactPoint>& points) const {
   const Impl& world = *impl_;
   const bool stepped = world.sub_steps_taken > 0;
   impl_->contact_store.for_each_of(*body, [&](std::uint32_t, const Contact& c) {
-    if (!stepped || !c.touching || c.sensor || c.place.points == 0) return;
+    if (!stepped || !c.touching || c.sensor || c.slot.points == 0) return;
     const bool of_a = world.colliders[c.a].body == id.index - 1;
-    if (c.place.points == 1) {
-      add_points_of(c, world.contact_store.graph.block<1>(c.place), of_a, world.colliders, points);
+    if (c.slot.points == 1) {
+      add_points_of(c, world.contact_store.graph.block<1>(c.slot), of_a, world.colliders, points);
     } else {
-      add_points_of(c, world.contact_store.graph.block<4>(c.place), of_a, world.colliders, points);
+      add_points_of(c, world.contact_store.graph.block<4>(c.slot), of_a, world.colliders, points);
     }
   });
   for (const StepContact& c : world.step_contacts) {

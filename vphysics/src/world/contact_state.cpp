@@ -36,14 +36,14 @@ void ContactState::read(Reader& in) {
     seen_[c] = 8;
     contacts_.free.push_back(c);
   }
-  read_near(in, contacts_.near, false);
-  read_near(in, contacts_.parked_near, true);
+  read_speculative(in, contacts_.speculative, false);
+  read_speculative(in, contacts_.parked_speculative, true);
   contacts_.graph.resize(world_.bodies.size() + 1);
   read_regions(in);
   for (std::size_t region = 0; region < contacts_.graph.regions(); ++region) {
     for (int c = 0; c <= solve::kParked && in.ok(); ++c) {
-      read_lanes<1>(in, region, c);
-      read_lanes<4>(in, region, c);
+      read_slots<1>(in, region, c);
+      read_slots<4>(in, region, c);
     }
   }
   for (std::size_t i = 0; i < contacts_.pool.size(); ++i) {
@@ -52,14 +52,14 @@ void ContactState::read(Reader& in) {
 }
 
 void ContactState::read_body(Reader& in, OfBody& body) {
-  const std::uint64_t flags = in.word();
+  const std::uint64_t flags = in.u64();
   in.check(flags <= 3);
   body.rested = (flags & 1u) != 0;
   body.asleep = (flags & 2u) != 0;
   body.rest_time = in.number();
   for (int k = 0; k < 6; ++k) {
     const Reader::TwoFloats both = in.two_floats();
-    body.way[k] = both.high;
+    body.displacement[k] = both.high;
     body.bounded_at[k] = both.low;
   }
 }
@@ -70,14 +70,14 @@ void ContactState::read_pool(Reader& in) {
   seen_.assign(contacts_.pool.size(), 0);
   for (Contact& c : contacts_.pool) {
     if (!in.ok()) return;
-    const std::uint64_t flags = in.word();
+    const std::uint64_t flags = in.u64();
     const std::uint64_t kinds = flags & (kHasParts | kIsPart);
     in.check(flags <= kAll && ((flags & kAlive) != 0 || flags == 0) &&
              kinds != (kHasParts | kIsPart));
     c.alive = (flags & kAlive) != 0;
     c.sensor = (flags & kSensor) != 0;
     c.touching = (flags & kTouching) != 0;
-    c.stale = (flags & kStale) != 0;
+    c.dirty = (flags & kDirty) != 0;
     c.of_link = (flags & kOfLink) != 0;
     c.has_parts = (flags & kHasParts) != 0;
     if (c.alive && in.ok()) read_contact(in, c, (flags & kIsPart) != 0);
@@ -88,15 +88,15 @@ void ContactState::read_pool(Reader& in) {
 // Each part is in the chain of its whole, once.
 void ContactState::check_parts(Reader& in) {
   for (std::uint32_t i = 0; i < contacts_.pool.size() && in.ok(); ++i) {
-    const Contact& whole = contacts_.pool[i];
-    if (!whole.alive || !whole.has_parts) continue;
-    for (std::uint32_t p = whole.first_part; p != kNone && in.ok();
+    const Contact& aggregate = contacts_.pool[i];
+    if (!aggregate.alive || !aggregate.has_parts) continue;
+    for (std::uint32_t p = aggregate.first_part; p != kNone && in.ok();
          p = contacts_.pool[p].next_part) {
       in.check(p < contacts_.pool.size());
       if (!in.ok()) return;
       const Contact& part = contacts_.pool[p];
-      in.check(part.alive && part.whole == i && part.key == whole.key && seen_[p] == 0 &&
-               !whole.sensor && !whole.of_link);
+      in.check(part.alive && part.aggregate == i && part.key == aggregate.key && seen_[p] == 0 &&
+               !aggregate.sensor && !aggregate.of_link);
       seen_[p] = 16;
     }
   }
@@ -107,7 +107,7 @@ void ContactState::check_parts(Reader& in) {
 
 void ContactState::read_contact(Reader& in, Contact& c, bool is_part) {
   const Colliders& all = world_.colliders;
-  c.key = in.word();
+  c.key = in.u64();
   const Reader::Two both = in.two();
   c.a = both.high;
   c.b = both.low;
@@ -127,27 +127,27 @@ void ContactState::read_contact(Reader& in, Contact& c, bool is_part) {
   c.cache.i = static_cast<std::uint16_t>(ij.high);
   c.cache.j = static_cast<std::uint16_t>(ij.low);
   in.check((c.has_parts || is_part) == has_parts(a.geometry, b.geometry));
-  in.check(!(is_part && c.stale));
+  in.check(!(is_part && c.dirty));
   if (c.has_parts) c.first_part = in.two().high;
   if (is_part) {
     const Reader::Two chain = in.two(), subs = in.two();
-    c.whole = chain.high;
+    c.aggregate = chain.high;
     c.next_part = chain.low;
     c.sub_a = subs.high;
     c.sub_b = subs.low;
-    in.check(c.whole < contacts_.pool.size() && c.sub_a < number_of_parts(a.geometry) &&
+    in.check(c.aggregate < contacts_.pool.size() && c.sub_a < number_of_parts(a.geometry) &&
              c.sub_b < number_of_parts(b.geometry));
   }
-  const std::uint64_t count = in.word();
+  const std::uint64_t count = in.u64();
   in.check(count <= collide::kMaxPoints && (count == 0 || !c.has_parts) && (count > 0 || !is_part));
   if (!in.ok()) return;
   const Body &body_a = world_.bodies[a.body], &body_b = world_.bodies[b.body];
   in.check(c.of_link == (body_a.is_link || body_b.is_link) && !body_a.continuous &&
            !body_b.continuous && (count == 0 || !(c.sensor || c.of_link)) &&
-           !never_meet(body_a, body_b));
+           !never_collide(body_a, body_b));
   c.count = static_cast<std::uint8_t>(count);
   for (int i = 0; i < c.count; ++i) {
-    const std::uint64_t feature = in.word();
+    const std::uint64_t feature = in.u64();
     in.check(feature <= 0xffffffffu);
     c.feature[i] = static_cast<std::uint32_t>(feature);
     c.position[i] = in.finite_vector();
@@ -165,7 +165,8 @@ void ContactState::read_edges(Reader& in, std::uint32_t body) {
     const auto side = static_cast<std::uint8_t>(1u << (e % 2));
     const bool own = c.alive && world_.colliders[e % 2 == 0 ? c.a : c.b].body == body;
     in.check(own && (seen_[e / 2] & side) == 0);
-    in.check(!c.is_part() || (seen_[c.whole] & side) == 0);  // behind a whole come no parts of it
+    in.check(!c.is_part() ||
+             (seen_[c.aggregate] & side) == 0);  // behind a whole come no parts of it
     if (!in.ok()) return;
     seen_[e / 2] = static_cast<std::uint8_t>(seen_[e / 2] | side);
     c.previous[e % 2] = previous;
@@ -176,7 +177,7 @@ void ContactState::read_edges(Reader& in, std::uint32_t body) {
   }
 }
 
-void ContactState::read_near(Reader& in, solve::NearList& near, bool parked) {
+void ContactState::read_speculative(Reader& in, solve::SpeculativeList& speculative, bool parked) {
   const std::size_t count = in.count(1);
   for (std::size_t i = 0; i < count && in.ok(); ++i) {
     const std::uint32_t index = in.index(contacts_.pool.size());
@@ -185,10 +186,11 @@ void ContactState::read_near(Reader& in, solve::NearList& near, bool parked) {
     in.check(c.alive && c.count == 0 && (seen_[index] & 4u) == 0);  // so no part
     seen_[index] = static_cast<std::uint8_t>(seen_[index] | 4u);
     c.parked = parked;
-    c.near_index = near.add(index, vp::end_of(world_.bodies, world_.colliders[c.a].body).row,
-                            vp::end_of(world_.bodies, world_.colliders[c.b].body).row);
-    read_fields(in, solve::fields_of(near.block(c.near_index)),
-                solve::NearList::lane(c.near_index));
+    c.speculative_index =
+        speculative.add(index, vp::end_of(world_.bodies, world_.colliders[c.a].body).row,
+                        vp::end_of(world_.bodies, world_.colliders[c.b].body).row);
+    read_fields(in, solve::fields_of(speculative.block(c.speculative_index)),
+                solve::SpeculativeList::lane(c.speculative_index));
   }
 }
 
@@ -201,7 +203,7 @@ void ContactState::read_fields(Reader& in, std::span<solve::Field> fields, int l
 }
 
 void ContactState::read_regions(Reader& in) {
-  const std::uint32_t count = in.index(kMostRegions + 1);
+  const std::uint32_t count = in.index(kMaxRegions + 1);
   in.check(count == 0 || (std::has_single_bit(count) && count > 1));
   regions_.age = in.number();
   in.check(regions_.age >= 0.0);
@@ -219,7 +221,7 @@ solve::ContactGraph::End ContactState::end_of(std::uint32_t body) const {
 }
 
 template <int P>
-void ContactState::read_lanes(Reader& in, std::size_t region, int colour) {
+void ContactState::read_slots(Reader& in, std::size_t region, int colour) {
   constexpr std::size_t kFields = solve::kFieldsOf<P>;
   const std::size_t lanes = in.count(1 + kFields / 2);
   for (std::size_t l = 0; l < lanes && in.ok(); ++l) {
@@ -230,15 +232,15 @@ void ContactState::read_lanes(Reader& in, std::size_t region, int colour) {
     if (!in.ok()) return;
     seen_[index] = static_cast<std::uint8_t>(seen_[index] | 4u);
     const std::uint32_t a = world_.colliders[c.a].body, b = world_.colliders[c.b].body;
-    in.check(contacts_.graph.append(index, end_of(a), end_of(b), P, colour, c.place) &&
-             c.place.region == region);
+    in.check(contacts_.graph.append(index, end_of(a), end_of(b), P, colour, c.slot) &&
+             c.slot.region == region);
     if (!in.ok()) return;
     ++bodies_[a].lanes;
     ++bodies_[b].lanes;
-    const int lane = solve::ContactGraph::lane(c.place);
-    contacts_.graph.block<P>(c.place).touches.lane[lane] = c.touching ? 1 : 0;
-    contacts_.graph.block<P>(c.place).active.lane[lane] = 1.0f;
-    read_fields(in, solve::fields_of(contacts_.graph.block<P>(c.place)), lane);
+    const int lane = solve::ContactGraph::lane(c.slot);
+    contacts_.graph.block<P>(c.slot).touches.lane[lane] = c.touching ? 1 : 0;
+    contacts_.graph.block<P>(c.slot).active.lane[lane] = 1.0f;
+    read_fields(in, solve::fields_of(contacts_.graph.block<P>(c.slot)), lane);
     c.parked = colour == solve::kParked;
     if (!c.parked) contacts_.points += c.count;
   }
@@ -258,12 +260,12 @@ void ContactState::adopt() {
     body.first_edge = from.first_edge;
     body.lanes = from.lanes;
     body.region = from.region;
-    std::copy_n(from.way, 6, world_.body_rows[i + 1].way);
+    std::copy_n(from.displacement, 6, world_.body_rows[i + 1].displacement);
     std::copy_n(from.bounded_at, 6, body.bounded_at);
   }
   for (std::uint32_t i = 0; i < contacts_.pool.size(); ++i) {
     const Contact& c = contacts_.pool[i];
-    if (c.alive && c.stale && !c.parked) contacts_.stale.push_back(i);
+    if (c.alive && c.dirty && !c.parked) contacts_.dirty.push_back(i);
   }
   if (world_.contacts.graph.regions() != contacts_.graph.regions()) {
     world_.lists.invalidate();

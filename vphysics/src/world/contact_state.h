@@ -49,7 +49,7 @@ class ContactState {
   struct OfBody {
     bool rested = false, asleep = false;
     double rest_time = 0.0;
-    float way[6] = {}, bounded_at[6] = {};
+    float displacement[6] = {}, bounded_at[6] = {};
     std::uint32_t first_edge = kNone, lanes = 0;
     std::uint16_t region = solve::kBetween;
   };
@@ -59,12 +59,12 @@ class ContactState {
   void read_pool(Reader& in);
   void check_parts(Reader& in);
   void read_edges(Reader& in, std::uint32_t body);
-  void read_near(Reader& in, solve::NearList& near, bool parked);
+  void read_speculative(Reader& in, solve::SpeculativeList& speculative, bool parked);
   static void read_fields(Reader& in, std::span<solve::Field> fields, int lane);
   void read_regions(Reader& in);
   solve::ContactGraph::End end_of(std::uint32_t body) const;
   template <int P>
-  void read_lanes(Reader& in, std::size_t region, int colour);
+  void read_slots(Reader& in, std::size_t region, int colour);
 
   const ContactData world_;
   std::vector<OfBody> bodies_;
@@ -76,7 +76,7 @@ class ContactState {
 };
 
 namespace contact_flags {
-inline constexpr std::uint32_t kAlive = 1, kSensor = 2, kTouching = 4, kStale = 8, kOfLink = 16,
+inline constexpr std::uint32_t kAlive = 1, kSensor = 2, kTouching = 4, kDirty = 8, kOfLink = 16,
                                kHasParts = 32, kIsPart = 64, kAll = 127;
 }
 
@@ -87,32 +87,32 @@ void write_contacts(Sink& sink, const ContactData& world) {
   for (std::uint32_t i = 0; i < world.bodies.size(); ++i) {
     const Body& body = world.bodies[i];
     const solve::BodyRow& row = i + 1 < world.body_rows.size() ? world.body_rows[i + 1] : kNoRow;
-    sink.word((body.rested ? 1u : 0u) | (body.asleep ? 2u : 0u));
+    sink.u64((body.rested ? 1u : 0u) | (body.asleep ? 2u : 0u));
     put(sink, body.rest_time);
-    for (int k = 0; k < 6; ++k) put_two(sink, row.way[k], body.bounded_at[k]);
+    for (int k = 0; k < 6; ++k) put_two(sink, row.displacement[k], body.bounded_at[k]);
   }
-  sink.word(world.contacts.pool.size());
+  sink.u64(world.contacts.pool.size());
   for (const Contact& c : world.contacts.pool) {
     using namespace contact_flags;
     const std::uint32_t flags = (c.alive ? kAlive : 0) | (c.sensor ? kSensor : 0) |
-                                (c.touching ? kTouching : 0) | (c.stale ? kStale : 0) |
+                                (c.touching ? kTouching : 0) | (c.dirty ? kDirty : 0) |
                                 (c.of_link ? kOfLink : 0) | (c.has_parts ? kHasParts : 0) |
                                 (c.is_part() ? kIsPart : 0);
-    sink.word(c.alive ? flags : 0);
+    sink.u64(c.alive ? flags : 0);
     if (!c.alive) continue;
-    sink.word(c.key);
+    sink.u64(c.key);
     put_two(sink, c.a, c.b);
     put_two(sink, c.cache.normal[0], c.cache.normal[1]);
     put_two(sink, std::bit_cast<std::uint32_t>(c.cache.normal[2]), std::uint32_t{c.cache.feature});
     put_two(sink, std::uint32_t{c.cache.i}, std::uint32_t{c.cache.j});
     if (c.has_parts) put_two(sink, c.first_part, 0u);
     if (c.is_part()) {
-      put_two(sink, c.whole, c.next_part);
+      put_two(sink, c.aggregate, c.next_part);
       put_two(sink, c.sub_a, c.sub_b);
     }
-    sink.word(c.count);
+    sink.u64(c.count);
     for (int i = 0; i < c.count; ++i) {
-      sink.word(c.feature[i]);
+      sink.u64(c.feature[i]);
       put(sink, c.position[i]);
     }
   }
@@ -124,42 +124,43 @@ void write_contacts(Sink& sink, const ContactData& world) {
         f(e);
     };
     for_edges([&](std::uint32_t) { ++count; });
-    sink.word(count);
-    for_edges([&](std::uint32_t e) { sink.word(e); });
+    sink.u64(count);
+    for_edges([&](std::uint32_t e) { sink.u64(e); });
   }
-  sink.word(world.contacts.free.size());
-  for (const std::uint32_t c : world.contacts.free) sink.word(c);
+  sink.u64(world.contacts.free.size());
+  for (const std::uint32_t c : world.contacts.free) sink.u64(c);
   const auto write_fields = [&sink](const auto& fields, int lane) {
     for (std::size_t f = 0; f < fields.size(); f += 2) {
       put_two(sink, fields[f].lane[lane], f + 1 < fields.size() ? fields[f + 1].lane[lane] : 0.0f);
     }
   };
-  for (const solve::NearList* list : {&world.contacts.near, &world.contacts.parked_near}) {
-    sink.word(list->size());
+  for (const solve::SpeculativeList* list :
+       {&world.contacts.speculative, &world.contacts.parked_speculative}) {
+    sink.u64(list->size());
     for (std::uint32_t i = 0; i < list->size(); ++i) {
-      sink.word(list->block(i).contact.lane[solve::NearList::lane(i)]);
-      write_fields(solve::fields_of(list->block(i)), solve::NearList::lane(i));
+      sink.u64(list->block(i).contact.lane[solve::SpeculativeList::lane(i)]);
+      write_fields(solve::fields_of(list->block(i)), solve::SpeculativeList::lane(i));
     }
   }
-  sink.word(world.regions.count);
+  sink.u64(world.regions.count);
   put(sink, world.regions.age);
-  for (const std::uint8_t axis : world.regions.axes) sink.word(axis);
+  for (const std::uint8_t axis : world.regions.axes) sink.u64(axis);
   if (world.regions.count > 0) {
-    for (const Body& body : world.bodies) sink.word(body.region);
+    for (const Body& body : world.bodies) sink.u64(body.region);
   }
-  const auto write_lanes = [&](const auto& colour, int index) {
-    sink.word(colour.lanes);
+  const auto write_slots = [&](const auto& colour, int index) {
+    sink.u64(colour.lanes);
     for (std::uint32_t l = 0; l < colour.lanes; ++l) {
       const auto& block = colour.blocks[colour.block_of(l, index)];
       const int lane = colour.lane_of(l, index);
-      sink.word(block.contact.lane[lane]);
+      sink.u64(block.contact.lane[lane]);
       write_fields(solve::fields_of(block), lane);
     }
   };
   for (std::size_t region = 0; region < world.contacts.graph.regions(); ++region) {
     for (int c = 0; c <= solve::kParked; ++c) {
-      write_lanes(world.contacts.graph.of<1>(region, c), c);
-      write_lanes(world.contacts.graph.of<4>(region, c), c);
+      write_slots(world.contacts.graph.of<1>(region, c), c);
+      write_slots(world.contacts.graph.of<4>(region, c), c);
     }
   }
 }

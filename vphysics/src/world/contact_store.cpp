@@ -13,7 +13,7 @@ namespace {
 // What one of the two has gone by: at the centre of the ball in which they meet, and how far that
 // may be off.
 struct Gone {
-  Vec3 displacement, turn;
+  Vec3 displacement, rotation;
   double bow;
 };
 
@@ -22,17 +22,17 @@ struct Gone {
 void ContactStore::reserve(std::size_t contacts) {
   pool.reserve(contacts);
   // Parts have contacts of their own.
-  for (auto* list : {&free, &stale}) list->reserve(std::max(contacts, pool.capacity()));
-  near.reserve(contacts);
+  for (auto* list : {&free, &dirty}) list->reserve(std::max(contacts, pool.capacity()));
+  speculative.reserve(contacts);
 }
 
 void ContactStore::clear() {
   pool.clear();
   free.clear();
   graph.clear();
-  near.clear();
-  parked_near.clear();
-  stale.clear();
+  speculative.clear();
+  parked_speculative.clear();
+  dirty.clear();
   points = 0;
 }
 
@@ -56,10 +56,10 @@ std::uint32_t ContactStore::add(const Contact& contact, const BodySet& on) {
 void ContactStore::remove(std::uint32_t index, const BodySet& on) {
   Contact& c = pool[index];
   if (c.has_parts) remove_parts(index, on);
-  if (c.place.points > 0) {
-    take_out_of_lane(index, on);
+  if (c.slot.points > 0) {
+    release_slot(index, on);
   } else {
-    unset_near(index);
+    unset_speculative(index);
   }
   for (const int side : {0, 1}) {
     Body& body = on.bodies[on.colliders[side == 0 ? c.a : c.b].body];
@@ -81,36 +81,36 @@ void ContactStore::remove_parts(std::uint32_t index, const BodySet& on) {
 }
 
 void ContactStore::forget_part(std::uint32_t index, const BodySet& on) {
-  Contact& whole = pool[pool[index].whole];
-  mark_stale(index);
-  std::uint32_t* link = &whole.first_part;
+  Contact& aggregate = pool[pool[index].aggregate];
+  mark_dirty(index);
+  std::uint32_t* link = &aggregate.first_part;
   while (*link != index) link = &pool[*link].next_part;
   *link = pool[index].next_part;
   remove(index, on);
 }
 
-bool ContactStore::touches_in_parts(const Contact& whole) const {
-  for (std::uint32_t p = whole.first_part; p != kNone; p = pool[p].next_part) {
+bool ContactStore::touches_in_parts(const Contact& aggregate) const {
+  for (std::uint32_t p = aggregate.first_part; p != kNone; p = pool[p].next_part) {
     if (pool[p].touching) return true;
   }
   return false;
 }
 
-void ContactStore::put_in_lane(std::uint32_t index, int max_points, const BodySet& on) {
+void ContactStore::assign_slot(std::uint32_t index, int max_points, const BodySet& on) {
   Contact& c = pool[index];
   const std::uint32_t a = on.colliders[c.a].body, b = on.colliders[c.b].body;
-  if (!c.is_part()) unset_near(index);
-  c.place = graph.add(index, end_of(on.bodies, a), end_of(on.bodies, b), max_points);
+  if (!c.is_part()) unset_speculative(index);
+  c.slot = graph.add(index, end_of(on.bodies, a), end_of(on.bodies, b), max_points);
   ++on.bodies[a].lanes;
   ++on.bodies[b].lanes;
 }
 
-void ContactStore::take_out_of_lane(std::uint32_t index, const BodySet& on) {
+void ContactStore::release_slot(std::uint32_t index, const BodySet& on) {
   Contact& c = pool[index];
   const std::uint32_t a = on.colliders[c.a].body, b = on.colliders[c.b].body;
-  const std::uint32_t moved = graph.remove(c.place, end_of(on.bodies, a), end_of(on.bodies, b));
-  if (moved != solve::kNoContact) pool[moved].place = c.place;
-  c.place = {};
+  const std::uint32_t moved = graph.remove(c.slot, end_of(on.bodies, a), end_of(on.bodies, b));
+  if (moved != solve::kNoContact) pool[moved].slot = c.slot;
+  c.slot = {};
   if (!c.parked) points -= c.count;
   c.count = 0;
   --on.bodies[a].lanes;
@@ -119,31 +119,31 @@ void ContactStore::take_out_of_lane(std::uint32_t index, const BodySet& on) {
 
 void ContactStore::follow_region(const Body& body, const BodySet& on) {
   for_each_of(body, [&](std::uint32_t, Contact& c) {
-    if (c.place.points == 0 || c.parked) return;
-    const solve::Place left = c.place;
-    const std::uint32_t moved = graph.follow(c.place, end_of(on.bodies, on.colliders[c.a].body),
+    if (c.slot.points == 0 || c.parked) return;
+    const solve::ContactSlot left = c.slot;
+    const std::uint32_t moved = graph.follow(c.slot, end_of(on.bodies, on.colliders[c.a].body),
                                              end_of(on.bodies, on.colliders[c.b].body));
-    if (moved != solve::kNoContact) pool[moved].place = left;
+    if (moved != solve::kNoContact) pool[moved].slot = left;
   });
 }
 
-void ContactStore::set_near(std::uint32_t index, double clearance, const BodySet& on) {
+void ContactStore::set_speculative(std::uint32_t index, double clearance, const BodySet& on) {
   Contact& c = pool[index];
   const std::uint32_t a = on.colliders[c.a].body, b = on.colliders[c.b].body;
-  c.near_index = near.add(index, end_of(on.bodies, a).row, end_of(on.bodies, b).row);
+  c.speculative_index = speculative.add(index, end_of(on.bodies, a).row, end_of(on.bodies, b).row);
   set_clearance(c, clearance, on);
 }
 
 void ContactStore::set_clearance(const Contact& c, double clearance, const BodySet& on) {
-  solve::NearBlock& block = near.block(c.near_index);
-  const int lane = solve::NearList::lane(c.near_index);
+  solve::SpeculativeBlock& block = speculative.block(c.speculative_index);
+  const int lane = solve::SpeculativeList::lane(c.speculative_index);
   const Collider &a = on.colliders[c.a], &b = on.colliders[c.b];
   const Vicinity at = vicinity_of(on.bodies, a, b);
   const auto put_end = [&](std::uint32_t row, const Body& body, solve::Field3& x,
-                           solve::Field3& turn, solve::Field3& arm) {
-    const float* way = on.rows[row].way;
-    put(x, lane, vector_of(way));
-    put(turn, lane, vector_of(way + 3));
+                           solve::Field3& rotation, solve::Field3& arm) {
+    const float* displacement = on.rows[row].displacement;
+    put(x, lane, vector_of(displacement));
+    put(rotation, lane, vector_of(displacement + 3));
     put(arm, lane, row == solve::kWorldRow ? Vec3{} : at.centre - reference_point(body));
   };
   put_end(block.a.lane[lane], on.bodies[a.body], block.x_a, block.turn_a, block.arm_a);
@@ -152,36 +152,39 @@ void ContactStore::set_clearance(const Contact& c, double clearance, const BodyS
   block.radius.lane[lane] = static_cast<float>(at.radius);
 }
 
-void ContactStore::reset_near(const Contact& c, const BodySet& on) {
-  set_clearance(c, c.of_link ? kNeverMeets : 0.0, on);
+void ContactStore::reset_speculative(const Contact& c, const BodySet& on) {
+  set_clearance(c, c.of_link ? kNeverTouches : 0.0, on);
 }
 
-void ContactStore::unset_near(std::uint32_t index) {
-  const std::uint32_t place = pool[index].near_index;
-  const std::uint32_t moved = (pool[index].parked ? parked_near : near).remove(place);
-  if (moved != solve::kNoContact) pool[moved].near_index = place;
+void ContactStore::unset_speculative(std::uint32_t index) {
+  const std::uint32_t slot = pool[index].speculative_index;
+  const std::uint32_t moved = (pool[index].parked ? parked_speculative : speculative).remove(slot);
+  if (moved != solve::kNoContact) pool[moved].speculative_index = slot;
 }
 
 double ContactStore::clearance(const Contact& c) const {
   return static_cast<double>(
-      near.block(c.near_index).clearance.lane[solve::NearList::lane(c.near_index)]);
+      speculative.block(c.speculative_index)
+          .clearance.lane[solve::SpeculativeList::lane(c.speculative_index)]);
 }
 
 // As find_closer counts it.
 void ContactStore::use_clearance(const Contact& c, const BodySet& on) {
-  solve::NearBlock& block = near.block(c.near_index);
-  const int lane = solve::NearList::lane(c.near_index);
+  solve::SpeculativeBlock& block = speculative.block(c.speculative_index);
+  const int lane = solve::SpeculativeList::lane(c.speculative_index);
   const auto gone = [&](const solve::IndexField& rows, const solve::Field3& x,
-                        const solve::Field3& turn, const solve::Field3& arm) {
-    const float* way = on.rows[rows.lane[lane]].way;
-    const Vec3 r = get(arm, lane), by = vector_of(way + 3) - get(turn, lane);
-    return Gone{vector_of(way) - get(x, lane) + cross(by, r), by, 0.5 * dot(by, by) * norm(r)};
+                        const solve::Field3& rotation, const solve::Field3& arm) {
+    const float* displacement = on.rows[rows.lane[lane]].displacement;
+    const Vec3 r = get(arm, lane), by = vector_of(displacement + 3) - get(rotation, lane);
+    return Gone{vector_of(displacement) - get(x, lane) + cross(by, r), by,
+                0.5 * dot(by, by) * norm(r)};
   };
   const Gone a = gone(block.a, block.x_a, block.turn_a, block.arm_a);
   const Gone b = gone(block.b, block.x_b, block.turn_b, block.arm_b);
-  const double turned = static_cast<double>(block.radius.lane[lane]) * norm(b.turn - a.turn);
+  const double rotated =
+      static_cast<double>(block.radius.lane[lane]) * norm(b.rotation - a.rotation);
   block.clearance.lane[lane] -=
-      static_cast<float>(norm(b.displacement - a.displacement) + turned + a.bow + b.bow);
+      static_cast<float>(norm(b.displacement - a.displacement) + rotated + a.bow + b.bow);
 }
 
 // Unless something awake may change it: a near pair of which one is awake or kinematic. A kinematic
@@ -190,16 +193,16 @@ void ContactStore::park(std::uint32_t index, const BodySet& on) {
   Contact& c = pool[index];
   const std::uint32_t a = on.colliders[c.a].body, b = on.colliders[c.b].body;
   if (c.parked) return;
-  if (c.place.points > 0) {
-    const solve::Place left = c.place;
-    const std::uint32_t moved = graph.park(c.place, end_of(on.bodies, a), end_of(on.bodies, b));
-    if (moved != solve::kNoContact) pool[moved].place = left;
+  if (c.slot.points > 0) {
+    const solve::ContactSlot left = c.slot;
+    const std::uint32_t moved = graph.park(c.slot, end_of(on.bodies, a), end_of(on.bodies, b));
+    if (moved != solve::kNoContact) pool[moved].slot = left;
     points -= c.count;
   } else {
     if (!is_still(on.bodies[a]) || !is_still(on.bodies[b])) return;
-    const std::uint32_t place = parked_near.add(near, c.near_index);
-    unset_near(index);
-    c.near_index = place;
+    const std::uint32_t slot = parked_speculative.add(speculative, c.speculative_index);
+    unset_speculative(index);
+    c.speculative_index = slot;
   }
   c.parked = true;
 }
@@ -207,47 +210,47 @@ void ContactStore::park(std::uint32_t index, const BodySet& on) {
 void ContactStore::unpark(std::uint32_t index, const BodySet& on) {
   Contact& c = pool[index];
   if (!c.parked) return;
-  if (c.place.points > 0) {
-    const solve::Place left = c.place;
-    const std::uint32_t moved = graph.unpark(c.place, end_of(on.bodies, on.colliders[c.a].body),
+  if (c.slot.points > 0) {
+    const solve::ContactSlot left = c.slot;
+    const std::uint32_t moved = graph.unpark(c.slot, end_of(on.bodies, on.colliders[c.a].body),
                                              end_of(on.bodies, on.colliders[c.b].body));
-    if (moved != solve::kNoContact) pool[moved].place = left;
+    if (moved != solve::kNoContact) pool[moved].slot = left;
     points += c.count;
   } else {
-    const std::uint32_t place = near.add(parked_near, c.near_index);
-    unset_near(index);
-    c.near_index = place;
+    const std::uint32_t slot = speculative.add(parked_speculative, c.speculative_index);
+    unset_speculative(index);
+    c.speculative_index = slot;
   }
   c.parked = false;
-  if (c.stale) mark_stale(index);
+  if (c.dirty) mark_dirty(index);
 }
 
-void ContactStore::mark_stale(std::uint32_t contact) {
-  if (pool[contact].is_part()) contact = pool[contact].whole;
-  pool[contact].stale = true;
-  stale.push_back(contact);
+void ContactStore::mark_dirty(std::uint32_t contact) {
+  if (pool[contact].is_part()) contact = pool[contact].aggregate;
+  pool[contact].dirty = true;
+  dirty.push_back(contact);
 }
 
-void ContactStore::mark_stale_of(const Body& body) {
-  for_each_of(body, [&](std::uint32_t index, Contact&) { mark_stale(index); });
+void ContactStore::mark_contacts_dirty(const Body& body) {
+  for_each_of(body, [&](std::uint32_t index, Contact&) { mark_dirty(index); });
 }
 
-void ContactStore::mark_stale_lanes(const solve::IndexField& contacts, std::uint32_t bits) {
+void ContactStore::mark_dirty_slots(const solve::IndexField& contacts, std::uint32_t bits) {
   for (; bits != 0; bits &= bits - 1) {
     const std::uint32_t contact = contacts.lane[std::countr_zero(bits)];
-    if (contact != solve::kNoContact) mark_stale(contact);
+    if (contact != solve::kNoContact) mark_dirty(contact);
   }
 }
 
 // By a bit for each of the pool.
-void ContactStore::take_stale(std::vector<std::uint32_t>& ascending) {
-  stale_bits_.resize(pool.capacity() / 64 + 1);
-  for (const std::uint32_t i : stale) stale_bits_[i / 64] |= std::uint64_t{1} << (i % 64);
-  stale.clear();
+void ContactStore::take_dirty(std::vector<std::uint32_t>& ascending) {
+  dirty_bits_.resize(pool.capacity() / 64 + 1);
+  for (const std::uint32_t i : dirty) dirty_bits_[i / 64] |= std::uint64_t{1} << (i % 64);
+  dirty.clear();
   ascending.clear();
   const std::size_t words = pool.size() / 64 + 1;
   for (std::size_t w = 0; w < words; ++w) {
-    for (std::uint64_t left = std::exchange(stale_bits_[w], 0); left != 0; left &= left - 1) {
+    for (std::uint64_t left = std::exchange(dirty_bits_[w], 0); left != 0; left &= left - 1) {
       ascending.push_back(static_cast<std::uint32_t>(64 * w) +
                           static_cast<std::uint32_t>(std::countr_zero(left)));
     }

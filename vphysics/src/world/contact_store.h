@@ -9,7 +9,7 @@
 #include "solve/body_row.h"
 #include "solve/contact_graph.h"
 #include "solve/large_pages.h"
-#include "solve/near_list.h"
+#include "solve/speculative_list.h"
 #include "world/collider.h"
 #include "world/contact.h"
 
@@ -27,11 +27,11 @@ class ContactStore {
   // --- state
   std::vector<Contact> pool;
   std::vector<std::uint32_t> free;
-  solve::ContactGraph graph;    // of those that have points
-  solve::NearList near;         // of those that have none
-  solve::NearList parked_near;  // and of those of them that are of bodies asleep
+  solve::ContactGraph graph;                  // of those that have points
+  solve::SpeculativeList speculative;         // of those that have none
+  solve::SpeculativeList parked_speculative;  // and of those of them that are of bodies asleep
   // Those marked as stale, in no order, and with others that are not any more.
-  std::vector<std::uint32_t> stale;
+  std::vector<std::uint32_t> dirty;
   std::uint32_t points = 0;  // in lanes that are not parked
 
   Contact& operator[](std::uint32_t contact) { return pool[contact]; }
@@ -47,28 +47,28 @@ class ContactStore {
       f(e / 2, pool[e / 2]);
     }
   }
-  bool touches_in_parts(const Contact& whole) const;
+  bool touches_in_parts(const Contact& aggregate) const;
 
   // A new one, in no lane and in no near list.
   std::uint32_t add(const Contact& contact, const BodySet& on);
   // With its parts.
   void remove(std::uint32_t contact, const BodySet& on);
-  void remove_parts(std::uint32_t whole, const BodySet& on);
+  void remove_parts(std::uint32_t aggregate, const BodySet& on);
   // One of several: the whole has to be looked at again.
   void forget_part(std::uint32_t part, const BodySet& on);
 
   // --- lanes. An empty one for so many points: it leaves its near list.
-  void put_in_lane(std::uint32_t contact, int max_points, const BodySet& on);
-  void take_out_of_lane(std::uint32_t contact, const BodySet& on);
+  void assign_slot(std::uint32_t contact, int max_points, const BodySet& on);
+  void release_slot(std::uint32_t contact, const BodySet& on);
   // To the regions that the body's contacts are in now.
   void follow_region(const Body& body, const BodySet& on);
 
   // --- near lists. It is free of contact for so far [m] from where its bodies are now.
-  void set_near(std::uint32_t contact, double clearance, const BodySet& on);
+  void set_speculative(std::uint32_t contact, double clearance, const BodySet& on);
   void set_clearance(const Contact& contact, double clearance, const BodySet& on);
   double clearance(const Contact& contact) const;
   // To be looked at; of a link, elsewhere.
-  void reset_near(const Contact& contact, const BodySet& on);
+  void reset_speculative(const Contact& contact, const BodySet& on);
   // Takes from the clearance how far the two have gone against each other since it was set.
   void use_clearance(const Contact& contact, const BodySet& on);
 
@@ -77,18 +77,18 @@ class ContactStore {
   void unpark(std::uint32_t contact, const BodySet& on);
 
   // --- the narrow phase must look at it again; of a part, at the whole.
-  void mark_stale(std::uint32_t contact);
-  void mark_stale_of(const Body& body);
-  void mark_stale_lanes(const solve::IndexField& contacts, std::uint32_t bits);
+  void mark_dirty(std::uint32_t contact);
+  void mark_contacts_dirty(const Body& body);
+  void mark_dirty_slots(const solve::IndexField& contacts, std::uint32_t bits);
   // The stale ones, ascending, each once; then none is.
-  void take_stale(std::vector<std::uint32_t>& ascending);
+  void take_dirty(std::vector<std::uint32_t>& ascending);
 
  private:
-  void unset_near(std::uint32_t contact);
+  void unset_speculative(std::uint32_t contact);
 
-  std::vector<std::uint64_t> stale_bits_;  // scratch
+  std::vector<std::uint64_t> dirty_bits_;  // scratch
 };
 
-inline constexpr double kNeverMeets = 1e30;  // a clearance [m]
+inline constexpr double kNeverTouches = 1e30;  // a clearance [m]
 
 }  // namespace vp

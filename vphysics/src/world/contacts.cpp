@@ -24,15 +24,15 @@ bool touches(std::span<const PairRecord> of_pair) {
 // The old point of the same features; or, since features change names when edges pass over one
 // another, the nearest old point within reach.
 const PairPoint* point_of(std::span<const PairRecord> of_pair, const collide::ManifoldPoint& p,
-                          double reach) {
+                          double range) {
   const PairPoint* nearest = nullptr;
-  double least = reach * reach;
+  double min_value = range * range;
   for (const PairRecord& record : of_pair) {
     for (std::uint32_t i = 0; i < record.count; ++i) {
       if (record.points[i].feature == p.feature) return &record.points[i];
       const Vec3 d = record.points[i].position - p.position;
-      if (dot(d, d) < least) {
-        least = dot(d, d);
+      if (dot(d, d) < min_value) {
+        min_value = dot(d, d);
         nearest = &record.points[i];
       }
     }
@@ -294,9 +294,10 @@ void World::Impl::remember_impulses(std::span<const solve::ContactConstraint> so
       record.points[i].normal_impulse = scale * p.normal_impulse;
       record.points[i].friction =
           scale * (p.tangent_impulse[0] * c.tangent[0] + p.tangent_impulse[1] * c.tangent[1]);
-      PairPoint& kept = record.points[i];
-      if (!in_range(kept.normal_impulse) || !in_range(kept.friction) || !in_range(kept.position)) {
-        kept = {p.feature, 0.0, {}, {}};
+      PairPoint& cached = record.points[i];
+      if (!in_range(cached.normal_impulse) || !in_range(cached.friction) ||
+          !in_range(cached.position)) {
+        cached = {p.feature, 0.0, {}, {}};
       }
     }
   }

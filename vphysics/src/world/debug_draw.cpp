@@ -6,8 +6,8 @@
 
 #include "solve/row_vector.h"
 #include "world/impl.h"
+#include "world/invalid.h"
 #include "world/lane_fields.h"
-#include "world/refuse.h"
 #include "world/validate.h"
 #include "world/wires.h"
 
@@ -16,10 +16,11 @@ namespace {
 
 constexpr double kLargestSize = 1e6;  // [m]
 
-DebugMark mark_of(const Body& body, const Collider& collider) {
-  if (collider.sensor) return DebugMark::sensor;
-  if (body.motion == Motion::fixed) return DebugMark::fixed_shape;
-  return body.motion == Motion::kinematic ? DebugMark::kinematic_shape : DebugMark::dynamic_shape;
+DebugCategory category_of(const Body& body, const Collider& collider) {
+  if (collider.sensor) return DebugCategory::sensor;
+  if (body.motion == Motion::fixed) return DebugCategory::fixed_shape;
+  return body.motion == Motion::kinematic ? DebugCategory::kinematic_shape
+                                          : DebugCategory::dynamic_shape;
 }
 
 // The axes that a joint turns about or slides along, in its frame.
@@ -46,14 +47,14 @@ struct JointAxes {
 
 }  // namespace
 
-std::uint32_t usual_colour(DebugMark mark) {
-  constexpr std::array<std::uint32_t, kDebugMarks> kColours{
+std::uint32_t usual_colour(DebugCategory category) {
+  constexpr std::array<std::uint32_t, kDebugCategories> kColours{
       0x8a8f98, 0x8e5bd0, 0x2f8fd8, 0x3fb6a8, 0x6d7787, 0xf5c518, 0xf08a24, 0xe0413a,
       0xd06fc0, 0xe23b3b, 0x36a852, 0x3f6fe0, 0x1a1a1a, 0xc8a165, 0xe8d9b0};
-  return kColours[static_cast<std::size_t>(mark)];
+  return kColours[static_cast<std::size_t>(category)];
 }
 
-bool DebugDraw::shape(ColliderId, const Shape&, const SE3&, DebugMark) {
+bool DebugDraw::shape(ColliderId, const Shape&, const SE3&, DebugCategory) {
   return false;
 }
 
@@ -75,11 +76,11 @@ class World::Impl::Drawing {
     }
     if (!(options_.contacts || options_.normals || options_.impulses)) return;
     for (const Contact& c : world_.contact_store.pool) {
-      if (!c.alive || !c.touching || c.place.points == 0) continue;
-      if (c.place.points == 1) {
-        draw_contact(c, world_.contact_store.graph.block<1>(c.place));
+      if (!c.alive || !c.touching || c.slot.points == 0) continue;
+      if (c.slot.points == 1) {
+        draw_contact(c, world_.contact_store.graph.block<1>(c.slot));
       } else {
-        draw_contact(c, world_.contact_store.graph.block<4>(c.place));
+        draw_contact(c, world_.contact_store.graph.block<4>(c.slot));
       }
     }
     for (const PairRecord& record : world_.impacts.records) draw_record(record);
@@ -92,12 +93,12 @@ class World::Impl::Drawing {
       if (!c.alive) continue;
       const Body& body = world_.bodies[c.body];
       const SE3 T = body.T * c.T_body_shape;
-      const DebugMark mark = mark_of(body, c);
-      if (options_.shapes && !draw_.shape(world_.colliders.id(i), c.shape, T, mark))
-        draw_wire(c.shape, T, options_.half_space_size, mark, draw_);
+      const DebugCategory category = category_of(body, c);
+      if (options_.shapes && !draw_.shape(world_.colliders.id(i), c.shape, T, category))
+        draw_wire(c.shape, T, options_.half_space_size, category, draw_);
       if (options_.bounds && !std::holds_alternative<HalfSpace>(c.shape)) {
         const collide::Bounds b = bounds_of(c.geometry, T);
-        draw_box(SE3(0.5 * (b.lower + b.upper)), 0.5 * (b.upper - b.lower), DebugMark::bounds,
+        draw_box(SE3(0.5 * (b.lower + b.upper)), 0.5 * (b.upper - b.lower), DebugCategory::bounds,
                  draw_);
       }
     }
@@ -113,17 +114,17 @@ class World::Impl::Drawing {
       const SE3 T = pose_of(body);
       const Vec3& at = T.position();
       if (options_.frames) {
-        draw_.line(at, at + options_.frame_size * T.rotation().cx, DebugMark::axis_x);
-        draw_.line(at, at + options_.frame_size * T.rotation().cy, DebugMark::axis_y);
-        draw_.line(at, at + options_.frame_size * T.rotation().cz, DebugMark::axis_z);
+        draw_.line(at, at + options_.frame_size * T.rotation().cx, DebugCategory::axis_x);
+        draw_.line(at, at + options_.frame_size * T.rotation().cy, DebugCategory::axis_y);
+        draw_.line(at, at + options_.frame_size * T.rotation().cz, DebugCategory::axis_z);
       }
       if (options_.centres && body.motion == Motion::dynamic && body.mass > 0.0)
-        draw_.point(T * body.centre, DebugMark::centre);
+        draw_.point(T * body.centre, DebugCategory::centre);
     }
   }
 
   void draw_axis(const Vec3& at, const Vec3& axis) const {
-    draw_.line(at, at + options_.frame_size * axis, DebugMark::joint_axis);
+    draw_.line(at, at + options_.frame_size * axis, DebugCategory::joint_axis);
   }
 
   void draw_tree(const Articulation& tree) const {
@@ -132,9 +133,9 @@ class World::Impl::Drawing {
       const SE3 T_world_parent = link.parent == kWorld ? SE3() : tree.T_world_link(link.parent);
       const SE3 T_world_joint = T_world_parent * link.T_parent_joint;
       const Vec3& at = T_world_joint.position();
-      if (link.parent != kWorld) draw_.line(T_world_parent.position(), at, DebugMark::joint);
-      draw_.line(at, tree.T_world_link(l).position(), DebugMark::joint);
-      draw_.point(at, DebugMark::joint);
+      if (link.parent != kWorld) draw_.line(T_world_parent.position(), at, DebugCategory::joint);
+      draw_.line(at, tree.T_world_link(l).position(), DebugCategory::joint);
+      draw_.point(at, DebugCategory::joint);
       JointAxes joint;
       std::visit([&](const auto& j) { joint(j); }, link.joint);
       for (int k = 0; k < joint.count; ++k)
@@ -145,26 +146,30 @@ class World::Impl::Drawing {
   // What is between the two frames is a spring, a rod, or a gap.
   void draw_joint(const BodyJoint& joint) const {
     const Body &a = world_.bodies[joint.a], &b = world_.bodies[joint.b];
-    const bool user = joint.law.form == JointLaw::Form::user;  // has no frames
+    const bool user = joint.spec.form == JointSpec::Form::user;  // has no frames
     const SE3 T_a = user ? a.T : a.T * joint.T_a_joint, T_b = user ? b.T : b.T * joint.T_b_joint;
-    if (a.motion != Motion::fixed) draw_.line(reference_point(a), T_a.position(), DebugMark::joint);
-    draw_.line(T_a.position(), T_b.position(), DebugMark::joint);
-    if (b.motion != Motion::fixed) draw_.line(T_b.position(), reference_point(b), DebugMark::joint);
-    draw_.point(T_a.position(), DebugMark::joint);
-    draw_.point(T_b.position(), DebugMark::joint);
-    const bool gear = joint.law.form == JointLaw::Form::gear;
-    if (gear || (joint.law.form == JointLaw::Form::axes && joint.main >= 0))
+    if (a.motion != Motion::fixed)
+      draw_.line(reference_point(a), T_a.position(), DebugCategory::joint);
+    draw_.line(T_a.position(), T_b.position(), DebugCategory::joint);
+    if (b.motion != Motion::fixed)
+      draw_.line(T_b.position(), reference_point(b), DebugCategory::joint);
+    draw_.point(T_a.position(), DebugCategory::joint);
+    draw_.point(T_b.position(), DebugCategory::joint);
+    const bool gear = joint.spec.form == JointSpec::Form::gear;
+    if (gear || (joint.spec.form == JointSpec::Form::axes && joint.main >= 0))
       draw_axis(T_a.position(), T_a.rotation().cz);
     if (gear) draw_axis(T_b.position(), T_b.rotation().cz);
   }
 
   void draw_point(const Vec3& at, const Vec3& normal, double load, const Vec3& friction) const {
-    if (options_.contacts) draw_.point(at, DebugMark::contact);
-    if (options_.normals) draw_.line(at, at + options_.normal_length * normal, DebugMark::normal);
+    if (options_.contacts) draw_.point(at, DebugCategory::contact);
+    if (options_.normals)
+      draw_.line(at, at + options_.normal_length * normal, DebugCategory::normal);
     if (!options_.impulses) return;
-    if (load > 0.0) draw_.line(at, at + options_.impulse_scale * load * normal, DebugMark::impulse);
+    if (load > 0.0)
+      draw_.line(at, at + options_.impulse_scale * load * normal, DebugCategory::impulse);
     if (friction != Vec3{})
-      draw_.line(at, at + options_.impulse_scale * friction, DebugMark::friction);
+      draw_.line(at, at + options_.impulse_scale * friction, DebugCategory::friction);
   }
 
   // The points were found some steps ago: since then they have gone with the body that is not
@@ -172,28 +177,28 @@ class World::Impl::Drawing {
   // are shared out evenly.
   template <int P>
   void draw_contact(const Contact& c, const solve::ContactBlock<P>& block) const {
-    const int lane = solve::ContactGraph::lane(c.place);
+    const int lane = solve::ContactGraph::lane(c.slot);
     const std::uint32_t body_a = world_.colliders[c.a].body, body_b = world_.colliders[c.b].body;
     const bool with_b = world_.bodies[body_a].motion == Motion::fixed;
     const std::uint32_t body = with_b ? body_b : body_a;
     const Vec3 centre = reference_point(world_.bodies[body]);
-    const Vec3 turn = vector_of(world_.body_rows[body + 1].way + 3) -
-                      get(with_b ? block.turned_b : block.turned_a, lane);
-    const Mat3 R = turned(Mat3::identity(), turn);
-    Vec3 middle;
-    for (int i = 0; i < c.count; ++i) middle += (1.0 / c.count) * c.position[i];
+    const Vec3 rotation = vector_of(world_.body_rows[body + 1].displacement + 3) -
+                          get(with_b ? block.rotated_b : block.rotated_a, lane);
+    const Mat3 R = rotated(Mat3::identity(), rotation);
+    Vec3 mean;
+    for (int i = 0; i < c.count; ++i) mean += (1.0 / c.count) * c.position[i];
     Vec3 grip = get(block.grip, lane);
     if (with_b) grip += get(block.d, lane);
 
     const Vec3 n = get(block.normal, lane), t = get(block.tangent, lane);
     const auto value = [lane](const solve::Field& f) { return static_cast<double>(f.lane[lane]); };
-    const double steps = world_.sub_steps_taken, share = 1.0 / c.count;
+    const double steps = world_.sub_steps_taken, fraction = 1.0 / c.count;
     const Vec3 friction =
-        steps * share *
+        steps * fraction *
         (value(block.tangent_impulse[0]) * t + value(block.tangent_impulse[1]) * cross(n, t));
-    const double bounces = steps > 0.0 ? share * value(block.impact) : 0.0;
+    const double bounces = steps > 0.0 ? fraction * value(block.impact) : 0.0;
     for (int i = 0; i < c.count; ++i) {
-      const Vec3 at = centre + R * (grip + c.position[i] - middle);
+      const Vec3 at = centre + R * (grip + c.position[i] - mean);
       draw_point(at, n, steps * value(block.impulse[i]) + bounces, friction);
     }
   }
@@ -222,7 +227,7 @@ Expected<void> World::debug_draw(const DebugDrawOptions& options, DebugDraw& dra
   for (const double size : {options.frame_size, options.normal_length, options.impulse_scale,
                             options.half_space_size}) {
     if (!(size > 0.0 && size <= kLargestSize))
-      return refuse("debug_draw: every size and scale must be positive and at most 1e6");
+      return invalid("debug_draw: every size and scale must be positive and at most 1e6");
   }
   impl_->look_at_all();
   Impl::Drawing(*impl_, options, draw).draw();

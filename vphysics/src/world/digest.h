@@ -6,8 +6,8 @@
 namespace vp {
 
 // Mixes a word into a digest.
-inline std::uint64_t mixed(std::uint64_t digest, std::uint64_t word) {
-  digest = (digest ^ word) * 0x9e3779b97f4a7c15u;
+inline std::uint64_t mixed(std::uint64_t digest, std::uint64_t value) {
+  digest = (digest ^ value) * 0x9e3779b97f4a7c15u;
   return digest ^ (digest >> 29);
 }
 

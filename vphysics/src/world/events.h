@@ -17,15 +17,15 @@ struct DestroyedPair {
 };
 
 // Of a part's contact, at the end of a step: it begins or ends to touch, or was hit.
-struct PartNews {
-  std::uint32_t whole, part;
-  double closing, impulse;
+struct PartEvent {
+  std::uint32_t aggregate, part;
+  double approach_speed, impulse;
   Vec3 point, normal;
 };
 
 class Events {
  public:
-  std::vector<PartNews> news_of_parts;  // of this step: one event for each whole (touches.cpp)
+  std::vector<PartEvent> part_events;  // of this step: one event for each whole (touches.cpp)
   // Pairs that touched when one of the two was destroyed; the next step reports their ends.
   std::vector<DestroyedPair> destroyed;
 

@@ -22,7 +22,7 @@ namespace {
 // the smaller; and how far they may turn [rad]. The separation of a point at an arm r is then off
 // by r turn^2 / 2: a thirtieth of a millimetre for a box of a metre.
 constexpr double kSlide = 0.01;
-constexpr double kTurn = 0.01;
+constexpr double kRevolution = 0.01;
 constexpr std::size_t kLookGrain = 16;  // contacts: some microseconds
 
 // A ball touches anything convex at one point.
@@ -33,14 +33,14 @@ int points_of(const Contact& c, const Collider& a, const Collider& b) {
 }
 
 // The impulses that a contact's lane holds.
-struct Held {
+struct SlotImpulses {
   std::array<float, collide::kMaxPoints> normal{};
   Vec3 friction, moment;
 };
 
 template <int P>
-Held held_in(const solve::ContactBlock<P>& block, int lane) {
-  Held impulses;
+SlotImpulses impulses_in(const solve::ContactBlock<P>& block, int lane) {
+  SlotImpulses impulses;
   for (int i = 0; i < P; ++i)
     impulses.normal[static_cast<std::size_t>(i)] = block.impulse[i].lane[lane];
   const Vec3 n = get(block.normal, lane), t = get(block.tangent, lane), b = cross(n, t);
@@ -53,15 +53,15 @@ Held held_in(const solve::ContactBlock<P>& block, int lane) {
 
 // The impulse of the old point of the same features; or, since features change names when edges
 // pass over one another, of the nearest old one within reach.
-float impulse_of(const Contact& contact, const Held& impulses, const collide::ManifoldPoint& p,
-                 double reach) {
+float impulse_of(const Contact& contact, const SlotImpulses& impulses,
+                 const collide::ManifoldPoint& p, double range) {
   float nearest = 0.0f;
-  double least = reach * reach;
+  double min_value = range * range;
   for (std::size_t i = 0; i < contact.count; ++i) {
     if (contact.feature[i] == p.feature) return impulses.normal[i];
     const Vec3 d = contact.position[i] - p.position;
-    if (dot(d, d) >= least) continue;
-    least = dot(d, d);
+    if (dot(d, d) >= min_value) continue;
+    min_value = dot(d, d);
     nearest = impulses.normal[i];
   }
   return nearest;
@@ -76,7 +76,7 @@ struct NarrowPhaseInput {
 };
 
 // The narrow phase, for one. What has parts is looked at when it is taken over.
-void find_manifold_of(Contact& c, Looked& found, const NarrowPhaseInput& in) {
+void find_manifold_of(Contact& c, NarrowPhaseResult& found, const NarrowPhaseInput& in) {
   const Collider &a = in.colliders[c.a], &b = in.colliders[c.b];
   const double leeway = kSlide * smaller_size(a, b);
   found.margin_at_rest = c.sensor ? 0.0 : in.slop + leeway;
@@ -87,12 +87,12 @@ void find_manifold_of(Contact& c, Looked& found, const NarrowPhaseInput& in) {
                   in.approach.pull_of(in.bodies[b.body]) == Velocity{};
   found.clearance = (found.by_part ? found.margin_at_rest : found.margin) - in.slop;
   found.manifold.count = 0;
-  if (keeps_apart(in.bodies, in.joints, a.body, b.body)) {
-    found.clearance = kNeverMeets;
+  if (disables_collision(in.bodies, in.joints, a.body, b.body)) {
+    found.clearance = kNeverTouches;
   } else if (!c.has_parts) {
     find_manifold(a.geometry, a.T, b.geometry, b.T, found.margin, c.cache, found.manifold);
     if (found.manifold.count == 0)
-      found.clearance = std::max(found.clearance, found.manifold.apart_by_at_least - in.slop);
+      found.clearance = std::max(found.clearance, found.manifold.min_separation - in.slop);
   }
 }
 
@@ -103,17 +103,17 @@ void find_manifold_of(Contact& c, Looked& found, const NarrowPhaseInput& in) {
 bool World::Impl::has_contacts_to_find() const {
   return lists.some_sub_stepped ||
          (lists.some_sleep &&
-          (finder.has_moved() || !contact_store.stale.empty() || !lists.links.empty()));
+          (finder.has_moved() || !contact_store.dirty.empty() || !lists.links.empty()));
 }
 
 void World::Impl::find_contacts(double dt) {
   {
     const auto stage = in(Stage::broad_phase);
     find_new_contacts();
-    drop_parted_link_contacts();
+    drop_separated_link_contacts();
     find_bodies_on_links();
   }
-  look_at_stale_contacts(dt);
+  update_dirty_contacts(dt);
 }
 
 void World::Impl::find_new_contacts() {
@@ -124,7 +124,7 @@ void World::Impl::find_new_contacts() {
   }
 }
 
-bool World::Impl::has_parted(const Contact& c) const {
+bool World::Impl::has_separated(const Contact& c) const {
   return !finder.should_pair(colliders[c.a].proxy, colliders[c.b].proxy);
 }
 void World::Impl::drop_contact(std::uint32_t index) {
@@ -135,13 +135,13 @@ void World::Impl::drop_contact(std::uint32_t index) {
 
 // Contacts of links are looked at elsewhere; all others are dropped when they are looked at and
 // their enlarged bounds have parted, so that until then nothing is gone through for it.
-void World::Impl::drop_parted_link_contacts() {
+void World::Impl::drop_separated_link_contacts() {
   if (lists.links.empty()) return;
   for (const std::uint32_t proxy : finder.moved()) {
     if (!finder.exists(proxy)) continue;
     const std::uint32_t collider = finder.user(proxy);
     contact_store.for_each_of(bodies[colliders[collider].body], [&](std::uint32_t i, Contact& c) {
-      if (c.of_link && (c.a == collider || c.b == collider) && has_parted(c)) drop_contact(i);
+      if (c.of_link && (c.a == collider || c.b == collider) && has_separated(c)) drop_contact(i);
     });
   }
 }
@@ -152,7 +152,7 @@ void World::Impl::add_contact_pair(std::uint32_t i, std::uint32_t j) {
   const Body &body_a = bodies[a.body], &body_b = bodies[b.body];
   const bool sensor = a.sensor || b.sensor;
   const bool pushes = body_a.motion == Motion::dynamic || body_b.motion == Motion::dynamic;
-  if (!should_meet(a, b) || never_meet(body_a, body_b) || !(pushes || sensor)) return;
+  if (!should_collide(a, b) || never_collide(body_a, body_b) || !(pushes || sensor)) return;
   Contact c;
   c.key = pair.key;
   c.a = pair.a;
@@ -161,9 +161,9 @@ void World::Impl::add_contact_pair(std::uint32_t i, std::uint32_t j) {
   c.of_link = body_a.is_link || body_b.is_link;
   c.has_parts = has_parts(a.geometry, b.geometry);
   const std::uint32_t index = contact_store.add(c, body_set);
-  if (!c.of_link) contact_store.mark_stale(index);
-  contact_store.set_near(index, 0.0, body_set);
-  contact_store.reset_near(contact_store[index], body_set);
+  if (!c.of_link) contact_store.mark_dirty(index);
+  contact_store.set_speculative(index, 0.0, body_set);
+  contact_store.reset_speculative(contact_store[index], body_set);
 }
 
 // An end is reported; the finder's pair stays.
@@ -173,19 +173,19 @@ void World::Impl::remove_contact(std::uint32_t index) {
   contact_store.remove(index, body_set);
 }
 
-void World::Impl::find_stale_contacts(double dt) {
+void World::Impl::find_dirty_contacts(double dt) {
   const float step = static_cast<float>(dt);
   const ContactRuns runs = contact_runs();
   std::vector<std::uint32_t>& found = sub_step.blocks.words;
   (void)runs.number();
   runs.for_parts([&](const auto& pass, const auto& part, std::size_t first) {
-    pass.find_moved(part, step, static_cast<float>(kTurn), found.data() + first);
+    pass.find_moved(part, step, static_cast<float>(kRevolution), found.data() + first);
   });
   std::size_t next = 0;
   runs.for_runs([&](const auto&, const auto&, const auto& blocks) {
-    for (const auto& block : blocks) contact_store.mark_stale_lanes(block.contact, found[next++]);
+    for (const auto& block : blocks) contact_store.mark_dirty_slots(block.contact, found[next++]);
   });
-  const std::span<solve::NearBlock> blocks = contact_store.near.blocks();
+  const std::span<solve::SpeculativeBlock> blocks = contact_store.speculative.blocks();
   found.resize(std::max(found.size(), blocks.size()));
   workers.in_parallel(blocks.size(), kBodyGrain / solve::kLanes,
                       [&](std::size_t begin, std::size_t end) {
@@ -193,41 +193,41 @@ void World::Impl::find_stale_contacts(double dt) {
                                                     body_rows.data(), step, found.data() + begin);
                       });
   for (std::size_t b = 0; b < blocks.size(); ++b)
-    contact_store.mark_stale_lanes(blocks[b].contact, found[b]);
+    contact_store.mark_dirty_slots(blocks[b].contact, found[b]);
 }
 
 // In the order of their slots; then those that these have woken.
-void World::Impl::look_at_stale_contacts(double dt) {
+void World::Impl::update_dirty_contacts(double dt) {
   narrow.look_again.clear();
-  for (bool first = true; first || !contact_store.stale.empty(); first = false) {
-    find_manifolds_of_stale(dt, first);
+  for (bool first = true; first || !contact_store.dirty.empty(); first = false) {
+    find_dirty_manifolds(dt, first);
     const auto stage = in(Stage::lanes);
-    for (const Looked& found : narrow.looked) take_over(found);
+    for (const NarrowPhaseResult& found : narrow.results) take_over(found);
   }
-  contact_store.stale.swap(narrow.look_again);
+  contact_store.dirty.swap(narrow.look_again);
 }
 
-void World::Impl::find_manifolds_of_stale(double dt, bool first) {
+void World::Impl::find_dirty_manifolds(double dt, bool first) {
   const auto stage = in(Stage::narrow_phase);
-  if (first) find_stale_contacts(dt);
-  contact_store.take_stale(narrow.stale);
-  std::vector<Looked>& looked = narrow.looked;
+  if (first) find_dirty_contacts(dt);
+  contact_store.take_dirty(narrow.dirty);
+  std::vector<NarrowPhaseResult>& results = narrow.results;
   std::vector<std::uint32_t>& to_pose = narrow.to_pose;
-  looked.clear();
+  results.clear();
   to_pose.clear();
-  for (const std::uint32_t index : narrow.stale) {
+  for (const std::uint32_t index : narrow.dirty) {
     const Contact& c = contact_store[index];
-    if (!c.alive || !c.stale || c.parked) continue;
+    if (!c.alive || !c.dirty || c.parked) continue;
     if (c.of_link) continue;  // link_contacts.cpp looks at it
-    if (has_parted(c)) {
+    if (has_separated(c)) {
       drop_contact(index);
       continue;
     }
-    looked.push_back({index, {}, 0.0, 0.0, 0.0, false});
+    results.push_back({index, {}, 0.0, 0.0, 0.0, false});
     for (const std::uint32_t collider : {c.a, c.b}) {
       Body& body = bodies[colliders[collider].body];
-      if (body.posed || body.wanted) continue;
-      body.wanted = true;
+      if (body.posed || body.target) continue;
+      body.target = true;
       to_pose.push_back(colliders[collider].body);
     }
   }
@@ -235,9 +235,9 @@ void World::Impl::find_manifolds_of_stale(double dt, bool first) {
     for (std::size_t k = begin; k < end; ++k) pose_colliders(bodies[to_pose[k]], colliders);
   });
   const NarrowPhaseInput input{bodies, colliders, joints, approach_in(dt), desc.contact_slop};
-  workers.in_parallel(looked.size(), kLookGrain, [&](std::size_t begin, std::size_t end) {
+  workers.in_parallel(results.size(), kLookGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      find_manifold_of(contact_store[looked[k].contact], looked[k], input);
+      find_manifold_of(contact_store[results[k].contact], results[k], input);
     }
   });
 }
@@ -246,34 +246,34 @@ void World::Impl::note_limits(const collide::Manifold& manifold) {
   status.distance_limit |= manifold.rough;
 }
 
-void World::Impl::take_over(const Looked& found) {
+void World::Impl::take_over(const NarrowPhaseResult& found) {
   const std::uint32_t index = found.contact;
-  const bool apart = found.clearance >= kNeverMeets;
-  contact_store[index].stale = false;
-  if (!apart) ++counters.looked_at;
+  const bool separated = found.clearance >= kNeverTouches;
+  contact_store[index].dirty = false;
+  if (!separated) ++counters.narrow_phase_pairs;
   note_limits(found.manifold);
   if (contact_store[index].has_parts) {
-    if (apart) {
+    if (separated) {
       contact_store.remove_parts(index, body_set);
     } else {
       find_parts(found);
     }
   } else if (contact_store[index].sensor) {
-    const bool meets = found.manifold.count > 0;
-    if (meets != contact_store[index].touching)
-      events.touch(colliders, contact_store[index], meets);
+    const bool collides = found.manifold.count > 0;
+    if (collides != contact_store[index].touching)
+      events.touch(colliders, contact_store[index], collides);
   } else if (found.manifold.count > 0) {
-    put_in_lane(index, found.manifold);
+    assign_slot(index, found.manifold);
     return;
   }
   Contact& c = contact_store[index];  // the pool may have grown
   if (c.sensor) {
-    c.stale = true;
-  } else if (!c.has_parts || apart) {
+    c.dirty = true;
+  } else if (!c.has_parts || separated) {
     if (c.touching) events.touch(colliders, c, false);
-    if (c.place.points > 0) {
-      contact_store.take_out_of_lane(index, body_set);
-      contact_store.set_near(index, found.clearance, body_set);
+    if (c.slot.points > 0) {
+      contact_store.release_slot(index, body_set);
+      contact_store.set_speculative(index, found.clearance, body_set);
     } else {
       contact_store.set_clearance(c, found.clearance, body_set);
     }
@@ -282,7 +282,7 @@ void World::Impl::take_over(const Looked& found) {
   if (c.sensor && !c.parked) narrow.look_again.push_back(index);  // in the next step
 }
 
-void World::Impl::put_in_lane(std::uint32_t index, const collide::Manifold& m) {
+void World::Impl::assign_slot(std::uint32_t index, const collide::Manifold& m) {
   Contact& c = contact_store[index];
   solve::ContactGraph& graph = contact_store.graph;
   ++narrow.renewed;
@@ -290,13 +290,13 @@ void World::Impl::put_in_lane(std::uint32_t index, const collide::Manifold& m) {
   const auto end_a = end_of(bodies, a.body), end_b = end_of(bodies, b.body);
   wake(a.body);
   wake(b.body);
-  Held impulses;
-  if (c.place.points == 0) {
-    contact_store.put_in_lane(index, points_of(c, a, b), body_set);
+  SlotImpulses impulses;
+  if (c.slot.points == 0) {
+    contact_store.assign_slot(index, points_of(c, a, b), body_set);
   } else {
-    impulses = c.place.points == 1
-                   ? held_in(graph.block<1>(c.place), solve::ContactGraph::lane(c.place))
-                   : held_in(graph.block<4>(c.place), solve::ContactGraph::lane(c.place));
+    impulses = c.slot.points == 1
+                   ? impulses_in(graph.block<1>(c.slot), solve::ContactGraph::lane(c.slot))
+                   : impulses_in(graph.block<4>(c.slot), solve::ContactGraph::lane(c.slot));
   }
   solve::NewContact n{};
   n.normal = m.normal;
@@ -305,7 +305,7 @@ void World::Impl::put_in_lane(std::uint32_t index, const collide::Manifold& m) {
   n.x_b = reference_point(bodies[b.body]);
   if (end_a.row == solve::kWorldRow) n.x_a = n.x_b;
   if (end_b.row == solve::kWorldRow) n.x_b = n.x_a;
-  n.count = std::min<int>(m.count, c.place.points);
+  n.count = std::min<int>(m.count, c.slot.points);
   const double leeway = kSlide * smaller_size(a, b);
   for (int i = 0; i < n.count; ++i) {
     const collide::ManifoldPoint& p = m.points[i];
@@ -326,12 +326,12 @@ void World::Impl::put_in_lane(std::uint32_t index, const collide::Manifold& m) {
     c.position[i] = m.points[i].position;
   }
   const solve::BodyRow &row_a = body_rows[end_a.row], &row_b = body_rows[end_b.row];
-  if (c.place.points == 1) {
-    write_lane(graph.block<1>(c.place), solve::ContactGraph::lane(c.place), n, row_a, row_b);
-    graph.block<1>(c.place).touches.lane[solve::ContactGraph::lane(c.place)] = c.touching ? 1 : 0;
+  if (c.slot.points == 1) {
+    write_slot(graph.block<1>(c.slot), solve::ContactGraph::lane(c.slot), n, row_a, row_b);
+    graph.block<1>(c.slot).touches.lane[solve::ContactGraph::lane(c.slot)] = c.touching ? 1 : 0;
   } else {
-    write_lane(graph.block<4>(c.place), solve::ContactGraph::lane(c.place), n, row_a, row_b);
-    graph.block<4>(c.place).touches.lane[solve::ContactGraph::lane(c.place)] = c.touching ? 1 : 0;
+    write_slot(graph.block<4>(c.slot), solve::ContactGraph::lane(c.slot), n, row_a, row_b);
+    graph.block<4>(c.slot).touches.lane[solve::ContactGraph::lane(c.slot)] = c.touching ? 1 : 0;
   }
 }
 

@@ -33,7 +33,7 @@ std::vector<FloatingTree> FloatingTree::of(const Model& model) {
   return found;
 }
 
-WholeTree FloatingTree::whole(const Model& model, const Data& data) const {
+CompositeBody FloatingTree::composite(const Model& model, const Data& data) const {
   Inertia J;
   dse3 P{};
   for (const int node : nodes_) {
@@ -41,38 +41,38 @@ WholeTree FloatingTree::whole(const Model& model, const Data& data) const {
     J = J + own;
     P = P + own * detail::velocity_of(data.work(), node);
   }
-  return whole(data, J, P);
+  return composite(data, J, P);
 }
 
-WholeTree FloatingTree::whole(const Data& data, const detail::ImpulseFactor& factor) const {
+CompositeBody FloatingTree::composite(const Data& data, const detail::ImpulseFactor& factor) const {
   Inertia J;
   dse3 P{};
   for (const int node : nodes_) {
     J = J + factor.inertia_of(node);
     P = P + factor.inertia_of(node) * factor.twist_of(node);
   }
-  return whole(data, J, P);
+  return composite(data, J, P);
 }
 
-WholeTree FloatingTree::whole(const Data& data, const Inertia& J, const dse3& P) const {
+CompositeBody FloatingTree::composite(const Data& data, const Inertia& J, const dse3& P) const {
   const Vec3 c = J.centre_of_mass();
   const Vec3 origin = detail::origin_of(data.work(), root_);
   return {J.mass(), c + origin,          J.central(),
           P.f,      P.m - cross(c, P.f), detail::pose_of(data.work(), root_).position() + origin};
 }
 
-void FloatingTree::set_momentum(const Model& model, const Data& data, const WholeTree& now,
-                                const WholeTree& wanted, std::span<double> v) const {
-  const Vec3 w = inverse(now.central) * (wanted.angular - now.angular);
-  const Vec3 at_centre = (1.0 / now.mass) * (wanted.linear - now.linear);
+void FloatingTree::set_momentum(const Model& model, const Data& data, const CompositeBody& now,
+                                const CompositeBody& target, std::span<double> v) const {
+  const Vec3 w = inverse(now.central) * (target.angular - now.angular);
+  const Vec3 at_centre = (1.0 / now.mass) * (target.linear - now.linear);
   const SE3 T_tree_root = detail::pose_of(data.work(), root_);
   const Vec3 root = T_tree_root.position() + detail::origin_of(data.work(), root_);
-  const Vec3 turn = T_tree_root.unrotate(w);
+  const Vec3 rotation = T_tree_root.unrotate(w);
   const Vec3 slide = T_tree_root.unrotate(at_centre + cross(w, root - now.centre));
   const auto first =
       static_cast<std::size_t>(model.tree().nodes[static_cast<std::size_t>(root_)].v);
   for (int k = 0; k < 3; ++k) {
-    v[first + static_cast<std::size_t>(k)] += turn[k];
+    v[first + static_cast<std::size_t>(k)] += rotation[k];
     v[first + static_cast<std::size_t>(k) + 3] += slide[k];
   }
 }

@@ -16,7 +16,7 @@
 
 namespace vp {
 
-struct WholeTree {
+struct CompositeBody {
   double mass = 0.0;
   Vec3 centre;           // of mass, world frame
   Sym3 central;          // rotational inertia about it, world axes
@@ -33,19 +33,19 @@ class FloatingTree {
   static std::vector<FloatingTree> of(const Model& model);
 
   // Of the configuration and velocities that forward_kinematics() was given last.
-  WholeTree whole(const Model& model, const Data& data) const;
+  CompositeBody composite(const Model& model, const Data& data) const;
   // The same of the velocities that factor.twists() was given last; the factor is of the data's
   // configuration.
-  WholeTree whole(const Data& data, const detail::ImpulseFactor& factor) const;
+  CompositeBody composite(const Data& data, const detail::ImpulseFactor& factor) const;
   // Changes the root's velocities in v, of which the tree is as it is now, to those with the
   // momentum wanted.
-  void set_momentum(const Model& model, const Data& data, const WholeTree& now,
-                    const WholeTree& wanted, std::span<double> v) const;
+  void set_momentum(const Model& model, const Data& data, const CompositeBody& now,
+                    const CompositeBody& target, std::span<double> v) const;
   void shift(const Model& model, const Vec3& by, std::span<double> q) const;
   int root() const { return root_; }  // the number of its node
 
  private:
-  WholeTree whole(const Data& data, const Inertia& J, const dse3& momentum) const;
+  CompositeBody composite(const Data& data, const Inertia& J, const dse3& momentum) const;
 
   int root_ = 0;
   std::vector<int> nodes_;

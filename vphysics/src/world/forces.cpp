@@ -10,8 +10,8 @@
 #include <string>
 
 #include "world/impl.h"
+#include "world/invalid.h"
 #include "world/recorded_call.h"
-#include "world/refuse.h"
 #include "world/validate.h"
 
 namespace vp {
@@ -94,9 +94,9 @@ Expected<void> World::Impl::add_load(const char* call, BodyId id, const Vec3& fo
   const bool good =
       body.is_link ? in_range(F) && in_range(M) : can_bear(body, body.T.rotation(), F, M);
   if (!good) {
-    return refuse(std::string(call) +
-                  ": the body would become faster than 1e9 m/s or rad/s, or a link bear more than "
-                  "1e9 N or N m; apply less");
+    return invalid(std::string(call) +
+                   ": the body would become faster than 1e9 m/s or rad/s, or a link bear more than "
+                   "1e9 N or N m; apply less");
   }
   if (body.is_link) {
     Articulation& art = articulations[body.articulation];
@@ -111,10 +111,10 @@ Expected<void> World::Impl::add_load(const char* call, BodyId id, const Vec3& fo
 
 Expected<void> World::apply_force(BodyId id, const Vec3& force, const Vec3& point) {
   const Body* body = impl_->find(id);
-  if (!body) return stale("apply_force", "the body");
-  if (body->motion != Motion::dynamic) return refuse("apply_force: the body is not dynamic");
+  if (!body) return unknown_id("apply_force", "the body");
+  if (body->motion != Motion::dynamic) return invalid("apply_force: the body is not dynamic");
   if (!std::isfinite(dot(force, force)) || !in_range(point)) {
-    return refuse("apply_force: force and point must be finite, the point within 1e9 m");
+    return invalid("apply_force: force and point must be finite, the point within 1e9 m");
   }
   Vec3 from = reference_point(*body);
   if (body->is_link) {
@@ -128,15 +128,16 @@ Expected<void> World::apply_force(BodyId id, const Vec3& force, const Vec3& poin
 
 Expected<void> World::apply_force(BodyId id, const Vec3& force) {
   const Body* body = impl_->find(id);
-  if (!body) return stale("apply_force", "the body");
+  if (!body) return unknown_id("apply_force", "the body");
   return apply_force(id, force, impl_->centre_of_mass(*body));
 }
 
 Expected<void> World::apply_torque(BodyId id, const Vec3& torque) {
   const Body* body = impl_->find(id);
-  if (!body) return stale("apply_torque", "the body");
-  if (body->motion != Motion::dynamic) return refuse("apply_torque: the body is not dynamic");
-  if (!std::isfinite(dot(torque, torque))) return refuse("apply_torque: the torque must be finite");
+  if (!body) return unknown_id("apply_torque", "the body");
+  if (body->motion != Motion::dynamic) return invalid("apply_torque: the body is not dynamic");
+  if (!std::isfinite(dot(torque, torque)))
+    return invalid("apply_torque: the torque must be finite");
   const auto added = impl_->add_load("apply_torque", id, {}, torque);
   if (added && impl_->recorder) impl_->log({calls::ApplyTorque{id, torque}});
   return added;
@@ -146,11 +147,12 @@ Expected<void> World::apply_joint_force(ArticulationId id, int link, int dof, do
   Articulation* art = impl_->find(id);
   const int i = art ? art->dof_index(link, dof) : -1;
   if (i < 0) {
-    return refuse("apply_joint_force: no such degree of freedom; check articulation, link and dof");
+    return invalid(
+        "apply_joint_force: no such degree of freedom; check articulation, link and dof");
   }
   const double sum = art->joint_load(static_cast<std::size_t>(i)) + force;
   if (!in_range(sum)) {
-    return refuse("apply_joint_force: the sum of the forces must be finite and at most 1e9");
+    return invalid("apply_joint_force: the sum of the forces must be finite and at most 1e9");
   }
   impl_->look_at(*art);
   art->set_joint_load(static_cast<std::size_t>(i), sum);

@@ -12,7 +12,7 @@ constexpr double kCandidateSlops = 10.0, kCandidateSteps = 2.0;
 // So many look for others one by one, each among all bodies; more, and all are sorted.
 constexpr std::size_t kFewLeavers = 6;
 
-bool meets_discretely(const Body& body) {
+bool collides_discretely(const Body& body) {
   return body.alive && body.first_collider != kNone && (!body.continuous || body.has_sensor);
 }
 
@@ -20,7 +20,7 @@ bool meets_discretely(const Body& body) {
 
 double travel(const Body& body, const collide::Motion& m, double h) {
   if (body.motion == Motion::fixed) return 0.0;
-  return (norm(m.v) + norm(m.w) * body.reach) * h;
+  return (norm(m.v) + norm(m.w) * body.bounding_radius) * h;
 }
 double travel_of_bounds(const Body& body, const collide::Motion& m, double h) {
   return collide::empty(body.around_line) ? travel(body, m, h) : norm(m.v) * h;
@@ -39,22 +39,22 @@ void SweptBodyPairs::keep_bounds(const BodyMotions& all, std::uint32_t index, do
   const double margin =
       kCandidateSlops * slop +
       kCandidateSteps * travel_of_bounds(all.bodies[index], all.motions[index], h);
-  kept_bounds_[index] = collide::empty(now) ? now : grown(now, margin);
+  cached_bounds_[index] = collide::empty(now) ? now : grown(now, margin);
 }
 
 void SweptBodyPairs::find_all(const BodyMotions& all, double slop, double h) {
   const Bodies& bodies = all.bodies;
-  stale_ = false;
-  kept_bounds_.resize(bodies.size());
+  dirty_ = false;
+  cached_bounds_.resize(bodies.size());
   sweeps_.resize(bodies.size());
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
     sweeps_[i] = bodies[i].alive && bodies[i].continuous;
     keep_bounds(all, i, slop, h);
   }
   pairs_.clear();
-  broad_phase_.find_pairs(kept_bounds_, sweeps_, pairs_);
+  broad_phase_.find_pairs(cached_bounds_, sweeps_, pairs_);
   std::erase_if(pairs_, [&bodies](const collide::IndexPair& p) {
-    return !may_meet(bodies[p.a], bodies[p.b]);
+    return !may_overlap(bodies[p.a], bodies[p.b]);
   });
 }
 
@@ -62,8 +62,10 @@ void SweptBodyPairs::find_of(const Bodies& bodies, std::uint32_t index) {
   std::erase_if(pairs_,
                 [index](const collide::IndexPair& p) { return p.a == index || p.b == index; });
   for (std::uint32_t j = 0; j < bodies.size(); ++j) {
-    if (j == index || !(sweeps_[index] || sweeps_[j]) || collide::empty(kept_bounds_[j])) continue;
-    if (!overlap(kept_bounds_[index], kept_bounds_[j]) || !may_meet(bodies[index], bodies[j]))
+    if (j == index || !(sweeps_[index] || sweeps_[j]) || collide::empty(cached_bounds_[j]))
+      continue;
+    if (!overlap(cached_bounds_[index], cached_bounds_[j]) ||
+        !may_overlap(bodies[index], bodies[j]))
       continue;
     pairs_.push_back({std::min(index, j), std::max(index, j)});
   }
@@ -74,12 +76,12 @@ std::span<const collide::IndexPair> SweptBodyPairs::find(const BodyMotions& all,
                                                          std::span<const std::uint32_t> moving,
                                                          double slop, double h) {
   leavers_.clear();
-  if (!stale_) {
+  if (!dirty_) {
     for (const std::uint32_t i : moving) {
-      if (!holds(kept_bounds_[i], all.bounds[i])) leavers_.push_back(i);
+      if (!holds(cached_bounds_[i], all.bounds[i])) leavers_.push_back(i);
     }
   }
-  if (stale_ || leavers_.size() > kFewLeavers + all.bodies.size() / 64) {
+  if (dirty_ || leavers_.size() > kFewLeavers + all.bodies.size() / 64) {
     find_all(all, slop, h);
     return pairs_;
   }
@@ -93,7 +95,7 @@ std::span<const collide::IndexPair> SweptBodyPairs::find(const BodyMotions& all,
 void DiscreteBodyPairs::list_filters(const Bodies& bodies) {
   categories_ = masks_ = 0;
   for (const Body& body : bodies) {
-    if (!meets_discretely(body)) continue;
+    if (!collides_discretely(body)) continue;
     categories_ |= body.categories;
     masks_ |= body.masks;
   }
@@ -112,17 +114,17 @@ bool DiscreteBodyPairs::find_bounds(const BodyMotions& all) {
   collide::Bounds around;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const Body& body = bodies[i];
-    if (meets_discretely(body) && (body.is_link || body.continuous))
+    if (collides_discretely(body) && (body.is_link || body.continuous))
       around = merged(around, all.bounds[i]);
   }
   int meeting = 0;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const Body& body = bodies[i];
-    const bool meets = meets_discretely(body) && (body.categories & masks_) &&
-                       (body.masks & categories_) && overlap(all.bounds[i], around);
-    bounds_[i] = meets ? all.bounds[i] : collide::Bounds{};
+    const bool collides = collides_discretely(body) && (body.categories & masks_) &&
+                          (body.masks & categories_) && overlap(all.bounds[i], around);
+    bounds_[i] = collides ? all.bounds[i] : collide::Bounds{};
     movable_[i] = body.alive && body.motion != Motion::fixed;
-    meeting += meets ? 1 : 0;
+    meeting += collides ? 1 : 0;
   }
   return meeting > 1;
 }

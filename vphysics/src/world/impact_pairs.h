@@ -33,8 +33,8 @@ class SweptBodyPairs {
  public:
   // Bodies or colliders have come or gone, or what is fixed has been put elsewhere: bounds of what
   // is fixed are as old.
-  void invalidate() { stale_ = true; }
-  bool stale() const { return stale_; }
+  void invalidate() { dirty_ = true; }
+  bool dirty() const { return dirty_; }
   void reserve(std::size_t bodies, std::size_t pairs);
 
   // moving: all whose bounds may have changed, ascending.
@@ -48,9 +48,9 @@ class SweptBodyPairs {
   void find_all(const BodyMotions& all, double slop, double h);
   void find_of(const Bodies& bodies, std::uint32_t body);
 
-  bool stale_ = true;
+  bool dirty_ = true;
   std::vector<collide::IndexPair> pairs_;
-  std::vector<collide::Bounds> kept_bounds_;
+  std::vector<collide::Bounds> cached_bounds_;
   std::vector<std::uint8_t> sweeps_;  // of each body: it is continuous
   collide::BroadPhase broad_phase_;
   std::vector<std::uint32_t> leavers_;  // of their kept bounds; scratch

@@ -45,9 +45,9 @@ struct ImpactStage {
   // What the stage goes through, ascending: all bodies that are not fixed, and links with
   // colliders, but those of remote articulations (remote.cpp).
   std::vector<std::uint32_t> body_list;
-  bool bodies_are_stale = true;  // some of these have changed
+  bool bodies_are_dirty = true;  // some of these have changed
   // Bodies have come or gone: what drift and forced have of others than those is not 0.
-  bool scratch_is_stale = true;
+  bool scratch_is_dirty = true;
   std::vector<std::uint8_t> remote_bodies;  // of each body: a link of a remote articulation
   SweptBodyPairs swept_body_pairs;
   DiscreteBodyPairs discrete_body_pairs;
@@ -58,7 +58,7 @@ struct ImpactStage {
   std::vector<collide::Bounds> bounds;   // of all that it passes
   std::vector<Velocity> drift;           // mean velocity over the step less that at its end
   std::vector<Velocity> forced;          // what the step's forces added
-  std::vector<std::uint8_t> held;        // stands for the rest of the step
+  std::vector<std::uint8_t> stopped;     // stands for the rest of the step
   std::vector<std::uint8_t> in_contact;  // of the last solve
   std::vector<std::uint8_t> as_swept;    // goes to the next impact at the twist it is swept at
   std::vector<solve::SolverBody> solver_bodies;

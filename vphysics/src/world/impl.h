@@ -16,7 +16,7 @@
 #include "collide/pair_finder.h"
 #include "collide/shape_query.h"
 #include "collide/sweep.h"
-#include "solve/contact_lane.h"
+#include "solve/contact_slot.h"
 #include "world/approach.h"
 #include "world/articulation.h"
 #include "world/body.h"
@@ -51,9 +51,9 @@ struct QueryScratch {
 
 // What sub-steps remember from step to step.
 struct SubStepState {
-  double length = 0.0;          // of that whose impulses are in lanes and joints, 0: none yet [s]
-  double push_length = 0.0;     // that the push is made for [s]
-  bool position_error = false;  // the last step ended with one, of contacts or of joints
+  double length = 0.0;            // of that whose impulses are in lanes and joints, 0: none yet [s]
+  double last_step_length = 0.0;  // that the push is made for [s]
+  bool position_error = false;    // the last step ended with one, of contacts or of joints
 };
 
 struct World::Impl {
@@ -74,7 +74,8 @@ struct World::Impl {
   const BodySet body_set{bodies, colliders, body_rows};
   ContactStore contact_store;
   std::uint32_t next_serial = 1;  // of colliders
-  std::uint64_t structure = 0;    // digest of all that was created and destroyed (structure.h)
+  std::uint64_t topology_hash =
+      0;  // digest of all that was created and destroyed (topology_hash.h)
 
   // --- parts
   BodyLoads loads;
@@ -160,8 +161,8 @@ struct World::Impl {
   const std::vector<std::uint32_t>& impact_bodies();
   bool can_be_remote(const Articulation& articulation) const;
   void list_remote_articulations();
-  bool is_near_mover(const collide::Bounds& box) const;
-  void meet_remote(double h);
+  bool is_near_awake_body(const collide::Bounds& box) const;
+  void collide_remote(double h);
   void make_remote();
   void look_at(Articulation& articulation);
   void look_at_all();
@@ -177,7 +178,7 @@ struct World::Impl {
   void note_touched_articulations();
   void refresh_motions(double h);
   void refresh_motion_of(std::uint32_t body, double h);
-  void refresh_ways(double h);
+  void refresh_displacements(double h);
   bool stop_if_out_of_range(std::uint32_t body, const SE3& start);
   collide::Motion motion_of(const Body& body, const Velocity& drift, double h) const;
   void advance(double h, bool to_end);
@@ -193,16 +194,17 @@ struct World::Impl {
   void feel_forces(double dt);
   void run_impacts(double dt);
   double next_impact(double h);
-  void hold_what_meets(double h);
+  void stop_what_would_hit(double h);
   void take_back_forces(double h);
 
   // bodies.cpp
   void list_bodies();
   BodyRows rows_in(double dt) {
-    return {body_rows, sub_step.start_ways, loads, desc, dt, sub_steps_in(desc, speed_unit, dt)};
+    return {body_rows, sub_step.start_displacements,      loads, desc,
+            dt,        sub_steps_in(desc, speed_unit, dt)};
   }
   void load_rows(double dt);
-  void start_way_anew(std::uint32_t body);
+  void restart_displacement(std::uint32_t body);
   Velocity settle(const BodyRows& rows, std::uint32_t body);
   void update_bounds(std::uint32_t body, double dt, bool by_rows);
   void add_proxy(std::uint32_t collider);
@@ -228,17 +230,17 @@ struct World::Impl {
   bool has_contacts_to_find() const;
   void find_contacts(double dt);
   void find_new_contacts();
-  void find_stale_contacts(double dt);
-  void drop_parted_link_contacts();
-  bool has_parted(const Contact& contact) const;
+  void find_dirty_contacts(double dt);
+  void drop_separated_link_contacts();
+  bool has_separated(const Contact& contact) const;
   void drop_contact(std::uint32_t contact);
   void add_contact_pair(std::uint32_t collider_i, std::uint32_t collider_j);
   void remove_contact(std::uint32_t contact);
-  void take_over(const Looked& looked);
-  void put_in_lane(std::uint32_t contact, const collide::Manifold& manifold);
+  void take_over(const NarrowPhaseResult& results);
+  void assign_slot(std::uint32_t contact, const collide::Manifold& manifold);
   Approach approach_in(double dt) const { return {bodies, loads, desc, speed_unit, dt}; }
-  void look_at_stale_contacts(double dt);
-  void find_manifolds_of_stale(double dt, bool first);
+  void update_dirty_contacts(double dt);
+  void find_dirty_manifolds(double dt, bool first);
   void note_limits(const collide::Manifold& manifold);
 
   // link_contacts.cpp
@@ -263,7 +265,7 @@ struct World::Impl {
   void wake_neighbours(std::uint32_t body);
 
   // part_contacts.cpp
-  void find_parts(const Looked& look);
+  void find_parts(const NarrowPhaseResult& look);
 
   // sub_steps.cpp
   void run_sub_steps(double dt);
@@ -273,7 +275,7 @@ struct World::Impl {
   }
 
   // touches.cpp
-  void report_news();
+  void report_changes();
 
   // pairs.cpp
   BodyMotions body_motions() const { return {bodies, impacts.motions, impacts.bounds}; }

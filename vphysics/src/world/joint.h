@@ -14,16 +14,16 @@
 namespace vp {
 
 // Where a body is within a step.
-struct BodyPlace {
+struct BodyPose {
   SE3 T;
   Vec3 centre;  // reference point, world frame
 };
-inline BodyPlace place_of(const Body& body) {
+inline BodyPose pose_of(const Body& body) {
   return {body.T, reference_point(body)};
 }
 
 // What all kinds are made into.
-struct JointLaw {
+struct JointSpec {
   enum class Form : std::uint8_t { axes, distance, gear, user };
   Form form = Form::axes;
   AxisDesc axes[6];  // of a distance and a gear the first
@@ -32,10 +32,10 @@ struct JointLaw {
   double ratio = 0.0;
   bool slides_a = false, slides_b = false;
   std::shared_ptr<const PairConstraint> user;
-  PairRowLaw user_laws[6];
+  ConstraintRowDesc user_row_descs[6];
   int user_rows = 0;
 };
-JointLaw law_of(const JointKind& kind);
+JointSpec spec_of(const JointKind& kind);
 
 // A row of a joint: its law for sub-steps of one length, and its impulses, which are state. See
 // solve/joint_block.h for what each is.
@@ -45,7 +45,7 @@ struct BodyJointRow {
   double rate = 0.0, loss = 0.0;
   bool relaxes = true;
   bool bounded_hold = false;
-  double least = 0.0, most = 0.0;
+  double min_impulse = 0.0, max_impulse = 0.0;
   double stiffness = 0.0, damping = 0.0, position = 0.0, speed = 0.0;
   double lower = -kNowhere, upper = kNowhere;
 
@@ -73,20 +73,20 @@ struct BodyJoint {
   bool in_rows = false;  // row_joints.h
   SE3 T_a_joint, T_b_joint;
   double frequency = 0.0, damping_ratio = 1.0;
-  JointLaw law;   // its drives are state
-  int main = -1;  // slot of its one coordinate
+  JointSpec spec;  // its drives are state
+  int main = -1;   // slot of its one coordinate
   // Angles counted on beyond whole turns: of the twist; of a gear's two bodies.
-  double turned[2] = {};
+  double rotated[2] = {};
   SE3 start[2];  // of a gear: the bodies' poses at its creation
   // The first `held` are held; a point's impulse is that of the slots 0 to 2, along the world's
   // axes.
   BodyJointRow rows[solve::kJointRows];
-  int count = 0, held = 0;
+  int count = 0, locked = 0;
   double laid_out_for = 0.0;  // the sub-step of the rows; 0: they must be laid out
   Vec3 force, torque;         // of the last step
 
   bool holds_point() const {
-    return law.form == JointLaw::Form::axes && held >= 3 && rows[2].slot == 2;
+    return spec.form == JointSpec::Form::axes && locked >= 3 && rows[2].slot == 2;
   }
 };
 
@@ -103,21 +103,22 @@ inline constexpr const char* kNotJoined =
 // Into the lists of its bodies.
 void link_joint(Bodies& bodies, Joints& joints, std::uint32_t joint);
 // Whether a joint keeps the colliders of two bodies from meeting.
-bool keeps_apart(const Bodies& bodies, const Joints& joints, std::uint32_t a, std::uint32_t b);
+bool disables_collision(const Bodies& bodies, const Joints& joints, std::uint32_t a,
+                        std::uint32_t b);
 // What a body's joints have to start from is no good.
 void forget_joints(const Body& body, Joints& joints);
 
 // The rows that the joint has, their laws for sub-steps h, impulses kept where the coordinate is.
 void lay_out(BodyJoint& joint, double h);
 // Jacobians and residuals of all rows where the bodies are; turns are counted on.
-void evaluate(BodyJoint& joint, const BodyPlace& a, const BodyPlace& b, JointMeasure& out);
+void evaluate(BodyJoint& joint, const BodyPose& a, const BodyPose& b, JointMeasure& out);
 // Counts a twist on to what it is there.
-void count_turns(BodyJoint& joint, const BodyPlace& a, const BodyPlace& b);
+void count_revolutions(BodyJoint& joint, const BodyPose& a, const BodyPose& b);
 // One coordinate; nothing if the joint has none such.
-std::optional<double> coordinate(const BodyJoint& joint, const BodyPlace& a, const BodyPlace& b,
+std::optional<double> coordinate(const BodyJoint& joint, const BodyPose& a, const BodyPose& b,
                                  int slot);
 // Where the count of whole turns of a twist begins: within its limits.
-double first_turn(const JointLaw& law);
+double first_rotation(const JointSpec& spec);
 // The slot of the one coordinate, or -1.
 int main_slot(const JointKind& kind);
 

@@ -63,10 +63,10 @@ void JointReactions::note_loads(std::span<const dse3> of_links, std::span<const 
 }
 
 void JointReactions::keep_end(std::span<const double> q, std::span<const double> v) {
-  if (!knows_step() || found_ || end_is_kept_) return;
+  if (!knows_step() || found_ || end_is_cached_) return;
   std::copy(q.begin(), q.end(), end_q_.begin());
   std::copy(v.begin(), v.end(), end_v_.begin());
-  end_is_kept_ = true;
+  end_is_cached_ = true;
 }
 
 void JointReactions::find_efforts(const Step& step) {
@@ -144,8 +144,8 @@ void JointReactions::find(const Model& model, const Step& step) {
   found_ = true;
   if (!work_) work_ = std::make_unique<Work>(model);
   Work& work = *work_;
-  const std::span<const double> q = end_is_kept_ ? end_q_ : step.q;
-  const std::span<const double> v = end_is_kept_ ? end_v_ : step.v;
+  const std::span<const double> q = end_is_cached_ ? end_q_ : step.q;
+  const std::span<const double> v = end_is_cached_ ? end_v_ : step.v;
   find_efforts(step);
   find_poses(model, step.start_q, start_v_, work.poses[0]);
   find_poses(model, q, v, work.poses[1]);
@@ -156,7 +156,7 @@ void JointReactions::find(const Model& model, const Step& step) {
     Sum& sum = work.sums[l];
     add_self(model, link, about, sum);
     const LinkSpec& spec = model.link(link);
-    const bool is_root = spec.parent == kWorld && floats(model, model.tree().places[l].node);
+    const bool is_root = spec.parent == kWorld && floats(model, model.tree().frames[l].node);
     work.reactions[l] = is_root ? of_floating_root(model, link)
                                 : reaction(sum, work.poses[0][l].T.position() - about,
                                            work.poses[1][l].T.position() - about, step.gravity);

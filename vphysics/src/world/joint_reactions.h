@@ -20,7 +20,7 @@ class JointReactions {
   // --- during a step
   void begin_step(std::span<const double> v) {
     step_ = time_ = acting_ = 0.0;
-    spoiled_ = found_ = end_is_kept_ = has_loads_ = false;
+    spoiled_ = found_ = end_is_cached_ = has_loads_ = false;
     for (std::size_t i = 0; i < v.size(); ++i) start_v_[i] = v[i];  // of a rod two: no call
     if (has_external_ || has_efforts_) forget_impulses();
   }
@@ -97,7 +97,7 @@ class JointReactions {
   double step_ = 0.0;    // length of the last one; 0: none is known
   double time_ = 0.0;    // within the step
   double acting_ = 0.0;  // integral of the time at which gravity acts
-  bool spoiled_ = false, found_ = false, end_is_kept_ = false;
+  bool spoiled_ = false, found_ = false, end_is_cached_ = false;
   bool has_external_ = false, has_efforts_ = false, has_loads_ = false;
   std::vector<double> start_v_, end_q_, end_v_;
   std::vector<External> external_;   // of each link

@@ -10,13 +10,13 @@
 namespace vp {
 namespace {
 
-constexpr int kTwist = static_cast<int>(JointAxis::turn_z);
+constexpr int kTwist = static_cast<int>(JointAxis::rotation_z);
 
 struct Ends {
   Mat3 R_a, R_b;
   Vec3 r_a, r_b, d;
 
-  Ends(const BodyJoint& joint, const BodyPlace& a, const BodyPlace& b)
+  Ends(const BodyJoint& joint, const BodyPose& a, const BodyPose& b)
       : R_a(a.T.rotation() * joint.T_a_joint.rotation()),
         R_b(b.T.rotation() * joint.T_b_joint.rotation()) {
     const Vec3 p_a = a.T * joint.T_a_joint.position(), p_b = b.T * joint.T_b_joint.position();
@@ -46,9 +46,9 @@ struct Swing {
     // (1 - s cot(s)) / s^2
     const double curve = angle < kSeries ? 1.0 / 3.0 + s * (1.0 / 45.0 + s * (2.0 / 945.0))
                                          : (1.0 - ratio * z_b.z) / s;
-    const Vec3 across{y, -x, 0.0};
-    by_x = Vec3{1.0, 0.0, -y} - (curve * y) * across;
-    by_y = Vec3{0.0, 1.0, x} + (curve * x) * across;
+    const Vec3 perpendicular{y, -x, 0.0};
+    by_x = Vec3{1.0, 0.0, -y} - (curve * y) * perpendicular;
+    by_y = Vec3{0.0, 1.0, x} + (curve * x) * perpendicular;
   }
 };
 
@@ -69,28 +69,28 @@ double gear_angle(const SE3& start, const SE3& now, const SE3& T_body_joint) {
   const Vec3 x = transposed_times(R0, R1.cx), y = transposed_times(R0, R1.cy);
   return arc_tangent(x.y - y.x, x.x + y.y);
 }
-double gear_way(const SE3& start, const SE3& now, const SE3& T_body_joint) {
+double gear_position(const SE3& start, const SE3& now, const SE3& T_body_joint) {
   const Vec3 z = start.rotation() * T_body_joint.rotation().cz;
   return dot(z, now * T_body_joint.position() - start * T_body_joint.position());
 }
 double gear_side(const BodyJoint& joint, const SE3& now, int side) {
   const SE3& T = side == 0 ? joint.T_a_joint : joint.T_b_joint;
-  const bool slides = side == 0 ? joint.law.slides_a : joint.law.slides_b;
-  if (slides) return gear_way(joint.start[side], now, T);
-  return counted_on(joint.turned[side], gear_angle(joint.start[side], now, T));
+  const bool slides = side == 0 ? joint.spec.slides_a : joint.spec.slides_b;
+  if (slides) return gear_position(joint.start[side], now, T);
+  return counted_on(joint.rotated[side], gear_angle(joint.start[side], now, T));
 }
 
 // The way to the cone, as a row that grows inwards: (1 - f) / |grad f| with
 // f^2 = (x / cone_x)^2 + (y / cone_y)^2.
-double way_to_cone(const JointLaw& law, const Swing& swing, Vec3& axis) {
-  const double ix = 1.0 / law.swing_x, iy = 1.0 / law.swing_y;
+double angle_to_cone(const JointSpec& spec, const Swing& swing, Vec3& axis) {
+  const double ix = 1.0 / spec.swing_x, iy = 1.0 / spec.swing_y;
   const double sx = swing.x * ix, sy = swing.y * iy;
   const double f = std::sqrt(sx * sx + sy * sy);
   double gx = sx * ix, gy = sy * iy;
   const double g = std::sqrt(gx * gx + gy * gy);
   if (!(g > 1e-9)) {
     axis = -swing.by_x;
-    return std::min(law.swing_x, law.swing_y);
+    return std::min(spec.swing_x, spec.swing_y);
   }
   gx /= g;
   gy /= g;
@@ -102,12 +102,12 @@ Vec3 twist_axis(const Ends& e) {
   return (1.0 / std::max(1.0 + dot(e.R_a.cz, e.R_b.cz), 1e-3)) * (e.R_a.cz + e.R_b.cz);
 }
 
-void evaluate_axes(BodyJoint& joint, const BodyPlace& a, const BodyPlace& b, JointMeasure& out) {
+void evaluate_axes(BodyJoint& joint, const BodyPose& a, const BodyPose& b, JointMeasure& out) {
   const Ends e(joint, a, b);
   const Swing swing(e);
   const double twist = twist_of(e);
-  if (joint.law.axes[kTwist].motion != AxisMotion::locked) {
-    joint.turned[0] = counted_on(joint.turned[0], twist);
+  if (joint.spec.axes[kTwist].motion != AxisMotion::locked) {
+    joint.rotated[0] = counted_on(joint.rotated[0], twist);
   }
   const Mat3 world = Mat3::identity();
   for (int i = 0; i < joint.count; ++i) {
@@ -123,9 +123,9 @@ void evaluate_axes(BodyJoint& joint, const BodyPlace& a, const BodyPlace& b, Joi
     Vec3 axis;
     if (slot == kTwist) {
       axis = twist_axis(e);
-      residual = i < joint.held ? twist : joint.turned[0];
-    } else if (joint.law.cone) {
-      residual = way_to_cone(joint.law, swing, axis);
+      residual = i < joint.locked ? twist : joint.rotated[0];
+    } else if (joint.spec.cone) {
+      residual = angle_to_cone(joint.spec, swing, axis);
       axis = e.R_a * axis;
     } else {
       axis = e.R_a * (slot == 3 ? swing.by_x : swing.by_y);
@@ -135,34 +135,34 @@ void evaluate_axes(BodyJoint& joint, const BodyPlace& a, const BodyPlace& b, Joi
   }
 }
 
-void evaluate_distance(const BodyJoint& joint, const BodyPlace& a, const BodyPlace& b,
+void evaluate_distance(const BodyJoint& joint, const BodyPose& a, const BodyPose& b,
                        JointMeasure& out) {
   const Ends e(joint, a, b);
   const double length = norm(e.d);
   const Vec3 n = length > 1e-9 ? (1.0 / length) * e.d : e.R_a.cx;
   for (int i = 0; i < joint.count; ++i) {
     out.jacobian[i] = {-n, -cross(e.r_a, n), n, cross(e.r_b, n)};
-    out.residual[i] = i < joint.held ? length - joint.rows[i].position : length;
+    out.residual[i] = i < joint.locked ? length - joint.rows[i].position : length;
   }
 }
 
-void evaluate_gear(BodyJoint& joint, const BodyPlace& a, const BodyPlace& b, JointMeasure& out) {
+void evaluate_gear(BodyJoint& joint, const BodyPose& a, const BodyPose& b, JointMeasure& out) {
   const double q_a = gear_side(joint, a.T, 0), q_b = gear_side(joint, b.T, 1);
-  if (!joint.law.slides_a) joint.turned[0] = q_a;
-  if (!joint.law.slides_b) joint.turned[1] = q_b;
+  if (!joint.spec.slides_a) joint.rotated[0] = q_a;
+  if (!joint.spec.slides_b) joint.rotated[1] = q_b;
   const Ends e(joint, a, b);
   const Vec3 &z_a = e.R_a.cz, &z_b = e.R_b.cz;
   Twelve& J = out.jacobian[0];
   J = {};
-  const double ratio = joint.law.ratio;
-  if (joint.law.slides_a) {
+  const double ratio = joint.spec.ratio;
+  if (joint.spec.slides_a) {
     const Vec3 z = joint.start[0].rotation() * joint.T_a_joint.rotation().cz;
     J.linear_a = -ratio * z;
     J.angular_a = -ratio * cross(e.r_a, z);
   } else {
     J.angular_a = -ratio * z_a;
   }
-  if (joint.law.slides_b) {
+  if (joint.spec.slides_b) {
     const Vec3 z = joint.start[1].rotation() * joint.T_b_joint.rotation().cz;
     J.linear_b = z;
     J.angular_b = cross(e.r_b, z);
@@ -173,7 +173,7 @@ void evaluate_gear(BodyJoint& joint, const BodyPlace& a, const BodyPlace& b, Joi
 }
 
 // From a body's frame, about its origin, to world axes about its centre of mass.
-void carry_over(const BodyPlace& body, const dse3& F, Vec3& linear, Vec3& angular) {
+void carry_over(const BodyPose& body, const dse3& F, Vec3& linear, Vec3& angular) {
   linear = body.T.rotate(F.f);
   angular = body.T.rotate(F.m) - cross(body.centre - body.T.position(), linear);
 }
@@ -183,12 +183,12 @@ bool finite(const Twelve& J) {
   return sum <= 1e18;
 }
 
-void evaluate_user(const BodyJoint& joint, const BodyPlace& a, const BodyPlace& b,
+void evaluate_user(const BodyJoint& joint, const BodyPose& a, const BodyPose& b,
                    JointMeasure& out) {
   double residual[6] = {};
   PairRow rows[6];
-  const auto n = static_cast<std::size_t>(joint.law.user_rows);
-  joint.law.user->evaluate(a.T, b.T, std::span(residual, n), std::span(rows, n));
+  const auto n = static_cast<std::size_t>(joint.spec.user_rows);
+  joint.spec.user->evaluate(a.T, b.T, std::span(residual, n), std::span(rows, n));
   for (int i = 0; i < joint.count; ++i) {
     const int slot = joint.rows[i].slot;
     Twelve& J = out.jacobian[i];
@@ -203,45 +203,45 @@ void evaluate_user(const BodyJoint& joint, const BodyPlace& a, const BodyPlace& 
 
 }  // namespace
 
-void evaluate(BodyJoint& joint, const BodyPlace& a, const BodyPlace& b, JointMeasure& out) {
-  switch (joint.law.form) {
-    case JointLaw::Form::axes:
+void evaluate(BodyJoint& joint, const BodyPose& a, const BodyPose& b, JointMeasure& out) {
+  switch (joint.spec.form) {
+    case JointSpec::Form::axes:
       return evaluate_axes(joint, a, b, out);
-    case JointLaw::Form::distance:
+    case JointSpec::Form::distance:
       return evaluate_distance(joint, a, b, out);
-    case JointLaw::Form::gear:
+    case JointSpec::Form::gear:
       return evaluate_gear(joint, a, b, out);
-    case JointLaw::Form::user:
+    case JointSpec::Form::user:
       return evaluate_user(joint, a, b, out);
   }
 }
 
-void count_turns(BodyJoint& joint, const BodyPlace& a, const BodyPlace& b) {
-  if (joint.law.axes[kTwist].motion == AxisMotion::locked) return;
-  joint.turned[0] = counted_on(joint.turned[0], twist_of(Ends(joint, a, b)));
+void count_revolutions(BodyJoint& joint, const BodyPose& a, const BodyPose& b) {
+  if (joint.spec.axes[kTwist].motion == AxisMotion::locked) return;
+  joint.rotated[0] = counted_on(joint.rotated[0], twist_of(Ends(joint, a, b)));
 }
 
-std::optional<double> coordinate(const BodyJoint& joint, const BodyPlace& a, const BodyPlace& b,
+std::optional<double> coordinate(const BodyJoint& joint, const BodyPose& a, const BodyPose& b,
                                  int slot) {
-  const JointLaw& law = joint.law;
-  if (law.form == JointLaw::Form::user) {
-    if (slot >= law.user_rows) return std::nullopt;
+  const JointSpec& spec = joint.spec;
+  if (spec.form == JointSpec::Form::user) {
+    if (slot >= spec.user_rows) return std::nullopt;
     double residual[6] = {};
     PairRow rows[6];
-    const auto n = static_cast<std::size_t>(law.user_rows);
-    law.user->evaluate(a.T, b.T, std::span(residual, n), std::span(rows, n));
+    const auto n = static_cast<std::size_t>(spec.user_rows);
+    spec.user->evaluate(a.T, b.T, std::span(residual, n), std::span(rows, n));
     return residual[slot];
   }
   const Ends e(joint, a, b);
-  if (law.form == JointLaw::Form::axes) {
+  if (spec.form == JointSpec::Form::axes) {
     if (slot < 3) return dot(column(e.R_a, slot), e.d);
-    if (slot == kTwist) return counted_on(joint.turned[0], twist_of(e));
+    if (slot == kTwist) return counted_on(joint.rotated[0], twist_of(e));
     const Swing swing(e);
     return slot == 3 ? swing.x : swing.y;
   }
   if (slot != 0) return std::nullopt;
-  if (law.form == JointLaw::Form::distance) return norm(e.d);
-  return gear_side(joint, b.T, 1) - law.ratio * gear_side(joint, a.T, 0);
+  if (spec.form == JointSpec::Form::distance) return norm(e.d);
+  return gear_side(joint, b.T, 1) - spec.ratio * gear_side(joint, a.T, 0);
 }
 
 }  // namespace vp

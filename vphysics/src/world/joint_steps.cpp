@@ -18,7 +18,7 @@ using solve::kLanes;
 constexpr std::size_t kBlockGrain = 16;  // blocks: some microseconds
 
 // Whole turns of the angle, nearest.
-double turns_of(double angle) {
+double revolutions_of(double angle) {
   return 2.0 * kPi * std::floor(angle / (2.0 * kPi) + 0.5);
 }
 
@@ -26,11 +26,11 @@ solve::JointForm form_of(const BodyJoint& joint) {
   solve::JointForm form;
   const int point = joint.holds_point() ? 3 : 0;
   form.rows = static_cast<std::uint8_t>(joint.count - point);
-  form.held = static_cast<std::uint8_t>(joint.held - point);
-  if (joint.law.form != JointLaw::Form::axes) return form;
+  form.locked = static_cast<std::uint8_t>(joint.locked - point);
+  if (joint.spec.form != JointSpec::Form::axes) return form;
   for (int i = 0; i < form.rows; ++i) {
     const BodyJointRow& row = joint.rows[point + i];
-    const bool of_cone = joint.law.cone && row.slot == solve::kSwingX;
+    const bool of_cone = joint.spec.cone && row.slot == solve::kSwingX;
     form.slot[i] = of_cone ? solve::kCone : row.slot;
   }
   return form;
@@ -38,7 +38,7 @@ solve::JointForm form_of(const BodyJoint& joint) {
 
 // turned: whole turns that a coordinate of a twist is counted from.
 template <class BLOCK>
-void fill_rows(BLOCK& block, int lane, const BodyJoint& joint, double turned) {
+void fill_rows(BLOCK& block, int lane, const BodyJoint& joint, double rotated) {
   constexpr int kPoint = BLOCK::kPointRows;
   for (int i = kPoint; i < joint.count; ++i) {
     const BodyJointRow& from = joint.rows[i];
@@ -47,45 +47,45 @@ void fill_rows(BLOCK& block, int lane, const BodyJoint& joint, double turned) {
     put(row.rate, lane, from.rate);
     put(row.loss, lane, from.loss);
     put(row.relaxes, lane, from.relaxes ? 1.0 : 0.0);
-    if (i < joint.held) continue;
+    if (i < joint.locked) continue;
     solve::BoundPart& bound = block.bounds[i - kPoint];
-    const double from_turn = from.slot == solve::kTwist ? turned : 0.0;
+    const double from_rotation = from.slot == solve::kTwist ? rotated : 0.0;
     put(bound.stop, lane, from.stop);
     put(bound.holds, lane, from.bounded_hold ? 1.0 : 0.0);
-    put(bound.least, lane, from.least);
-    put(bound.most, lane, from.most);
+    put(bound.min_impulse, lane, from.min_impulse);
+    put(bound.max_impulse, lane, from.max_impulse);
     put(bound.stiffness, lane, from.stiffness);
     put(bound.damping, lane, from.damping);
-    put(bound.position, lane, from.position - from_turn);
+    put(bound.position, lane, from.position - from_rotation);
     put(bound.speed, lane, from.speed);
-    put(bound.lower, lane, from.lower - from_turn);
-    put(bound.upper, lane, from.upper - from_turn);
+    put(bound.lower, lane, from.lower - from_rotation);
+    put(bound.upper, lane, from.upper - from_rotation);
   }
 }
 
-void fill_point(solve::PointPart& point, int lane, const BodyJoint& joint, const BodyPlace& a,
-                const BodyPlace& b) {
+void fill_point(solve::PointPart& point, int lane, const BodyJoint& joint, const BodyPose& a,
+                const BodyPose& b) {
   const Vec3 p_a = a.T * joint.T_a_joint.position(), p_b = b.T * joint.T_b_joint.position();
   put(point.start_arm_a, lane, p_a - a.centre);
   put(point.start_arm_b, lane, p_b - b.centre);
-  put(point.start_gap, lane, p_b - p_a);
+  put(point.start_separation, lane, p_b - p_a);
   put(point.impulse, lane, {joint.rows[0].impulse, joint.rows[1].impulse, joint.rows[2].impulse});
   put(point.rate, lane, joint.rows[0].rate);
   put(point.loss, lane, joint.rows[0].loss);
   put(point.relaxes, lane, joint.rows[0].relaxes ? 1.0 : 0.0);
 }
 
-void fill_axes(solve::AxesPart& axes, int lane, const BodyJoint& joint, const BodyPlace& a,
-               const BodyPlace& b, double turned) {
+void fill_axes(solve::AxesPart& axes, int lane, const BodyJoint& joint, const BodyPose& a,
+               const BodyPose& b, double rotated) {
   const Mat3 R_a = a.T.rotation() * joint.T_a_joint.rotation();
   const Mat3 R_b = b.T.rotation() * joint.T_b_joint.rotation();
   put(axes.a_x, lane, R_a.cx);
   put(axes.a_y, lane, R_a.cy);
   put(axes.b_x, lane, R_b.cx);
   put(axes.b_z, lane, R_b.cz);
-  put(axes.twist, lane, joint.turned[0] - turned);
-  put(axes.cone_x, lane, joint.law.swing_x);
-  put(axes.cone_y, lane, joint.law.swing_y);
+  put(axes.twist, lane, joint.rotated[0] - rotated);
+  put(axes.cone_x, lane, joint.spec.swing_x);
+  put(axes.cone_y, lane, joint.spec.swing_y);
 }
 
 template <class BLOCK>
@@ -99,7 +99,7 @@ void take_rows(const BLOCK& block, int lane, BodyJoint& joint) {
   }
   for (int i = kPoint; i < joint.count; ++i) {
     joint.rows[i].impulse = get(block.rows[i - kPoint].impulse, lane);
-    if (i >= joint.held) joint.rows[i].stop = get(block.bounds[i - kPoint].stop, lane);
+    if (i >= joint.locked) joint.rows[i].stop = get(block.bounds[i - kPoint].stop, lane);
   }
   joint.force = get(block.force, lane);
   joint.torque = get(block.torque, lane);
@@ -135,8 +135,8 @@ void JointSteps::for_runs(const F& f) {
     const auto part = [&](std::size_t begin, std::size_t end) {
       using Run = typename std::remove_cvref_t<decltype(passes)>::Run;
       f(passes, Run{run.blocks.data() + begin, end - begin, &run.form, context_.rows.data(),
-                    scratch_.ways.data(), static_cast<float>(kFastestJoint * context_.speed_unit),
-                    some_are_far_});
+                    scratch_.displacements.data(),
+                    static_cast<float>(kFastestJoint * context_.speed_unit), some_are_far_});
     };
     if (run.alone) {
       part(0, run.blocks.size());
@@ -153,22 +153,21 @@ void JointSteps::fill(std::uint32_t index) {
   const auto add = [&]<class BLOCK>() {
     return scratch_.runs.add<BLOCK>(form, index, a.row, a.moves, b.row, b.moves);
   };
-  if (joint.law.form != JointLaw::Form::axes) {
+  if (joint.spec.form != JointSpec::Form::axes) {
     const auto [block, lane] = add.operator()<solve::RowsBlock>();
     return fill_rows(block, lane, joint, 0.0);
   }
-  const BodyPlace at_a = place_of(context_.bodies[joint.a]),
-                  at_b = place_of(context_.bodies[joint.b]);
+  const BodyPose at_a = pose_of(context_.bodies[joint.a]), at_b = pose_of(context_.bodies[joint.b]);
   if (joint.holds_point() && form.rows == 0) {
     const auto [block, lane] = add.operator()<solve::BallBlock>();
     return fill_point(block.point, lane, joint, at_a, at_b);
   }
-  count_turns(joint, at_a, at_b);
-  const double turned = turns_of(joint.turned[0]);
+  count_revolutions(joint, at_a, at_b);
+  const double rotated = revolutions_of(joint.rotated[0]);
   const auto fill = [&](auto& block, int lane) {
     fill_point(block.point, lane, joint, at_a, at_b);
-    fill_axes(block.axes, lane, joint, at_a, at_b, turned);
-    fill_rows(block, lane, joint, turned);
+    fill_axes(block.axes, lane, joint, at_a, at_b, rotated);
+    fill_rows(block, lane, joint, rotated);
   };
   if (joint.holds_point()) {
     const auto [block, lane] = add.operator()<solve::AxesBlock>();
@@ -196,7 +195,8 @@ JointSteps::JointSteps(const JointContext& context, JointScratch& scratch, doubl
     fill(i);
   }
   if (empty()) return;
-  scratch_.ways.resize(context_.rows.size(), solve::Gone{{0.0f, 0.0f, 0.0f, 1.0f}, {}, 0.0f});
+  scratch_.displacements.resize(context_.rows.size(),
+                                solve::Gone{{0.0f, 0.0f, 0.0f, 1.0f}, {}, 0.0f});
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
     if (bodies[i].first_joint != kNone && joins_sub_steps(bodies[i]))
       scratch_.joined_bodies.push_back(i);
@@ -205,19 +205,19 @@ JointSteps::JointSteps(const JointContext& context, JointScratch& scratch, doubl
   prepare();
 }
 
-BodyPlace place_within_step(const Body& body, const solve::BodyRow& row,
-                            const std::array<float, 6>& start_way) {
-  if (body.motion == Motion::fixed) return place_of(body);
-  const float *way = row.way, *start = start_way.data();
-  const auto since = [&](int i) { return vector_of(way + i) - vector_of(start + i); };
+BodyPose pose_within_step(const Body& body, const solve::BodyRow& row,
+                          const std::array<float, 6>& start_displacement) {
+  if (body.motion == Motion::fixed) return pose_of(body);
+  const float *displacement = row.displacement, *start = start_displacement.data();
+  const auto since = [&](int i) { return vector_of(displacement + i) - vector_of(start + i); };
   const Vec3 centre = reference_point(body) + since(0);
-  const Mat3 R = turned(body.T.rotation(), since(3));
+  const Mat3 R = rotated(body.T.rotation(), since(3));
   const bool at_centre = body.motion == Motion::dynamic;
   return {SE3(R, at_centre ? centre - R * body.centre : centre), centre};
 }
-BodyPlace JointSteps::place_within_step(std::uint32_t body) const {
-  return vp::place_within_step(context_.bodies[body], context_.rows[body + 1],
-                               context_.start_ways[body]);
+BodyPose JointSteps::pose_within_step(std::uint32_t body) const {
+  return vp::pose_within_step(context_.bodies[body], context_.rows[body + 1],
+                              context_.start_displacements[body]);
 }
 
 // Of rows that are not found in lanes.
@@ -226,8 +226,8 @@ void JointSteps::evaluate_rows(solve::RowsBlock& block) {
   for (int lane = 0; lane < kLanes; ++lane) {
     if (block.a.lane[lane] + block.b.lane[lane] == 2 * solve::kWorldRow) return;  // empty
     BodyJoint& joint = context_.joints[block.joint.lane[lane]];
-    const BodyPlace b = place_within_step(joint.b);
-    evaluate(joint, place_within_step(joint.a), b, found);
+    const BodyPose b = pose_within_step(joint.b);
+    evaluate(joint, pose_within_step(joint.a), b, found);
     for (int i = 0; i < joint.count; ++i) {
       const Twelve& J = found.jacobian[i];
       put(block.rows[i].residual, lane, found.residual[i]);
@@ -236,7 +236,7 @@ void JointSteps::evaluate_rows(solve::RowsBlock& block) {
       put(block.jacobian[i].linear_b, lane, J.linear_b);
       put(block.jacobian[i].angular_b, lane, J.angular_b);
     }
-    const bool user = joint.law.form == JointLaw::Form::user;
+    const bool user = joint.spec.form == JointSpec::Form::user;
     put(block.anchor, lane, user ? Vec3{} : b.T * joint.T_b_joint.position() - b.centre);
   }
 }
@@ -245,9 +245,9 @@ void JointSteps::prepare() {
   if (empty()) return;
   context_.workers.in_parallel(
       scratch_.joined_bodies.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
-        solve::joint_passes().find_gone(context_.rows.data(), context_.start_ways.data(),
+        solve::joint_passes().find_gone(context_.rows.data(), context_.start_displacements.data(),
                                         scratch_.joined_bodies.data() + begin, end - begin,
-                                        scratch_.ways.data());
+                                        scratch_.displacements.data());
       });
   std::atomic<bool> far = false;
   for_runs([&](const auto& passes, const auto& run) {
@@ -262,10 +262,10 @@ void JointSteps::warm_start() {
   if (empty()) return;
   for_runs([](const auto& passes, const auto& run) { passes.warm_start(run); });
 }
-void JointSteps::solve(int round) {
+void JointSteps::solve(int iteration) {
   if (empty()) return;
   for_runs([&](const auto& passes, const auto& run) {
-    (round == 0 ? passes.push_first : passes.push_again)(run, static_cast<float>(h_));
+    (iteration == 0 ? passes.solve_first : passes.solve_again)(run, static_cast<float>(h_));
   });
 }
 void JointSteps::relax() {
@@ -273,13 +273,13 @@ void JointSteps::relax() {
   for_runs([&](const auto& passes, const auto& run) { passes.relax(run, static_cast<float>(h_)); });
 }
 
-// Whether it is open by more than kOpen of the smaller body's radius or by kTurnedOff, of what it
-// holds hard. Only errors too large to be taken out at once are looked at; those of a gear and of a
-// user's constraint have no size to be compared with.
+// Whether it is open by more than kOpen of the smaller body's radius or by kRotationError, of what
+// it holds hard. Only errors too large to be taken out at once are looked at; those of a gear and
+// of a user's constraint have no size to be compared with.
 template <class BLOCK>
 bool JointSteps::is_far_open(const BodyJoint& joint, const BLOCK& block, int lane) const {
   constexpr float kAtLimit = 0.999f;
-  if (joint.law.form == JointLaw::Form::gear || joint.law.form == JointLaw::Form::user)
+  if (joint.spec.form == JointSpec::Form::gear || joint.spec.form == JointSpec::Form::user)
     return false;
   const auto exceeds = [&](int row, double fastest) {
     return std::fabs(block.bias[row].lane[lane]) >= kAtLimit * static_cast<float>(fastest);
@@ -288,7 +288,8 @@ bool JointSteps::is_far_open(const BodyJoint& joint, const BLOCK& block, int lan
   const auto find_size = [&](std::uint32_t index, const SE3& T_body_joint) {
     const Body& body = context_.bodies[index];
     if (body.motion != Motion::dynamic) return;
-    size = std::min(size, std::max(body.reach, norm(T_body_joint.position() - body.centre)));
+    size =
+        std::min(size, std::max(body.bounding_radius, norm(T_body_joint.position() - body.centre)));
   };
   const auto is_open = [&](double gap) {
     find_size(joint.a, joint.T_a_joint);
@@ -299,16 +300,16 @@ bool JointSteps::is_far_open(const BodyJoint& joint, const BLOCK& block, int lan
   constexpr int kPoint = BLOCK::kPointRows;
   if (kPoint > 0 && joint.rows[0].relaxes &&
       (exceeds(0, fastest) || exceeds(1, fastest) || exceeds(2, fastest))) {
-    const SE3 T_a = place_within_step(joint.a).T, T_b = place_within_step(joint.b).T;
+    const SE3 T_a = pose_within_step(joint.a).T, T_b = pose_within_step(joint.b).T;
     if (is_open(norm(T_b * joint.T_b_joint.position() - T_a * joint.T_a_joint.position())))
       return true;
   }
-  for (int i = kPoint; i < joint.held; ++i) {
+  for (int i = kPoint; i < joint.locked; ++i) {
     const BodyJointRow& row = joint.rows[i];
-    const bool linear = joint.law.form == JointLaw::Form::distance || row.slot < solve::kSwingX;
-    if (!row.relaxes || !exceeds(i, linear ? fastest : double{solve::kFastestTurn})) continue;
+    const bool linear = joint.spec.form == JointSpec::Form::distance || row.slot < solve::kSwingX;
+    if (!row.relaxes || !exceeds(i, linear ? fastest : double{solve::kMaxAngularBias})) continue;
     const double error = std::fabs(get(block.rows[i - kPoint].residual, lane));
-    if (linear ? is_open(error) : error > kTurnedOff) return true;
+    if (linear ? is_open(error) : error > kRotationError) return true;
   }
   return false;
 }
@@ -328,8 +329,8 @@ bool JointSteps::end(double dt) {
       joint.torque *= 1.0 / dt;
       if (!in_range(joint.force) || !in_range(joint.torque)) joint.force = joint.torque = {};
       if constexpr (std::is_same_v<decltype(block.axes), solve::AxesPart>) {
-        const double turned = turns_of(joint.turned[0]) + get(block.axes.twist, lane);
-        if (in_range(turned)) joint.turned[0] = turned;  // else the bodies are put back
+        const double rotated = revolutions_of(joint.rotated[0]) + get(block.axes.twist, lane);
+        if (in_range(rotated)) joint.rotated[0] = rotated;  // else the bodies are put back
       }
     }
   });

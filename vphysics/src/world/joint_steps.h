@@ -21,7 +21,7 @@ struct JointContext {
   const Bodies& bodies;
   Joints& joints;
   std::span<solve::BodyRow> rows;
-  std::span<const std::array<float, 6>> start_ways;  // of each body
+  std::span<const std::array<float, 6>> start_displacements;  // of each body
   const Workers& workers;
   double speed_unit;
 };
@@ -30,21 +30,23 @@ struct JointContext {
 struct JointScratch {
   JointRuns runs;
   std::vector<std::uint32_t> active, joined_bodies;
-  solve::LargeVector<solve::Gone> ways;  // by row: of what is joined
+  solve::LargeVector<solve::Gone> displacements;  // by row: of what is joined
 };
 
 // Of the sub-steps of a step; kept for its capacity.
 struct SubStepScratch {
-  BlockWords blocks;
-  solve::LargeVector<solve::Gain> gains;         // of each body, by the contacts of a sub-step
-  std::vector<std::array<float, 6>> start_ways;  // of each body: its row's way when the step began
-  std::vector<std::uint8_t> mover_news;          // of each mover: it needs more than its own row
+  BlockBits blocks;
+  solve::LargeVector<solve::VelocityChange>
+      velocity_changes;  // of each body, by the contacts of a sub-step
+  std::vector<std::array<float, 6>>
+      start_displacements;                       // of each body: its row's way when the step began
+  std::vector<std::uint8_t> awake_body_changed;  // of each mover: it needs more than its own row
   JointScratch joints;
 };
 
 // Where a body's row has taken it since the step began.
-BodyPlace place_within_step(const Body& body, const solve::BodyRow& row,
-                            const std::array<float, 6>& start_way);
+BodyPose pose_within_step(const Body& body, const solve::BodyRow& row,
+                          const std::array<float, 6>& start_displacement);
 
 class JointSteps {
  public:
@@ -52,14 +54,14 @@ class JointSteps {
   bool empty() const { return scratch_.active.empty(); }
   void prepare();
   void warm_start();
-  void solve(int round);
+  void solve(int iteration);
   void relax();
   // Takes the impulses back. Returns whether one is far open.
   bool end(double dt);
 
  private:
   bool is_active(const BodyJoint& joint) const;
-  BodyPlace place_within_step(std::uint32_t body) const;
+  BodyPose pose_within_step(std::uint32_t body) const;
   template <class F>
   void for_runs(const F& f);
   void fill(std::uint32_t joint);

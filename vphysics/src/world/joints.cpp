@@ -1,14 +1,15 @@
 // Joints between bodies: who is joined, and their part of a step.
 #include "vphysics/assert.h"
 #include "world/impl.h"
+#include "world/invalid.h"
 #include "world/recorded_call.h"
-#include "world/refuse.h"
-#include "world/structure.h"
+#include "world/topology_hash.h"
 #include "world/validate.h"
 
 namespace vp {
 
-bool keeps_apart(const Bodies& bodies, const Joints& joints, std::uint32_t a, std::uint32_t b) {
+bool disables_collision(const Bodies& bodies, const Joints& joints, std::uint32_t a,
+                        std::uint32_t b) {
   for (std::uint32_t e = bodies[a].first_joint; e != kNone; e = joints[e / 2].next[e % 2]) {
     const BodyJoint& joint = joints[e / 2];
     if (!joint.collide && (joint.a == b || joint.b == b)) return true;
@@ -37,22 +38,22 @@ void World::Impl::remove_joint(std::uint32_t index) {
     if (next != kNone) joints[next / 2].previous[next % 2] = previous;
     (previous != kNone ? joints[previous / 2].next[previous % 2] : body.first_joint) = next;
   }
-  contact_store.mark_stale_of(bodies[joint.a]);
+  contact_store.mark_contacts_dirty(bodies[joint.a]);
   if (joint.in_rows) lists.invalidate();
-  joint.law.user.reset();
+  joint.spec.user.reset();
   joints.release(index);
 }
 
 Expected<JointId> World::create_joint(BodyId a_id, BodyId b_id, const JointDesc& desc) {
   const Body *a = impl_->find(a_id), *b = impl_->find(b_id);
-  if (!a) return stale("create_joint", "body a");
-  if (!b) return stale("create_joint", "body b");
-  if (a == b) return refuse("create_joint: a body cannot be joined to itself; name two bodies");
+  if (!a) return unknown_id("create_joint", "body a");
+  if (!b) return unknown_id("create_joint", "body b");
+  if (a == b) return invalid("create_joint: a body cannot be joined to itself; name two bodies");
   if (a->motion != Motion::dynamic && b->motion != Motion::dynamic)
-    return refuse("create_joint: one of the two bodies must be dynamic");
+    return invalid("create_joint: one of the two bodies must be dynamic");
   if (a->motion == b->motion && !a->is_link && !can_be_joined(a->continuous, *b))
-    return refuse(Errc::unsupported, std::string("create_joint: ") + kNotJoined);
-  if (auto problem = problem_with(desc)) return refuse("create_joint: " + *problem);
+    return invalid(Errc::unsupported, std::string("create_joint: ") + kNotJoined);
+  if (auto problem = problem_with(desc)) return invalid("create_joint: " + *problem);
 
   const std::uint32_t index = impl_->joints.take();
   BodyJoint& joint = impl_->joints[index];
@@ -66,7 +67,7 @@ Expected<JointId> World::create_joint(BodyId a_id, BodyId b_id, const JointDesc&
   joint.T_b_joint = straight(desc.T_b_joint);
   joint.frequency = desc.frequency;
   joint.damping_ratio = desc.damping_ratio;
-  joint.law = law_of(desc.kind);
+  joint.spec = spec_of(desc.kind);
   joint.main = main_slot(desc.kind);
   joint.in_rows = is_in_rows(impl_->bodies, joint);
   link_joint(impl_->bodies, impl_->joints, index);
@@ -76,22 +77,22 @@ Expected<JointId> World::create_joint(BodyId a_id, BodyId b_id, const JointDesc&
   if (joint.in_rows) impl_->lists.invalidate();
   joint.start[0] = impl_->bodies[joint.a].T;
   joint.start[1] = impl_->bodies[joint.b].T;
-  joint.turned[0] = first_turn(joint.law);
+  joint.rotated[0] = first_rotation(joint.spec);
   impl_->wake(joint.a);
   impl_->wake(joint.b);
-  impl_->contact_store.mark_stale_of(impl_->bodies[joint.a]);
-  Structure(impl_->structure).add(0x500u + index, a_id.index, b_id.index, desc);
+  impl_->contact_store.mark_contacts_dirty(impl_->bodies[joint.a]);
+  TopologyHash(impl_->topology_hash).add(0x500u + index, a_id.index, b_id.index, desc);
   if (impl_->recorder) impl_->log({calls::CreateJoint{a_id, b_id, desc}});
   return JointId{index + 1, joint.generation};
 }
 
 Expected<void> World::destroy_joint(JointId id) {
-  if (!impl_->find(id)) return stale("destroy_joint", "the joint");
+  if (!impl_->find(id)) return unknown_id("destroy_joint", "the joint");
   const BodyJoint& joint = impl_->joints[id.index - 1];
   impl_->wake(joint.a);
   impl_->wake(joint.b);
   impl_->remove_joint(id.index - 1);
-  Structure(impl_->structure).add(0x600u + id.index);
+  TopologyHash(impl_->topology_hash).add(0x600u + id.index);
   if (impl_->recorder) impl_->log({calls::DestroyJoint{id}});
   return {};
 }
@@ -113,35 +114,36 @@ double World::joint_coordinate(JointId id) const {
   const BodyJoint* joint = impl_->find(id);
   VP_ASSERT(joint && joint->main >= 0 && "joint_coordinate: name an axis, or an id that exists");
   if (!joint || joint->main < 0) return 0.0;
-  return number_or_zero(coordinate(*joint, place_of(impl_->bodies[joint->a]),
-                                   place_of(impl_->bodies[joint->b]), joint->main));
+  return number_or_zero(coordinate(*joint, pose_of(impl_->bodies[joint->a]),
+                                   pose_of(impl_->bodies[joint->b]), joint->main));
 }
 
 double World::joint_coordinate(JointId id, JointAxis axis) const {
   const BodyJoint* joint = impl_->find(id);
-  const bool has = joint && joint->law.form == JointLaw::Form::axes && axis <= JointAxis::turn_z;
+  const bool has =
+      joint && joint->spec.form == JointSpec::Form::axes && axis <= JointAxis::rotation_z;
   VP_ASSERT(has && "joint_coordinate: no such joint, or it has no axes");
   if (!has) return 0.0;
-  return number_or_zero(coordinate(*joint, place_of(impl_->bodies[joint->a]),
-                                   place_of(impl_->bodies[joint->b]), static_cast<int>(axis)));
+  return number_or_zero(coordinate(*joint, pose_of(impl_->bodies[joint->a]),
+                                   pose_of(impl_->bodies[joint->b]), static_cast<int>(axis)));
 }
 
 double World::joint_residual(JointId id, int row) const {
   const BodyJoint* joint = impl_->find(id);
-  const bool has = joint && joint->law.form == JointLaw::Form::user && row >= 0;
+  const bool has = joint && joint->spec.form == JointSpec::Form::user && row >= 0;
   VP_ASSERT(has && "joint_residual: no such joint, or not a UserConstraint");
   if (!has) return 0.0;
-  return number_or_zero(coordinate(*joint, place_of(impl_->bodies[joint->a]),
-                                   place_of(impl_->bodies[joint->b]), row));
+  return number_or_zero(
+      coordinate(*joint, pose_of(impl_->bodies[joint->a]), pose_of(impl_->bodies[joint->b]), row));
 }
 
 namespace {
 
 Expected<void> drive_slot(BodyJoint& joint, int slot, const JointDrive& drive) {
-  if (auto problem = problem_with(drive)) return refuse("set_drive: " + *problem);
-  AxisDesc& desc = joint.law.axes[slot];
+  if (auto problem = problem_with(drive)) return invalid("set_drive: " + *problem);
+  AxisDesc& desc = joint.spec.axes[slot];
   if (desc.motion == AxisMotion::locked)
-    return refuse("set_drive: the joint holds this coordinate; drive one that it leaves free");
+    return invalid("set_drive: the joint holds this coordinate; drive one that it leaves free");
   desc.drive = drive;
   joint.laid_out_for = 0.0;
   return {};
@@ -151,9 +153,10 @@ Expected<void> drive_slot(BodyJoint& joint, int slot, const JointDrive& drive) {
 
 Expected<void> World::set_drive(JointId id, const JointDrive& drive) {
   BodyJoint* joint = impl_->find(id);
-  if (!joint) return stale("set_drive", "the joint");
-  if (joint->main < 0 || joint->law.form != JointLaw::Form::axes)
-    return refuse("set_drive: the joint has no drive; hinges, sliders, cones and six degrees have");
+  if (!joint) return unknown_id("set_drive", "the joint");
+  if (joint->main < 0 || joint->spec.form != JointSpec::Form::axes)
+    return invalid(
+        "set_drive: the joint has no drive; hinges, sliders, cones and six degrees have");
   const auto driven = drive_slot(*joint, joint->main, drive);
   if (!driven) return driven;
   impl_->wake(joint->a);
@@ -164,11 +167,11 @@ Expected<void> World::set_drive(JointId id, const JointDrive& drive) {
 
 Expected<void> World::set_drive(JointId id, JointAxis axis, const JointDrive& drive) {
   BodyJoint* joint = impl_->find(id);
-  if (!joint) return stale("set_drive", "the joint");
-  const bool swings = axis == JointAxis::turn_x || axis == JointAxis::turn_y;
-  if (joint->law.form != JointLaw::Form::axes || axis > JointAxis::turn_z ||
-      (joint->law.cone && swings))
-    return refuse("set_drive: the joint has no drive of this axis");
+  if (!joint) return unknown_id("set_drive", "the joint");
+  const bool swings = axis == JointAxis::rotation_x || axis == JointAxis::rotation_y;
+  if (joint->spec.form != JointSpec::Form::axes || axis > JointAxis::rotation_z ||
+      (joint->spec.cone && swings))
+    return invalid("set_drive: the joint has no drive of this axis");
   const auto driven = drive_slot(*joint, static_cast<int>(axis), drive);
   if (!driven) return driven;
   impl_->wake(joint->a);

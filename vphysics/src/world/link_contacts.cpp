@@ -22,9 +22,9 @@ void World::Impl::find_bodies_on_links() {
     return body.is_link ? &articulations[body.articulation] : nullptr;
   };
   find_bodies_joined_to_links();
-  const auto meets_link = [](const Contact& c) { return c.alive && c.of_link && !c.sensor; };
+  const auto touches_link = [](const Contact& c) { return c.alive && c.of_link && !c.sensor; };
   for (const Contact& c : contact_store.pool) {
-    if (!meets_link(c)) continue;
+    if (!touches_link(c)) continue;
     for (const auto& [mine, other] : {std::pair{c.a, c.b}, std::pair{c.b, c.a}}) {
       Articulation* art = articulation_of(bodies[colliders[other].body]);
       const std::uint32_t index = colliders[mine].body;
@@ -42,7 +42,7 @@ void World::Impl::find_bodies_on_links() {
   while (again) {
     again = false;
     for (const Contact& c : contact_store.pool) {
-      if (!meets_link(c)) continue;
+      if (!touches_link(c)) continue;
       join(bodies[colliders[c.a].body], bodies[colliders[c.b].body]);
     }
     for (const std::uint32_t i : impacts.row_joints) join(bodies[joints[i].a], bodies[joints[i].b]);
@@ -70,7 +70,7 @@ void World::Impl::find_link_contacts(double dt, int sub_steps) {
     if (!c.alive || !c.of_link || c.sensor) continue;
     const Body &a = bodies[colliders[c.a].body], &b = bodies[colliders[c.b].body];
     if (in_sub_steps(a, b) && !a.continuous && !b.continuous &&
-        !keeps_apart(bodies, joints, colliders[c.a].body, colliders[c.b].body)) {
+        !disables_collision(bodies, joints, colliders[c.a].body, colliders[c.b].body)) {
       impacts.discrete_pairs.push_back({c.key, c.a, c.b});
     }
   }
@@ -81,19 +81,19 @@ void World::Impl::find_link_contacts(double dt, int sub_steps) {
     const std::uint32_t i = colliders[pair.a].body, j = colliders[pair.b].body;
     pose_colliders(bodies[i], colliders);
     pose_colliders(bodies[j], colliders);
-    const double closing = approach_in(dt).of(colliders[pair.a], colliders[pair.b]);
+    const double approach_speed = approach_in(dt).of(colliders[pair.a], colliders[pair.b]);
     std::uint32_t part = 0;
-    for (const auto& found : manifolds_of(pair, 2.0 * desc.contact_slop + closing)) {
+    for (const auto& found : manifolds_of(pair, 2.0 * desc.contact_slop + approach_speed)) {
       add_contact(pair, found.manifold, part++, false, true, impacts.link_contacts);
     }
   }
   // What is remembered is of a whole step.
-  const double share = 1.0 / sub_steps;
+  const double fraction = 1.0 / sub_steps;
   for (solve::ContactConstraint& c : impacts.link_contacts) {
-    c.rolling_impulse *= share;
+    c.rolling_impulse *= fraction;
     for (int i = 0; i < c.count; ++i) {
-      c.points[i].normal_impulse *= share;
-      for (double& p : c.points[i].tangent_impulse) p *= share;
+      c.points[i].normal_impulse *= fraction;
+      for (double& p : c.points[i].tangent_impulse) p *= fraction;
     }
   }
   for (Articulation& art : articulations) {
@@ -114,7 +114,7 @@ solve::StepContext World::Impl::link_context(double h) {
           desc.contact_slop,
           desc.restitution_threshold,
           desc.velocity_iterations,
-          kPush / h,
+          kUseBias / h,
           kFastestShift * speed_unit};
 }
 
@@ -166,7 +166,7 @@ void World::Impl::begin_links(double h) {
 
 namespace {
 
-bool has_joints_in_lanes(const Body& body, const Joints& joints) {
+bool has_block_joints(const Body& body, const Joints& joints) {
   for (std::uint32_t e = body.first_joint; e != kNone; e = joints[e / 2].next[e % 2]) {
     if (!joints[e / 2].in_rows) return true;
   }
@@ -182,14 +182,15 @@ solve::SolverBody World::Impl::solver_body_in_sub_step(std::uint32_t index, doub
   const bool stands = body.is_link || body.motion == Motion::fixed;
   const Vec3 at =
       stands ? reference_point(body)
-             : place_within_step(body, body_rows[index + 1], sub_step.start_ways[index]).centre;
+             : pose_within_step(body, body_rows[index + 1], sub_step.start_displacements[index])
+                   .centre;
   solve::SolverBody s = solver_body(index, at);
   if (body.is_link) {
     s.articulation = static_cast<int>(body.articulation);
     s.link = body.link;
   } else {
     s.forced_w = s.forced_v = {};
-    s.in_lanes = body.lanes > 0 || has_joints_in_lanes(body, joints);
+    s.in_blocks = body.lanes > 0 || has_block_joints(body, joints);
     if (body.motion == Motion::dynamic) {
       const Velocity a = acceleration_of(body);
       s.forced_w = h * a.w;
@@ -222,7 +223,7 @@ void World::Impl::relax_links(double h) {
   note_link_impulses(impacts.link_contacts);
   for (const solve::ContactConstraint& c : impacts.link_contacts) {
     if (c.points[0].normal_impulse <= 0.0) continue;
-    for (const std::uint32_t i : {c.a, c.b}) body_rows[i + 1].way[solve::kCarried] = 1.0f;
+    for (const std::uint32_t i : {c.a, c.b}) body_rows[i + 1].displacement[solve::kCarried] = 1.0f;
   }
   for (solve::JointRow& row : impacts.joint_rows) {
     if (row.remember) *row.remember = dt_now / h * row.impulse;  // of a whole step

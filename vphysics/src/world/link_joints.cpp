@@ -69,16 +69,16 @@ RowEnd World::Impl::row_end(std::uint32_t index, const RowJointStep& step) const
   const Body& body = bodies[index];
   if (step.of == RowsOf::sub_step && joins_sub_steps(body)) {
     const solve::BodyRow& row = body_rows[index + 1];
-    const BodyPlace now = place_within_step(body, row, sub_step.start_ways[index]);
+    const BodyPose now = pose_within_step(body, row, sub_step.start_displacements[index]);
     return {now, {vector_of(row.velocity + 3), vector_of(row.velocity)}, now};
   }
-  RowEnd end{place_of(body), {body.w, body.v}, place_of(body)};
+  RowEnd end{pose_of(body), {body.w, body.v}, pose_of(body)};
   if (step.of != RowsOf::first_instant || body.motion == Motion::fixed) return end;
   if (body.is_link) {
     end.next.T = impacts.next_poses[index];
     end.next.centre = end.next.T.position();
   } else {
-    const Mat3 R = turned(body.T.rotation(), step.h * body.w);
+    const Mat3 R = rotated(body.T.rotation(), step.h * body.w);
     const Vec3 arm = transposed_times(body.T.rotation(), end.now.centre - body.T.position());
     end.next.centre += step.h * body.v;
     end.next.T = SE3(R, end.next.centre - R * arm);
@@ -124,11 +124,11 @@ void World::Impl::note_open_row_joints() {
       if (body.motion != Motion::dynamic) continue;
       const Vec3 centre =
           body.is_link ? articulations[body.articulation].centre_of(body.link) : body.centre;
-      const double own = std::max(body.reach, norm(T->position() - centre));
+      const double own = std::max(body.bounding_radius, norm(T->position() - centre));
       if (own > 0.0) size = size > 0.0 ? std::min(size, own) : own;
     }
     if (size > 0.0 &&
-        is_far_open(joint, place_of(bodies[joint.a]), place_of(bodies[joint.b]), size)) {
+        is_far_open(joint, pose_of(bodies[joint.a]), pose_of(bodies[joint.b]), size)) {
       position_error_now = true;
     }
   }

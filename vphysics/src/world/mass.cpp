@@ -4,9 +4,9 @@
 
 #include "vphysics/assert.h"
 #include "world/impl.h"
+#include "world/invalid.h"
 #include "world/recorded_call.h"
-#include "world/refuse.h"
-#include "world/structure.h"
+#include "world/topology_hash.h"
 #include "world/validate.h"
 
 namespace vp {
@@ -20,7 +20,7 @@ bool isotropic(const Sym3& I) {
 
 }  // namespace
 
-double reach_of(const Body& body) {
+double bounding_radius_of(const Body& body) {
   const Vec3 centre = body.is_link || body.motion != Motion::dynamic ? Vec3{} : body.centre;
   const Vec3 lower = body.local.lower - centre, upper = body.local.upper - centre;
   return norm(Vec3{std::max(std::fabs(lower.x), std::fabs(upper.x)),
@@ -39,24 +39,24 @@ void set_mass(Body& body, const Inertia& inertia) {
 
 Expected<void> World::set_mass_from_colliders(BodyId id) {
   Body* body = impl_->find(id);
-  if (!body) return stale("set_mass_from_colliders", "the body");
+  if (!body) return unknown_id("set_mass_from_colliders", "the body");
   if (body->is_link) {
-    return refuse("set_mass_from_colliders: a link has its model's mass");
+    return invalid("set_mass_from_colliders: a link has its model's mass");
   }
   if (body->motion != Motion::dynamic) {
-    return refuse("set_mass_from_colliders: the body is not dynamic, so it needs no mass");
+    return invalid("set_mass_from_colliders: the body is not dynamic, so it needs no mass");
   }
   const Inertia sum = inertia_of_colliders(*body, impl_->colliders);
   if (sum.mass() == 0.0) {
-    return refuse(
+    return invalid(
         "set_mass_from_colliders: the body has no collider with a volume but sensors; add "
         "one first");
   }
   if (auto problem = impl_->problem_with_mass(*body, velocity(id), sum)) {
-    return refuse("set_mass_from_colliders: " + *problem);
+    return invalid("set_mass_from_colliders: " + *problem);
   }
   impl_->change_mass(id.index - 1, sum);
-  Structure(impl_->structure).add(0x700u + id.index, sum);
+  TopologyHash(impl_->topology_hash).add(0x700u + id.index, sum);
   if (impl_->recorder) impl_->log({calls::SetMassFromColliders{id}});
   return {};
 }

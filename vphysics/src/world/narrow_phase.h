@@ -11,7 +11,7 @@
 namespace vp {
 
 // What the narrow phase has found of a contact.
-struct Looked {
+struct NarrowPhaseResult {
   std::uint32_t contact;
   collide::Manifold manifold;
   // Within which it was looked for, and would be if nothing moved; free of contact for so far [m].
@@ -22,9 +22,9 @@ struct Looked {
 // Kept for its capacity.
 struct NarrowPhaseScratch {
   std::vector<collide::ProxyPair> new_pairs;
-  std::vector<std::uint32_t> stale, look_again;  // contacts: in this round, in the next step
+  std::vector<std::uint32_t> dirty, look_again;  // contacts: in this round, in the next step
   std::vector<std::uint32_t> to_pose;            // bodies
-  std::vector<Looked> looked;
+  std::vector<NarrowPhaseResult> results;
   std::uint32_t renewed = 0;  // manifolds put into lanes in this step
   // Of a contact with parts (part_contacts.cpp).
   std::vector<collide::KnownPart> known_parts;

@@ -19,7 +19,7 @@ bool is_swept(const Body& body, const Collider& c) {
 }  // namespace
 
 void World::Impl::refresh_bounds(double h) {
-  if (!impacts.swept_body_pairs.stale()) {
+  if (!impacts.swept_body_pairs.dirty()) {
     for (const std::uint32_t i : impact_bodies()) refresh_bounds_of(i, h);
     return;
   }
@@ -54,8 +54,8 @@ void World::Impl::find_discrete_pairs(double h) {
     if (!continuous && !a.is_link && !b.is_link) continue;  // of the sub-stepped solver
     const bool sensors_only = in_sub_steps(a, b);
     const bool carries_sensor = (a.continuous && a.has_sensor) || (b.continuous && b.has_sensor);
-    if ((continuous && !carries_sensor) || !may_meet(a, b)) continue;
-    if (keeps_apart(bodies, joints, pair.a, pair.b)) continue;
+    if ((continuous && !carries_sensor) || !may_overlap(a, b)) continue;
+    if (disables_collision(bodies, joints, pair.a, pair.b)) continue;
     wake(pair.a);
     wake(pair.b);
     pose_colliders(bodies[pair.a], colliders);
@@ -68,7 +68,7 @@ void World::Impl::find_discrete_pairs(double h) {
       if (!overlap(near, impacts.bounds[pair.b])) continue;
       for (std::uint32_t j = b.first_collider; j != kNone; j = colliders[j].next) {
         const Collider& cb = colliders[j];
-        if (!overlap(near, cb.bounds) || !should_meet(ca, cb)) continue;
+        if (!overlap(near, cb.bounds) || !should_collide(ca, cb)) continue;
         if (continuous && (is_swept(a, ca) || is_swept(b, cb))) continue;
         if (sensors_only && !ca.sensor && !cb.sensor) continue;
         if (pushable_or_sensed(a, b, ca, cb))
@@ -122,26 +122,26 @@ double ImpactTimes::separation(const Collider& moving, const Collider& other, do
     const Vec3 local = inverse_times(other.T, moving.T.position());
     return signed_distance(other.geometry, local).distance - moving.geometry.radius;
   }
-  double least = margin;
+  double min_value = margin;
   manifolds.clear();
   collide::PairCache cache;
   find_manifolds(moving.geometry, moving.T, other.geometry, other.T, slop, cache, {}, scratch,
                  manifolds);
   for (const collide::SubManifold& found : manifolds) {
     for (int k = 0; k < found.manifold.count; ++k) {
-      least = std::min(least, found.manifold.points[k].separation);
+      min_value = std::min(min_value, found.manifold.points[k].separation);
     }
   }
-  return least;
+  return min_value;
 }
 
 namespace {
 
 // To the farthest point of what turns with the collider, or of a sphere to its centre.
-double reach_from(const Vec3& x, const Collider& c) {
+double radius_from(const Vec3& x, const Collider& c) {
   if (c.geometry.kind == collide::Kind::sphere) return norm(c.T.position() - x);
   if (c.geometry.kind != collide::Kind::compound) {
-    return norm(c.T * core_middle(c.geometry) - x) + core_reach(c.geometry);
+    return norm(c.T * core_centre(c.geometry) - x) + core_extent(c.geometry);
   }
   const collide::Bounds& b = c.bounds;
   return norm(0.5 * (b.lower + b.upper) - x) + 0.5 * norm(b.upper - b.lower);
@@ -161,15 +161,15 @@ void World::Impl::add_swept_pairs(std::uint32_t index, std::uint32_t other, doub
   for (std::uint32_t i = a.first_collider; i != kNone; i = colliders[i].next) {
     const Collider& ca = colliders[i];
     if (!is_swept(a, ca)) continue;
-    const double own = speed + wa * reach_from(ma.x, ca);
-    const double far = reach_from(mb.x, ca) + own * h;
+    const double own = speed + wa * radius_from(ma.x, ca);
+    const double far = radius_from(mb.x, ca) + own * h;
     const double margin = desc.contact_slop + (own + wb * far) * h;
     const collide::Bounds near = grown(ca.bounds, margin);
     for (std::uint32_t j = b.first_collider; j != kNone; j = colliders[j].next) {
       Collider& cb = colliders[j];
       if (!empty(cb.around_line) && !overlap(near, moved(cb.around_line, b.T.position()))) continue;
       pose_collider(b, cb);
-      if (!overlap(near, cb.bounds) || !should_meet(ca, cb)) continue;
+      if (!overlap(near, cb.bounds) || !should_collide(ca, cb)) continue;
       if (b.continuous && other < index && is_swept(b, cb)) continue;
       const double separation =
           times.separation(ca, cb, margin, narrow.manifold_scratch, narrow.manifolds);
@@ -187,7 +187,7 @@ void World::Impl::find_swept_pairs(double h) {
   for (const collide::IndexPair& p :
        impacts.swept_body_pairs.find(body_motions(), impact_bodies(), desc.contact_slop, h)) {
     if (!overlap(impacts.bounds[p.a], impacts.bounds[p.b])) continue;
-    if (keeps_apart(bodies, joints, p.a, p.b)) continue;
+    if (disables_collision(bodies, joints, p.a, p.b)) continue;
     const bool a = impacts.swept_body_pairs.sweeps(p.a), b = impacts.swept_body_pairs.sweeps(p.b);
     if (a) add_swept_pairs(p.a, p.b, h);
     if (b && (!a || bodies[p.a].has_sensor)) add_swept_pairs(p.b, p.a, h);

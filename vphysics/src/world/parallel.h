@@ -5,27 +5,27 @@
 #include <cstddef>
 #include <memory>
 
-#include "vphysics/jobs.h"
+#include "vphysics/task_scheduler.h"
 
 namespace vp {
 
 inline constexpr std::size_t kBodyGrain = 256;  // bodies: some microseconds
 
 struct Workers {
-  std::shared_ptr<Jobs> jobs;  // none: all is done by who calls step()
+  std::shared_ptr<TaskScheduler> scheduler;  // none: all is done by who calls step()
 
   // f(begin, end) of parts of [0, count).
   template <class F>
   void in_parallel(std::size_t count, std::size_t grain, const F& f) const {
-    if (!jobs || count < 2 * grain) {
+    if (!scheduler || count < 2 * grain) {
       if (count > 0) f(std::size_t{0}, count);
       return;
     }
-    jobs->run(count, grain,
-              {[](void* data, std::size_t begin, std::size_t end) {
-                 (*static_cast<const F*>(data))(begin, end);
-               },
-               const_cast<F*>(&f)});
+    scheduler->run(count, grain,
+                   {[](void* data, std::size_t begin, std::size_t end) {
+                      (*static_cast<const F*>(data))(begin, end);
+                    },
+                    const_cast<F*>(&f)});
   }
 };
 

@@ -27,7 +27,7 @@ void put_deepest_first(collide::Manifold& m) {
 std::uint32_t claim_part(const ContactStore& contacts, const Colliders& colliders,
                          std::vector<std::uint32_t>& old_parts, const collide::SubManifold& found) {
   std::uint32_t* best = nullptr;
-  double most = kSameNormal;
+  double max_value = kSameNormal;
   for (std::uint32_t& p : old_parts) {
     if (p == kNone) continue;
     const Contact& part = contacts[p];
@@ -36,17 +36,17 @@ std::uint32_t claim_part(const ContactStore& contacts, const Colliders& collider
     };
     const bool same_a = part.sub_a == found.sub_a, same_b = part.sub_b == found.sub_b;
     if (!(same_a || on_surface(part.a)) || !(same_b || on_surface(part.b))) continue;
-    const int lane = solve::ContactGraph::lane(part.place);
-    const Vec3 normal = part.place.points == 1
-                            ? get(contacts.graph.block<1>(part.place).normal, lane)
-                            : get(contacts.graph.block<4>(part.place).normal, lane);
+    const int lane = solve::ContactGraph::lane(part.slot);
+    const Vec3 normal = part.slot.points == 1
+                            ? get(contacts.graph.block<1>(part.slot).normal, lane)
+                            : get(contacts.graph.block<4>(part.slot).normal, lane);
     double alike = dot(normal, found.manifold.normal) + (same_a && same_b ? 1.0 : 0.0);
     for (int i = 0; i < found.manifold.count; ++i) {
       const std::uint32_t* end = part.feature + part.count;
       if (std::find(part.feature, end, found.manifold.points[i].feature) != end) alike += 0.4;
     }
-    if (alike <= most) continue;
-    most = alike;
+    if (alike <= max_value) continue;
+    max_value = alike;
     best = &p;
   }
   if (!best) return kNone;
@@ -57,7 +57,7 @@ std::uint32_t claim_part(const ContactStore& contacts, const Colliders& collider
 
 }  // namespace
 
-void World::Impl::find_parts(const Looked& look) {
+void World::Impl::find_parts(const NarrowPhaseResult& look) {
   const std::uint32_t index = look.contact;
   const Collider &a = colliders[contact_store[index].a], &b = colliders[contact_store[index].b];
   const std::uint32_t first = contact_store[index].first_part;
@@ -110,8 +110,8 @@ void World::Impl::find_parts(const Looked& look) {
       part.key = contact_store[index].key;
       part.a = contact_store[index].a;
       part.b = contact_store[index].b;
-      part.whole = index;
-      part.stale = false;
+      part.aggregate = index;
+      part.dirty = false;
       part.sub_a = found.sub_a;
       part.sub_b = found.sub_b;
       p = contact_store.add(part, body_set);
@@ -124,12 +124,12 @@ void World::Impl::find_parts(const Looked& look) {
     (last == kNone ? contact_store[index].first_part : contact_store[last].next_part) = p;
     last = p;
     put_deepest_first(found.manifold);
-    put_in_lane(p, found.manifold);
+    assign_slot(p, found.manifold);
   }
   if (last == kNone) contact_store[index].first_part = kNone;
-  const Contact& whole = contact_store[index];
-  if (whole.touching && !contact_store.touches_in_parts(whole))
-    events.news_of_parts.push_back({index, kNone, 0.0, 0.0, {}, {}});
+  const Contact& aggregate = contact_store[index];
+  if (aggregate.touching && !contact_store.touches_in_parts(aggregate))
+    events.part_events.push_back({index, kNone, 0.0, 0.0, {}, {}});
 }
 
 }  // namespace vp

@@ -12,15 +12,15 @@
 
 #include "collide/ray.h"
 #include "world/impl.h"
-#include "world/refuse.h"
+#include "world/invalid.h"
 #include "world/validate.h"
 
 namespace vp {
 namespace {
 
 // As near as this a cast shape touches [m, and share of the sizes].
-constexpr double kTouch = 1e-9, kTouchShare = 1e-12;
-constexpr double kFullTurn = 6.2832;
+constexpr double kTouch = 1e-9, kTouchFraction = 1e-12;
+constexpr double kFullRevolution = 6.2832;
 
 std::optional<Error> invalid(const char* call, const char* why) {
   return Error{Errc::invalid_argument, std::string(call) + ": " + why};
@@ -54,7 +54,7 @@ std::optional<Error> problem_with_cast(const char* call, const Shape& shape, con
   if (auto problem = problem_with_query(call, shape, T)) return problem;
   if (!in_range(motion.translation))
     return invalid(call, "the translation must be finite and within 1e9 m");
-  if (!in_range(motion.turn) || norm(motion.turn) > kFullTurn) {
+  if (!in_range(motion.rotation) || norm(motion.rotation) > kFullRevolution) {
     return invalid(call,
                    "the turn must be finite and no more than one; cast again from where the first "
                    "one ends");
@@ -67,7 +67,7 @@ SE3 proper(const SE3& T) {
 }
 
 collide::MovingShape moving(const collide::Geometry& shape, const SE3& T, const CastMotion& m) {
-  return {&shape, T, {T.position(), m.translation, m.turn}};
+  return {&shape, T, {T.position(), m.translation, m.rotation}};
 }
 
 // Of all that a shape passes within the time 1.
@@ -93,19 +93,19 @@ struct Query {
 
   // meet(collider) for what the sweep may meet; it returns the fraction up to which to go on.
   template <class F>
-  void for_swept(const collide::Sweep& sweep, const F& meet) {
+  void for_swept(const collide::Sweep& sweep, const F& collide) {
     double limit = 1.0;
-    const collide::LaneSweep lanes(sweep);
+    const collide::BoxSweep lanes(sweep);
     for (const std::uint32_t i : scratch.strays) {
       float entry = 0.0f;
       const Collider& c = colliders[i];
-      if (lanes.meets(rounded_outwards(c.bounds), limit, entry) && is_asked_for(c)) {
-        limit = meet(c);
+      if (lanes.overlaps(rounded_outward(c.bounds), limit, entry) && is_asked_for(c)) {
+        limit = collide(c);
       }
     }
     finder.cast(sweep, limit, scratch.cast, [&](std::uint32_t proxy, float) {
       const Collider& c = colliders[finder.user(proxy)];
-      if (!c.stray && is_asked_for(c)) limit = meet(c);
+      if (!c.stray && is_asked_for(c)) limit = collide(c);
       return limit;
     });
   }
@@ -113,15 +113,15 @@ struct Query {
   // hit(RayHit) for each collider; it returns the distance up to which to go on.
   template <class F>
   void for_ray_hits(const Vec3& origin, const Vec3& unit, double limit, const F& hit) {
-    const double whole = limit;
+    const double full_length = limit;
     for_swept({{origin, origin}, limit * unit}, [&](const Collider& c) {
       const collide::Ray ray{inverse_times(c.T, origin), c.T.unrotate(unit)};
       collide::RayEntry entry{};
-      if (cast_ray(c.geometry, ray, whole, parts.cast, entry)) {
+      if (cast_ray(c.geometry, ray, full_length, parts.cast, entry)) {
         limit = hit(RayHit{hit_of(c, entry.part), entry.distance, origin + entry.distance * unit,
                            c.T.rotate(entry.normal)});
       }
-      return whole > 0.0 ? limit / whole : 1.0;
+      return full_length > 0.0 ? limit / full_length : 1.0;
     });
   }
 
@@ -131,9 +131,11 @@ struct Query {
     double limit = 1.0;
     for_swept(sweep_of(shape), [&](const Collider& c) {
       const double sizes =
-          core_reach(*shape.shape) + (is_convex_body(c.geometry) ? core_reach(c.geometry) : 0.0);
-      const collide::ImpactQuery query{
-          shape, {&c.geometry, c.T, {c.T.position(), {}, {}}}, 1.0, kTouch + kTouchShare * sizes};
+          core_extent(*shape.shape) + (is_convex_body(c.geometry) ? core_extent(c.geometry) : 0.0);
+      const collide::ImpactQuery query{shape,
+                                       {&c.geometry, c.T, {c.T.position(), {}, {}}},
+                                       1.0,
+                                       kTouch + kTouchFraction * sizes};
       collide::PartsImpact impact{};
       if (first_impact(query, 0.0, parts, impact)) {
         limit = hit(ShapeHit{hit_of(c, impact.part_b), impact.time, impact.points.distance,
@@ -158,7 +160,7 @@ struct Query {
     };
     const collide::Bounds box = bounds_of(shape, T);
     for (const std::uint32_t i : scratch.strays) {
-      const collide::FloatBounds around = rounded_outwards(colliders[i].bounds);
+      const collide::FloatBounds around = rounded_outward(colliders[i].bounds);
       if (static_cast<double>(distance_between(box, around, {1.0, 1.0, 1.0})) <= limit) {
         consider(colliders[i]);
       }
@@ -322,16 +324,16 @@ Expected<std::optional<NearestHit>> World::nearest(const Shape& shape, const SE3
     return tl::make_unexpected(*problem);
   }
   if (!in_range(max_distance) || max_distance < 0.0) {
-    return refuse("nearest: max_distance must be zero or more and at most 1e9 m");
+    return invalid("nearest: max_distance must be zero or more and at most 1e9 m");
   }
   return impl_->query(filter).nearest(collide::make_geometry(shape), proper(T), max_distance);
 }
 
 Expected<std::optional<NearestHit>> World::nearest(const Vec3& point, double max_distance,
                                                    const QueryFilter& filter) const {
-  if (!in_range(point)) return refuse("nearest: the point must be finite and within 1e9 m");
+  if (!in_range(point)) return invalid("nearest: the point must be finite and within 1e9 m");
   if (!in_range(max_distance) || max_distance < 0.0) {
-    return refuse("nearest: max_distance must be zero or more and at most 1e9 m");
+    return invalid("nearest: max_distance must be zero or more and at most 1e9 m");
   }
   return impl_->query(filter).nearest({}, SE3(point), max_distance);  // a sphere of no radius
 }

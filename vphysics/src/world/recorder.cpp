@@ -1,10 +1,10 @@
 // Noting the calls that change a world.
 #include "vphysics/recording.h"
 #include "world/impl.h"
+#include "world/invalid.h"
 #include "world/recording_io.h"
 #include "world/recording_limits.h"
-#include "world/refuse.h"
-#include "world/structure.h"
+#include "world/topology_hash.h"
 #include "world/validate.h"
 
 namespace vp {
@@ -24,9 +24,9 @@ std::uint32_t recording::check_of(std::span<const std::byte> bytes) {
 Expected<void> World::record(std::shared_ptr<Recorder> recorder) {
   if (recorder) {
     std::uint64_t untouched = 0;
-    Structure(untouched).add(impl_->given_desc);
-    const auto begun =
-        recorder->begin(*this, impl_->given_desc, impl_->structure, impl_->structure == untouched);
+    TopologyHash(untouched).add(impl_->given_desc);
+    const auto begun = recorder->begin(*this, impl_->given_desc, impl_->topology_hash,
+                                       impl_->topology_hash == untouched);
     if (!begun) return begun;
   }
   if (impl_->recorder) impl_->recorder->end();
@@ -35,27 +35,27 @@ Expected<void> World::record(std::shared_ptr<Recorder> recorder) {
 }
 
 void World::Impl::log(const RecordedCall& call) {
-  recorder->add(call, structure);
+  recorder->add(call, topology_hash);
 }
 
-Expected<void> Recorder::begin(const World& world, const WorldDesc& desc, std::uint64_t structure,
-                               bool empty) {
-  if (begun_) return refuse("record: a recorder records once; make a new one");
-  if (auto problem = problem_with(desc)) return refuse("record: " + *problem);
+Expected<void> Recorder::begin(const World& world, const WorldDesc& desc,
+                               std::uint64_t topology_hash, bool empty) {
+  if (begun_) return invalid("record: a recorder records once; make a new one");
+  if (auto problem = problem_with(desc)) return invalid("record: " + *problem);
   begun_ = true;
   recording::Writer out(bytes_, parts_);
   std::vector<std::byte> snapshot;
   if (!empty) world.snapshot(snapshot);
-  out(recording::kMagic, recording::kFormat, desc, structure, !empty, snapshot);
+  out(recording::kMagic, recording::kFormat, desc, topology_hash, !empty, snapshot);
   const std::uint32_t check = recording::check_of(bytes_);
   out.append(&check, sizeof check);
   return {};
 }
 
-void Recorder::add(const RecordedCall& call, std::uint64_t structure) {
+void Recorder::add(const RecordedCall& call, std::uint64_t topology_hash) {
   recording::Writer out(frame_, parts_);
   out(call.what);
-  if (recording::builds(call)) out(structure);
+  if (recording::builds(call)) out(topology_hash);
   if (frame_.size() > kLongFrame) write_frame();
 }
 

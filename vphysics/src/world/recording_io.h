@@ -53,7 +53,7 @@ constexpr AxisMotion last_of() {
 }
 template <>
 constexpr JointAxis last_of() {
-  return JointAxis::turn_z;
+  return JointAxis::rotation_z;
 }
 
 template <class T>
@@ -339,7 +339,7 @@ struct Fields {
   static void of(Io& io, Field<Io, Hinge> j) { io(j.lower, j.upper, j.drive); }
   static void of(Io& io, Field<Io, Slider> j) { io(j.lower, j.upper, j.drive); }
   static void of(Io&, Field<Io, Weld>) {}
-  static void of(Io& io, Field<Io, Distance> j) { io(j.least, j.most); }
+  static void of(Io& io, Field<Io, Distance> j) { io(j.min, j.max); }
   static void of(Io& io, Field<Io, Spring> j) { io(j.length, j.stiffness, j.damping); }
   static void of(Io& io, Field<Io, ConeTwist> j) {
     io(j.swing_x, j.swing_y, j.lower, j.upper, j.drive);

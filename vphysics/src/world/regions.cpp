@@ -12,10 +12,10 @@ constexpr double kDivisionTime = 0.25;  // [s]
 
 // How many for so many bodies, if there were `now`: a power of two, or 0 instead of one. Fewer only
 // if they would not be nearly full.
-std::size_t regions_for(std::size_t bodies, std::size_t most, std::size_t now) {
+std::size_t regions_for(std::size_t bodies, std::size_t max_value, std::size_t now) {
   std::size_t count = 1;
-  while (count < kMostRegions && bodies > count * most) count *= 2;
-  if (now == 2 * count && 4 * bodies > 3 * count * most) return now;
+  while (count < kMaxRegions && bodies > count * max_value) count *= 2;
+  if (now == 2 * count && 4 * bodies > 3 * count * max_value) return now;
   return count > 1 ? count : 0;
 }
 
@@ -26,9 +26,9 @@ std::int64_t Regions::spread(std::span<const Key> keys, int axis) {
   std::int64_t sum = 0;
   for (const Key& key : keys) sum += key.at[axis];
   const std::int64_t mean = sum / static_cast<std::int64_t>(keys.size());
-  std::int64_t apart = 0;
-  for (const Key& key : keys) apart += std::abs(key.at[axis] - mean);
-  return apart;
+  std::int64_t separation = 0;
+  for (const Key& key : keys) separation += std::abs(key.at[axis] - mean);
+  return separation;
 }
 
 // Another axis than before if along it they lie apart by a quarter more.
@@ -40,12 +40,12 @@ std::uint8_t Regions::axis_of(std::span<const Key> keys, std::uint8_t before) {
   return 4 * (along[best] / 5) > along[before] ? best : before;
 }
 
-bool Regions::divide(Bodies& bodies, std::span<const std::uint32_t> movers, std::size_t most,
-                     double dt) {
-  const std::size_t wanted = regions_for(movers.size(), most, state.count);
-  state.age = wanted == 0 ? 0.0 : state.age + dt;
-  if (wanted == state.count && (wanted == 0 || state.age < kDivisionTime)) return false;
-  const auto before = std::exchange(state.count, static_cast<std::uint16_t>(wanted));
+bool Regions::divide(Bodies& bodies, std::span<const std::uint32_t> awake_bodies,
+                     std::size_t max_value, double dt) {
+  const std::size_t target = regions_for(awake_bodies.size(), max_value, state.count);
+  state.age = target == 0 ? 0.0 : state.age + dt;
+  if (target == state.count && (target == 0 || state.age < kDivisionTime)) return false;
+  const auto before = std::exchange(state.count, static_cast<std::uint16_t>(target));
   state.age = 0.0;
   changed_.clear();
   changed_.reserve(2 * bodies.size());
@@ -56,7 +56,7 @@ bool Regions::divide(Bodies& bodies, std::span<const std::uint32_t> movers, std:
       if (bodies[i].region > state.count) set(bodies, i, solve::kBetween);
     }
   }
-  if (state.count > 0) assign(bodies, movers);
+  if (state.count > 0) assign(bodies, awake_bodies);
   // Halves are sets: in which order they came is the library's affair.
   std::sort(changed_.begin(), changed_.end());
   return true;
@@ -68,9 +68,9 @@ void Regions::set(Bodies& bodies, std::uint32_t body, std::uint16_t region) {
   changed_.push_back(body);
 }
 
-void Regions::assign(Bodies& bodies, std::span<const std::uint32_t> movers) {
+void Regions::assign(Bodies& bodies, std::span<const std::uint32_t> awake_bodies) {
   collide::Bounds all;
-  for (const std::uint32_t i : movers) {
+  for (const std::uint32_t i : awake_bodies) {
     const Vec3& x = bodies[i].T.position();
     all = merged(all, {x, x});
   }
@@ -78,7 +78,7 @@ void Regions::assign(Bodies& bodies, std::span<const std::uint32_t> movers) {
   // In whole steps of a grid: their sums, and so all decisions, are the same in any order.
   const double per_metre = (1 << 30) / std::max({size.x, size.y, size.z, 1e-9});
   keys_.clear();
-  for (const std::uint32_t i : movers) {
+  for (const std::uint32_t i : awake_bodies) {
     const Vec3 at = per_metre * (bodies[i].T.position() - all.lower);
     keys_.push_back({{static_cast<std::int32_t>(at.x), static_cast<std::int32_t>(at.y),
                       static_cast<std::int32_t>(at.z)},
@@ -96,28 +96,28 @@ void Regions::halve(Bodies& bodies, std::span<Key> keys, std::size_t node) {
     return;
   }
   const std::uint8_t axis = state.axes[node] = axis_of(keys, state.axes[node]);
-  const std::size_t middle = keys.size() / 2;
-  std::nth_element(keys.begin(), keys.begin() + static_cast<std::ptrdiff_t>(middle), keys.end(),
+  const std::size_t half = keys.size() / 2;
+  std::nth_element(keys.begin(), keys.begin() + static_cast<std::ptrdiff_t>(half), keys.end(),
                    [axis](const Key& a, const Key& b) {
                      return a.at[axis] != b.at[axis] ? a.at[axis] < b.at[axis] : a.body < b.body;
                    });
-  halve(bodies, keys.first(middle), 2 * node);
-  halve(bodies, keys.subspan(middle), 2 * node + 1);
+  halve(bodies, keys.first(half), 2 * node);
+  halve(bodies, keys.subspan(half), 2 * node + 1);
 }
 
 // Ascending within each region.
-void Regions::sort(const Bodies& bodies, std::span<const std::uint32_t> movers) {
+void Regions::sort(const Bodies& bodies, std::span<const std::uint32_t> awake_bodies) {
   first_.assign(std::size_t{state.count} + 2, 0);
   if (state.count == 0) {
-    first_[1] = static_cast<std::uint32_t>(movers.size());
-    movers_.assign(movers.begin(), movers.end());
+    first_[1] = static_cast<std::uint32_t>(awake_bodies.size());
+    awake_.assign(awake_bodies.begin(), awake_bodies.end());
     return;
   }
-  for (const std::uint32_t i : movers) ++first_[bodies[i].region + 1u];
+  for (const std::uint32_t i : awake_bodies) ++first_[bodies[i].region + 1u];
   for (std::size_t r = 1; r < first_.size(); ++r) first_[r] += first_[r - 1];
-  movers_.resize(movers.size());
+  awake_.resize(awake_bodies.size());
   ends_.assign(first_.begin(), first_.end() - 1);
-  for (const std::uint32_t i : movers) movers_[ends_[bodies[i].region]++] = i;
+  for (const std::uint32_t i : awake_bodies) awake_[ends_[bodies[i].region]++] = i;
 }
 
 }  // namespace vp

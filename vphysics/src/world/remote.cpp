@@ -16,7 +16,7 @@ namespace vp {
 namespace {
 
 // With more bodies that move than this each articulation's test would cost more than it saves.
-constexpr std::size_t kFewMovers = 8;
+constexpr std::size_t kFewMovingBodies = 8;
 // How far a remote articulation may slide before it is looked at anew [m]; and how far a body must
 // be from that for it to become remote, so that none changes to and fro.
 constexpr double kRemoteSlide = 0.03, kClear = 0.01;
@@ -24,8 +24,8 @@ constexpr double kRemoteSlide = 0.03, kClear = 0.01;
 }  // namespace
 
 const std::vector<std::uint32_t>& World::Impl::impact_bodies() {
-  if (!impacts.bodies_are_stale) return impacts.body_list;
-  impacts.bodies_are_stale = false;
+  if (!impacts.bodies_are_dirty) return impacts.body_list;
+  impacts.bodies_are_dirty = false;
   impacts.body_list.clear();
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
     const Body& body = bodies[i];
@@ -43,17 +43,17 @@ bool World::Impl::can_be_remote(const Articulation& art) const {
     if (bodies[b].first_collider == kNone) continue;
     for (const Body& other : bodies) {
       const bool tested = !other.is_link && other.motion != Motion::fixed;  // as movers
-      if (other.alive && !tested && may_meet(bodies[b], other)) return false;
+      if (other.alive && !tested && may_overlap(bodies[b], other)) return false;
     }
   }
   return true;
 }
 
 void World::Impl::list_remote_articulations() {
-  const bool few =
-      !lists.some_sub_stepped && desc.sleep_after <= 0.0 && lists.movers.size() <= kFewMovers;
+  const bool few = !lists.some_sub_stepped && desc.sleep_after <= 0.0 &&
+                   lists.awake_bodies.size() <= kFewMovingBodies;
   impacts.remote_bodies.assign(bodies.size(), 0);
-  impacts.bodies_are_stale = impacts.scratch_is_stale = true;
+  impacts.bodies_are_dirty = impacts.scratch_is_dirty = true;
   for (Articulation& art : articulations) {
     if (!art.alive) continue;
     look_at(art);
@@ -61,18 +61,18 @@ void World::Impl::list_remote_articulations() {
   }
 }
 
-bool World::Impl::is_near_mover(const collide::Bounds& box) const {
-  return std::any_of(lists.movers.begin(), lists.movers.end(),
+bool World::Impl::is_near_awake_body(const collide::Bounds& box) const {
+  return std::any_of(lists.awake_bodies.begin(), lists.awake_bodies.end(),
                      [&](std::uint32_t m) { return overlap(box, impacts.bounds[m]); });
 }
 
 // After the bounds of those that are not remote: whom a mover may meet within h, or who has slid
 // far, is looked at from now on.
-void World::Impl::meet_remote(double h) {
+void World::Impl::collide_remote(double h) {
   for (Articulation& art : articulations) {
     if (!art.remote) continue;
     if (art.slides_since_remote(h) + desc.contact_slop < kRemoteSlide &&
-        !is_near_mover(art.remote_box))
+        !is_near_awake_body(art.remote_box))
       continue;
     follow(art);
     for (const std::uint32_t b : art.bodies) {
@@ -95,13 +95,13 @@ void World::Impl::make_remote() {
     }
     const Vec3 along = kRemoteSlide * Vec3{std::fabs(line.x), std::fabs(line.y), std::fabs(line.z)};
     box = collide::grown({box.lower - along, box.upper + along}, desc.contact_slop);
-    if (is_near_mover(collide::grown(box, kClear))) continue;
+    if (is_near_awake_body(collide::grown(box, kClear))) continue;
     art.set_remote(box);
     for (const std::uint32_t b : art.bodies) {
       impacts.remote_bodies[b] = 1;
       impacts.bounds[b] = {};
     }
-    impacts.bodies_are_stale = true;
+    impacts.bodies_are_dirty = true;
   }
 }
 

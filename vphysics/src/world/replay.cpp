@@ -5,22 +5,22 @@
 
 #include "vphysics/recording.h"
 #include "world/impl.h"
+#include "world/invalid.h"
 #include "world/recording_io.h"
 #include "world/recording_limits.h"
-#include "world/refuse.h"
 #include "world/validate.h"
 
 namespace vp {
 namespace {
 
 tl::unexpected<Error> bad(std::string message) {
-  return refuse(Errc::bad_data, std::move(message));
+  return invalid(Errc::bad_data, std::move(message));
 }
 
-std::uint32_t word_at(std::span<const std::byte> bytes) {
-  std::uint32_t word = 0;
-  std::memcpy(&word, bytes.data(), sizeof word);
-  return word;
+std::uint32_t u32_at(std::span<const std::byte> bytes) {
+  std::uint32_t value = 0;
+  std::memcpy(&value, bytes.data(), sizeof value);
+  return value;
 }
 
 Expected<ArticulationDesc> articulation_of(const std::vector<LinkSpec>& links, bool links_collide) {
@@ -125,7 +125,7 @@ class Replay::Frame {
  public:
   struct Built {
     RecordedCall call;
-    std::uint64_t structure = 0;
+    std::uint64_t topology_hash = 0;
   };
   std::vector<Built> calls;
   bool steps = false, hashed = false, ends = false;
@@ -141,7 +141,7 @@ class Replay::Frame {
       if (code < recording::kStep) {
         Built& item = calls.emplace_back();
         in(item.call.what);
-        if (in.ok() && recording::builds(item.call)) in(item.structure);
+        if (in.ok() && recording::builds(item.call)) in(item.topology_hash);
         continue;
       }
       in.byte();
@@ -168,7 +168,7 @@ Expected<Replay> Replay::open(std::vector<std::byte> bytes, RecordedParts parts,
 
 Expected<Replay> Replay::begin(std::vector<std::byte> bytes, RecordedParts parts, World* built) {
   recording::Reader in(bytes, parts);
-  std::uint64_t magic = 0, format = 0, structure = 0;
+  std::uint64_t magic = 0, format = 0, topology_hash = 0;
   WorldDesc desc;
   bool later = false;
   std::vector<std::byte> snapshot;
@@ -179,21 +179,21 @@ Expected<Replay> Replay::begin(std::vector<std::byte> bytes, RecordedParts parts
   if (format != recording::kFormat) {
     return bad("replay: a recording of another version; replay it with the engine that wrote it");
   }
-  in(desc, structure, later, snapshot);
+  in(desc, topology_hash, later, snapshot);
   const std::size_t header = bytes.size() - in.left();
   if (!in.ok() || in.left() < sizeof(std::uint32_t) ||
-      word_at(std::span(bytes).subspan(header)) !=
+      u32_at(std::span(bytes).subspan(header)) !=
           recording::check_of(std::span(bytes).first(header)) ||
       problem_with(desc)) {
     return bad("replay: the recording's beginning is damaged or cut short");
   }
   if (later && !built) {
-    return refuse(
+    return invalid(
         "replay: the recording began with a world that had been built; hand in one made by the "
         "same calls");
   }
   if (!later && built) {
-    return refuse("replay: the recording makes its world itself; hand in none");
+    return invalid("replay: the recording makes its world itself; hand in none");
   }
   if (later) {
     if (const auto restored = built->restore(snapshot); !restored) {
@@ -209,16 +209,17 @@ Expected<ReplayState> Replay::step() {
   if (error_) return tl::make_unexpected(*error_);
   const std::uint64_t before = steps_;
   while (steps_ == before && !ended_) {
-    constexpr std::size_t kWord = sizeof(std::uint32_t);
+    constexpr std::size_t kU32Size = sizeof(std::uint32_t);
     const auto left = std::span<const std::byte>(bytes_).subspan(at_);
-    if (left.size() < 2 * kWord) return ReplayState::cut_short;
-    const std::uint32_t length = word_at(left);
-    if (length > left.size() - 2 * kWord) return ReplayState::cut_short;
-    if (word_at(left.subspan(kWord + length)) != recording::check_of(left.first(kWord + length))) {
+    if (left.size() < 2 * kU32Size) return ReplayState::cut_short;
+    const std::uint32_t length = u32_at(left);
+    if (length > left.size() - 2 * kU32Size) return ReplayState::cut_short;
+    if (u32_at(left.subspan(kU32Size + length)) !=
+        recording::check_of(left.first(kU32Size + length))) {
       return stop({Errc::bad_data, "the recording's bytes are damaged"});
     }
-    at_ += 2 * kWord + length;
-    if (const auto played = play(left.subspan(kWord, length)); !played) {
+    at_ += 2 * kU32Size + length;
+    if (const auto played = play(left.subspan(kU32Size, length)); !played) {
       return stop(played.error());
     }
   }
@@ -238,18 +239,18 @@ Expected<void> Replay::play(std::span<const std::byte> bytes) {
     return bad("a value is out of range, or a part is missing; hand in the recorder's parts");
   }
   for (const Frame::Built& item : frame.calls) {
-    if (const auto made = make(item.call, item.structure); !made) return made;
+    if (const auto made = make(item.call, item.topology_hash); !made) return made;
   }
   if (frame.ends && frame.last_step != steps_) return bad("steps are missing from the recording");
   ended_ = frame.ends;
   return frame.steps ? make_step(frame.dt, frame.hashed ? &frame.hash : nullptr) : Expected<void>{};
 }
 
-Expected<void> Replay::make(const RecordedCall& call, std::uint64_t structure) {
+Expected<void> Replay::make(const RecordedCall& call, std::uint64_t topology_hash) {
   if (const auto made = std::visit(Doer(world_), call.what); !made) {
     return bad("a recorded call is refused: " + made.error().message);
   }
-  if (recording::builds(call) && structure != world_.impl_->structure) {
+  if (recording::builds(call) && topology_hash != world_.impl_->topology_hash) {
     return bad("what is built is not what was recorded; hand in the same parts in the same order");
   }
   return {};

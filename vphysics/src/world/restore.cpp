@@ -30,7 +30,7 @@ struct DofState {
 };
 // What of a joint changes.
 struct JointState {
-  double turned[2] = {};
+  double rotated[2] = {};
   SE3 start[2];
   JointDrive drives[6];
   double impulse[6] = {}, stop[6] = {};
@@ -64,8 +64,8 @@ void read(Reader& in, const JointDof& dof, DofState& state) {
 }
 
 void read(Reader& in, const Colliders& colliders, PairRecord& r) {
-  r.key = in.word();
-  const std::uint64_t both = in.word(), flags = in.word();
+  r.key = in.u64();
+  const std::uint64_t both = in.u64(), flags = in.u64();
   r.a = static_cast<std::uint32_t>(both >> 32);
   r.b = static_cast<std::uint32_t>(both);
   r.count = static_cast<std::uint32_t>(flags >> 32);
@@ -80,7 +80,7 @@ void read(Reader& in, const Colliders& colliders, PairRecord& r) {
   in.check(r.part == 0 || has_parts(colliders[r.a].geometry, colliders[r.b].geometry));
   r.rolling = in.vector();
   for (PairPoint& p : r.points) {
-    const std::uint64_t feature = in.word();
+    const std::uint64_t feature = in.u64();
     in.check(feature <= 0xffffffffu);
     p.feature = static_cast<std::uint32_t>(feature);
     p.normal_impulse = in.bounded();
@@ -91,7 +91,7 @@ void read(Reader& in, const Colliders& colliders, PairRecord& r) {
 }
 
 ColliderId read_id(Reader& in, const Colliders& colliders) {
-  const std::uint64_t w = in.word();
+  const std::uint64_t w = in.u64();
   const ColliderId id{static_cast<std::uint32_t>(w >> 32), static_cast<std::uint32_t>(w)};
   in.check(id.index >= 1 && id.index <= colliders.size() && id.generation >= 1 &&
            id.generation <= colliders[id.index - 1].generation);
@@ -101,24 +101,24 @@ ColliderId read_id(Reader& in, const Colliders& colliders) {
 void read(Reader& in, const Colliders& colliders, DestroyedPair& pair) {
   pair.a = read_id(in, colliders);
   pair.b = read_id(in, colliders);
-  const std::uint64_t sensor = in.word();
+  const std::uint64_t sensor = in.u64();
   in.check(sensor <= 1 && pair.a != pair.b);
   pair.sensor = sensor != 0;
 }
 
 JointState read(Reader& in, const BodyJoint& joint) {
   JointState state;
-  for (double& x : state.turned) x = in.bounded();
-  if (joint.law.form == JointLaw::Form::gear) {
+  for (double& x : state.rotated) x = in.bounded();
+  if (joint.spec.form == JointSpec::Form::gear) {
     for (SE3& T : state.start) T = read_pose(in);
   }
   for (int i = 0; i < 6; ++i) {
-    if (joint.law.form == JointLaw::Form::axes) {
+    if (joint.spec.form == JointSpec::Form::axes) {
       JointDrive& d = state.drives[i];
       for (double* x : {&d.position, &d.velocity, &d.stiffness, &d.damping, &d.max_force})
         *x = in.number();
-      const bool held = joint.law.axes[i].motion == AxisMotion::locked;
-      in.check(!problem_with(d).has_value() && !(held && d.max_force > 0.0));
+      const bool locked = joint.spec.axes[i].motion == AxisMotion::locked;
+      in.check(!problem_with(d).has_value() && !(locked && d.max_force > 0.0));
     }
     state.impulse[i] = in.number();
     state.stop[i] = in.number();
@@ -126,14 +126,14 @@ JointState read(Reader& in, const BodyJoint& joint) {
   return state;
 }
 void adopt(BodyJoint& joint, const JointState& state) {
-  std::copy_n(state.turned, 2, joint.turned);
-  joint.count = joint.held = 0;
+  std::copy_n(state.rotated, 2, joint.rotated);
+  joint.count = joint.locked = 0;
   joint.laid_out_for = 0.0;
   joint.force = joint.torque = {};
-  const bool axes = joint.law.form == JointLaw::Form::axes;
-  if (joint.law.form == JointLaw::Form::gear) std::copy_n(state.start, 2, joint.start);
+  const bool axes = joint.spec.form == JointSpec::Form::axes;
+  if (joint.spec.form == JointSpec::Form::gear) std::copy_n(state.start, 2, joint.start);
   for (int i = 0; i < 6; ++i) {
-    if (axes) joint.law.axes[i].drive = state.drives[i];
+    if (axes) joint.spec.axes[i].drive = state.drives[i];
     BodyJointRow& row = joint.rows[joint.count++];
     row = {};
     row.slot = static_cast<std::uint8_t>(i);
@@ -158,7 +158,7 @@ tl::unexpected<Error> bad(const char* message) {
 
 std::uint64_t digest_of(std::span<const std::byte> bytes) {
   Reader in(bytes);
-  while (!in.at_end()) (void)in.word();
+  while (!in.at_end()) (void)in.u64();
   return in.digest();
 }
 
@@ -192,11 +192,11 @@ struct World::Impl::Incoming {
 };
 
 const char* World::Impl::Incoming::read(Reader& in) {
-  if (in.word() != kSnapshotMagic || in.word() != kSnapshotFormat) {
+  if (in.u64() != kSnapshotMagic || in.u64() != kSnapshotFormat) {
     return "restore: not a snapshot of this version; take a new one";
   }
-  if (in.word() != world.structure || in.word() != world.bodies.size() ||
-      in.word() != world.articulations.size()) {
+  if (in.u64() != world.topology_hash || in.u64() != world.bodies.size() ||
+      in.u64() != world.articulations.size()) {
     return "restore: a snapshot of another world; build this one by the same sequence of calls";
   }
   constexpr std::size_t kRecord = 38, kPair = 3;  // words
@@ -204,8 +204,8 @@ const char* World::Impl::Incoming::read(Reader& in) {
   if (!in.ok()) return "restore: more contacts announced than bytes follow";
 
   sub_steps.length = in.bounded();
-  sub_steps.push_length = in.bounded();
-  in.check(sub_steps.length >= 0.0 && sub_steps.push_length >= 0.0);
+  sub_steps.last_step_length = in.bounded();
+  in.check(sub_steps.length >= 0.0 && sub_steps.last_step_length >= 0.0);
   sub_steps.position_error = in.index(2) != 0;
   impact_step = in.bounded();
   in.check(impact_step >= 0.0);
@@ -221,8 +221,8 @@ const char* World::Impl::Incoming::read(Reader& in) {
   }
   if (in.ok()) contacts.read(in);
   read_loads(in);
-  const bool whole = in.ok() && in.at_end();
-  return whole ? nullptr : "restore: a value is out of range; the bytes are damaged";
+  const bool complete = in.ok() && in.at_end();
+  return complete ? nullptr : "restore: a value is out of range; the bytes are damaged";
 }
 
 void World::Impl::Incoming::read_joints(Reader& in) {

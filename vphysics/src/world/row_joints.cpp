@@ -17,7 +17,7 @@ constexpr double kRowLoss = 0.005;
 constexpr double kUnbounded = 1e30;
 
 bool is_angle(const BodyJoint& joint, const BodyJointRow& row) {
-  return joint.law.form == JointLaw::Form::axes && row.slot >= solve::kSwingX;
+  return joint.spec.form == JointSpec::Form::axes && row.slot >= solve::kSwingX;
 }
 
 class RowsOfJoint {
@@ -37,7 +37,7 @@ class RowsOfJoint {
 
   void add(int i) {
     const BodyJointRow& row = joint_.rows[i];
-    if (i < joint_.held) return add_held(i, -kUnbounded, kUnbounded);
+    if (i < joint_.locked) return add_locked(i, -kUnbounded, kUnbounded);
     if (row.bounded_hold) return add_bounded(i);
     add_drive(i);
     add_stops(i);
@@ -46,7 +46,8 @@ class RowsOfJoint {
  private:
   double residual(int i) const { return measure_.residual[i]; }
   double fastest(const BodyJointRow& row) const {
-    return is_angle(joint_, row) ? double{solve::kFastestTurn} : kFastestJoint * step_.speed_unit;
+    return is_angle(joint_, row) ? double{solve::kMaxAngularBias}
+                                 : kFastestJoint * step_.speed_unit;
   }
   bool in_instant() const { return step_.of != RowsOf::sub_step; }
 
@@ -71,7 +72,7 @@ class RowsOfJoint {
     pair.anchor = anchor_;
     const BodyJointRow& from = joint_.rows[i];
     if (step_.with_memory()) {
-      row.impulse = std::clamp(step_.share * (of_stop ? from.stop : from.impulse), lower, upper);
+      row.impulse = std::clamp(step_.fraction * (of_stop ? from.stop : from.impulse), lower, upper);
     }
     return {row, pair};
   }
@@ -79,18 +80,18 @@ class RowsOfJoint {
   // That an error goes: by velocities, or by moving the bodies.
   void take_out(const BodyJointRow& from, double error, solve::JointRow& row,
                 solve::JointPair& pair) const {
-    const double most = fastest(from);
+    const double max_speed = fastest(from);
     if (from.relaxes && in_instant()) {
-      const double reach = most * step_.h;
-      if (step_.with_memory()) pair.error = std::clamp(kCorrected * error, -reach, reach);
+      const double range = max_speed * step_.h;
+      if (step_.with_memory()) pair.error = std::clamp(kCorrected * error, -range, range);
       return;
     }
-    row.target = -std::clamp(from.rate * error, -most, most);
+    row.target = -std::clamp(from.rate * error, -max_speed, max_speed);
     pair.loss = from.relaxes ? kRowLoss : from.loss;
     pair.relaxes = from.relaxes;
   }
 
-  void add_held(int i, double lower, double upper) {
+  void add_locked(int i, double lower, double upper) {
     const BodyJointRow& from = joint_.rows[i];
     if (!from.relaxes && !step_.with_memory()) return;
     const auto [row, pair] = add_row(i, false, lower, upper);
@@ -104,21 +105,21 @@ class RowsOfJoint {
   void add_bounded(int i) {
     const BodyJointRow& from = joint_.rows[i];
     const double C = residual(i);
-    const bool open = (from.least >= 0.0 && C > 0.0) || (from.most <= 0.0 && C < 0.0);
+    const bool open = (from.min_impulse >= 0.0 && C > 0.0) || (from.max_impulse <= 0.0 && C < 0.0);
     // A bounded force has no time to act in an impact.
     const auto bound = [&](double x) {
       return step_.with_memory() || std::fabs(x) >= BodyJointRow::kNowhere ? x : 0.0;
     };
-    const double least = bound(from.least), most = bound(from.most);
-    if (!open) return add_held(i, least, most);
-    const auto [row, pair] = add_row(i, false, least, most);
+    const double lower = bound(from.min_impulse), upper = bound(from.max_impulse);
+    if (!open) return add_locked(i, lower, upper);
+    const auto [row, pair] = add_row(i, false, lower, upper);
     row.target = pair.relaxed_target = -C / step_.left;
   }
 
   void add_drive(int i) {
     const BodyJointRow& from = joint_.rows[i];
-    if (!(from.most > from.least) || !step_.with_memory()) return;
-    solve::JointPair& pair = add_row(i, false, from.least, from.most).second;
+    if (!(from.max_impulse > from.min_impulse) || !step_.with_memory()) return;
+    solve::JointPair& pair = add_row(i, false, from.min_impulse, from.max_impulse).second;
     pair.drives = true;
     pair.stiffness = from.stiffness;
     pair.damping = from.damping;
@@ -128,18 +129,18 @@ class RowsOfJoint {
 
   void add_stops(int i) {
     const BodyJointRow& from = joint_.rows[i];
-    const double near = reach_of_stop(step_.left, speeds_[i]);
-    if (residual(i) - from.lower < near) add_stop(i, residual(i) - from.lower, true);
-    if (from.upper - residual(i) < near) add_stop(i, from.upper - residual(i), false);
+    const double range = stop_range(step_.left, speeds_[i]);
+    if (residual(i) - from.lower < range) add_stop(i, residual(i) - from.lower, true);
+    if (from.upper - residual(i) < range) add_stop(i, from.upper - residual(i), false);
   }
-  void add_stop(int i, double gap, bool at_lower) {
+  void add_stop(int i, double distance, bool at_lower) {
     const BodyJointRow& from = joint_.rows[i];
     const double side = at_lower ? 1.0 : -1.0;
-    if (gap < 0.0 && !from.relaxes && !step_.with_memory()) return;
+    if (distance < 0.0 && !from.relaxes && !step_.with_memory()) return;
     const auto [row, pair] =
         add_row(i, true, at_lower ? 0.0 : -kUnbounded, at_lower ? kUnbounded : 0.0);
-    if (gap < 0.0) return take_out(from, side * gap, row, pair);
-    row.target = pair.relaxed_target = -side * gap / step_.left;
+    if (distance < 0.0) return take_out(from, side * distance, row, pair);
+    row.target = pair.relaxed_target = -side * distance / step_.left;
   }
 
   BodyJoint& joint_;
@@ -170,9 +171,9 @@ void add_rows(BodyJoint& joint, std::uint32_t index, const RowEnd& a, const RowE
   double speeds[solve::kJointRows] = {}, curves[solve::kJointRows] = {};
   evaluate(joint, a.now, b.now, measure);
   if (step.of == RowsOf::first_instant) {
-    const double turned[2] = {joint.turned[0], joint.turned[1]};
+    const double rotated[2] = {joint.rotated[0], joint.rotated[1]};
     evaluate(joint, a.next, b.next, next);
-    std::copy_n(turned, 2, joint.turned);
+    std::copy_n(rotated, 2, joint.rotated);
   }
   for (int i = 0; i < joint.count; ++i) {
     const Twelve& J = measure.jacobian[i];
@@ -181,7 +182,7 @@ void add_rows(BodyJoint& joint, std::uint32_t index, const RowEnd& a, const RowE
     if (step.of != RowsOf::first_instant) continue;
     curves[i] = (next.residual[i] - measure.residual[i]) / step.h - speeds[i];
   }
-  const bool user = joint.law.form == JointLaw::Form::user;
+  const bool user = joint.spec.form == JointSpec::Form::user;
   const Vec3 anchor = user ? Vec3{} : b.now.T * joint.T_b_joint.position() - b.now.centre;
   RowsOfJoint added(joint, index, step, anchor, measure, speeds, curves, rows, pairs);
   for (int i = 0; i < joint.count; ++i) added.add(i);
@@ -195,26 +196,26 @@ void take_back(std::span<const solve::JointRow> rows, std::span<const solve::Joi
     if (row.pair == solve::kNoPair) continue;
     const solve::JointPair& pair = pairs[row.pair];
     BodyJoint& joint = joints[pair.joint];
-    const double whole = row.impulse / step.share;
+    const double full_impulse = row.impulse / step.fraction;
     const Vec3 force = (row.impulse / dt) * pair.b.linear;
     const Vec3 torque = (row.impulse / dt) * (pair.b.angular - cross(pair.anchor, pair.b.linear));
-    if (!in_range(whole) || !in_range(force) || !in_range(torque)) continue;
+    if (!in_range(full_impulse) || !in_range(force) || !in_range(torque)) continue;
     joint.force += force;
     joint.torque += torque;
     if (!step.with_memory()) continue;
     BodyJointRow& to = joint.rows[pair.row];
-    (pair.of_stop ? to.stop : to.impulse) += whole;
+    (pair.of_stop ? to.stop : to.impulse) += full_impulse;
   }
 }
 
-bool is_far_open(const BodyJoint& joint, const BodyPlace& a, const BodyPlace& b, double size) {
-  if (joint.law.form != JointLaw::Form::axes && joint.law.form != JointLaw::Form::distance)
+bool is_far_open(const BodyJoint& joint, const BodyPose& a, const BodyPose& b, double size) {
+  if (joint.spec.form != JointSpec::Form::axes && joint.spec.form != JointSpec::Form::distance)
     return false;
-  for (int i = 0; i < joint.held; ++i) {
+  for (int i = 0; i < joint.locked; ++i) {
     const BodyJointRow& row = joint.rows[i];
     if (!row.relaxes) continue;
     const double error = std::fabs(coordinate(joint, a, b, row.slot).value_or(0.0) - row.position);
-    if (error > (is_angle(joint, row) ? kTurnedOff : kOpen * size)) return true;
+    if (error > (is_angle(joint, row) ? kRotationError : kOpen * size)) return true;
   }
   return false;
 }

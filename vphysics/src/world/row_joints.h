@@ -25,7 +25,7 @@ struct RowJointStep {
   RowsOf of;
   double h;           // that the rows' impulses are of [s]
   double left;        // to the end of the step [s]
-  double share;       // h as a share of the step
+  double fraction;    // h as a share of the step
   double speed_unit;  // what a speed of things of a metre counts
 
   // Rows start from what they were in the last step, and are remembered. Springs and drives take
@@ -36,9 +36,9 @@ struct RowJointStep {
 // A body at one end: where it is now, how its reference point moves, and where that would take it
 // by the end of the step.
 struct RowEnd {
-  BodyPlace now;
+  BodyPose now;
   Velocity velocity;
-  BodyPlace next;
+  BodyPose next;
 };
 
 // The rows of one joint at the end of those there are.
@@ -49,6 +49,6 @@ void add_rows(BodyJoint& joint, std::uint32_t index, const RowEnd& a, const RowE
 void take_back(std::span<const solve::JointRow> rows, std::span<const solve::JointPair> pairs,
                const RowJointStep& step, double dt, Joints& joints);
 // Whether what it holds hard is open by much (JointSteps::is_far_open).
-bool is_far_open(const BodyJoint& joint, const BodyPlace& a, const BodyPlace& b, double size);
+bool is_far_open(const BodyJoint& joint, const BodyPose& a, const BodyPose& b, double size);
 
 }  // namespace vp

@@ -13,7 +13,7 @@
 namespace vp {
 
 // A word for each block of contacts, for what a pass finds in it; and where each region's begin.
-struct BlockWords {
+struct BlockBits {
   std::vector<std::uint32_t> words;
   std::vector<std::size_t> first;
 };
@@ -22,9 +22,9 @@ struct ContactRuns {
   solve::ContactGraph& graph;
   solve::BodyRow* rows;
   const Workers& workers;
-  BlockWords& block_words;
+  BlockBits& block_bits;
 
-  std::uint32_t* words() const { return block_words.words.data(); }
+  std::uint32_t* words() const { return block_bits.words.data(); }
 
   // f(passes of the kind, run of lanes, its blocks), one colour after the other.
   template <class F>
@@ -64,7 +64,7 @@ struct ContactRuns {
   template <class F>
   void for_parts_of(std::size_t region, const F& f) const {
     constexpr std::size_t kGrain = 8;  // blocks: some microseconds
-    std::size_t first = block_words.first[region];
+    std::size_t first = block_bits.first[region];
     for_runs_of(region, [&](const auto& passes, const auto& run, const auto& blocks) {
       const auto part_of = [&](std::size_t begin, std::size_t end) {
         auto part = run;
@@ -97,15 +97,15 @@ struct ContactRuns {
 
   // Numbers the blocks of all regions and colours. Returns how many there are.
   std::size_t number() const {
-    block_words.first.resize(graph.regions());
+    block_bits.first.resize(graph.regions());
     std::size_t count = 0;
     const auto number = [&](std::size_t region) {
-      block_words.first[region] = count;
+      block_bits.first[region] = count;
       for_runs_of(region, [&](const auto&, const auto&, const auto& b) { count += b.size(); });
     };
     for (std::size_t region = 1; region <= regions(); ++region) number(region);
     number(solve::kBetween);
-    block_words.words.resize(std::max(block_words.words.size(), count));
+    block_bits.words.resize(std::max(block_bits.words.size(), count));
     return count;
   }
 

@@ -4,8 +4,8 @@
 
 #include "vphysics/assert.h"
 #include "world/impl.h"
+#include "world/invalid.h"
 #include "world/recorded_call.h"
-#include "world/refuse.h"
 
 namespace vp {
 namespace {
@@ -20,7 +20,7 @@ template <class F>
 void for_partners(const IslandGraph& graph, std::uint32_t index, const F& f) {
   const auto other = [index](std::uint32_t a, std::uint32_t b) { return a == index ? b : a; };
   graph.contacts.for_each_of(graph.bodies[index], [&](std::uint32_t, const Contact& c) {
-    if (c.place.points > 0) f(other(graph.colliders[c.a].body, graph.colliders[c.b].body));
+    if (c.slot.points > 0) f(other(graph.colliders[c.a].body, graph.colliders[c.b].body));
   });
   for (std::uint32_t e = graph.bodies[index].first_joint; e != kNone;
        e = graph.joints[e / 2].next[e % 2]) {
@@ -37,7 +37,7 @@ void SleepIslands::reserve(std::size_t bodies) {
 void SleepIslands::watch(Body& body, std::uint32_t index, const WorldDesc& desc, double dt) {
   if (!may_sleep(body)) return;
   const double before = body.rest_time;
-  const bool slow = norm(body.v) + body.reach * norm(body.w) < desc.sleep_speed;
+  const bool slow = norm(body.v) + body.bounding_radius * norm(body.w) < desc.sleep_speed;
   body.rest_time = slow ? before + dt : 0.0;
   const bool asks_again = body.rest_time >= 2.0 * desc.sleep_after;
   if (asks_again) body.rest_time = desc.sleep_after;
@@ -53,7 +53,7 @@ bool SleepIslands::rests(const IslandGraph& graph, std::uint32_t seed, std::uint
   const std::uint64_t island = ++found_;
   bool rests = true;
   island_.clear();
-  const auto reach = [&](std::uint32_t index) {
+  const auto bounding_radius = [&](std::uint32_t index) {
     Body& body = graph.bodies[index];
     if (body.motion == Motion::fixed || body.island == island) return;
     if (body.motion == Motion::kinematic) {
@@ -64,8 +64,9 @@ bool SleepIslands::rests(const IslandGraph& graph, std::uint32_t seed, std::uint
     body.island = island;
     island_.push_back(index);
   };
-  reach(seed);
-  for (std::size_t i = 0; i < island_.size() && rests; ++i) for_partners(graph, island_[i], reach);
+  bounding_radius(seed);
+  for (std::size_t i = 0; i < island_.size() && rests; ++i)
+    for_partners(graph, island_[i], bounding_radius);
   if (rests) return true;
   for (const std::uint32_t i : island_) {
     double& time = graph.bodies[i].rest_time;
@@ -76,20 +77,20 @@ bool SleepIslands::rests(const IslandGraph& graph, std::uint32_t seed, std::uint
 
 std::span<const std::uint32_t> SleepIslands::wake(const IslandGraph& graph, std::uint32_t seed) {
   woken_.clear();
-  const auto reach = [&](std::uint32_t index) {
+  const auto bounding_radius = [&](std::uint32_t index) {
     Body& body = graph.bodies[index];
     if (!body.asleep) return;
     body.asleep = false;
     body.rest_time = 0.0;
     woken_.push_back(index);
   };
-  reach(seed);
-  for (std::size_t i = 0; i < woken_.size(); ++i) for_partners(graph, woken_[i], reach);
+  bounding_radius(seed);
+  for (std::size_t i = 0; i < woken_.size(); ++i) for_partners(graph, woken_[i], bounding_radius);
   return woken_;
 }
 
 void World::Impl::send_to_sleep() {
-  for (const std::uint32_t i : lists.movers) sleep_islands.watch(bodies[i], i, desc, dt_now);
+  for (const std::uint32_t i : lists.awake_bodies) sleep_islands.watch(bodies[i], i, desc, dt_now);
   sleep_islands.find_resting(
       island_graph(), desc.sleep_after, [&](std::span<const std::uint32_t> island) {
         for (const std::uint32_t i : island) {
@@ -113,7 +114,7 @@ void World::Impl::wake(std::uint32_t seed) {
   if (!bodies[seed].asleep) return;
   const BodyRows rows = rows_in(dt_now);
   for (const std::uint32_t i : sleep_islands.wake(island_graph(), seed)) {
-    if (dt_now > 0.0 && rows.load(bodies[i], i)) start_way_anew(i);
+    if (dt_now > 0.0 && rows.load(bodies[i], i)) restart_displacement(i);
     contact_store.for_each_of(bodies[i], [&](std::uint32_t contact, Contact&) {
       contact_store.unpark(contact, body_set);
     });
@@ -138,7 +139,7 @@ bool World::is_asleep(BodyId id) const {
 }
 
 Expected<void> World::wake(BodyId id) {
-  if (!impl_->find(id)) return stale("wake", "the body");
+  if (!impl_->find(id)) return unknown_id("wake", "the body");
   impl_->wake(id.index - 1);
   if (impl_->recorder) impl_->log({calls::Wake{id}});
   return {};

@@ -27,15 +27,15 @@ static_assert(std::endian::native == std::endian::little);
 
 struct Digest {
   std::uint64_t digest = kSnapshotMagic;
-  void word(std::uint64_t w) { digest = mixed(digest, w); }
+  void u64(std::uint64_t w) { digest = mixed(digest, w); }
 };
 
 // Words go to the vector in blocks: to lengthen it for each costs more than all the rest.
 class ByteSink : public Digest {
  public:
   explicit ByteSink(std::vector<std::byte>& bytes) : bytes_(bytes) {}
-  void word(std::uint64_t w) {
-    Digest::word(w);
+  void u64(std::uint64_t w) {
+    Digest::u64(w);
     block_[used_++] = w;
     if (used_ == std::size(block_)) flush();
   }
@@ -55,26 +55,26 @@ using vp::put;
 
 template <class Sink>
 void put(Sink& sink, const PairRecord& r) {
-  sink.word(r.key);
-  sink.word((std::uint64_t{r.a} << 32) | r.b);
-  sink.word((std::uint64_t{r.count} << 32) | (std::uint64_t{r.part} << 1) | (r.touching ? 1u : 0u));
+  sink.u64(r.key);
+  sink.u64((std::uint64_t{r.a} << 32) | r.b);
+  sink.u64((std::uint64_t{r.count} << 32) | (std::uint64_t{r.part} << 1) | (r.touching ? 1u : 0u));
   put(sink, r.rolling);
   for (const PairPoint& p : r.points) {
-    sink.word(p.feature);
+    sink.u64(p.feature);
     put(sink, p.normal_impulse);
     put(sink, p.friction);
     put(sink, p.position);
   }
 }
 
-std::uint64_t word_of(ColliderId id) {
+std::uint64_t change_bits(ColliderId id) {
   return (std::uint64_t{id.index} << 32) | id.generation;
 }
 template <class Sink>
 void put(Sink& sink, const DestroyedPair& pair) {
-  sink.word(word_of(pair.a));
-  sink.word(word_of(pair.b));
-  sink.word(pair.sensor ? 1u : 0u);
+  sink.u64(change_bits(pair.a));
+  sink.u64(change_bits(pair.b));
+  sink.u64(pair.sensor ? 1u : 0u);
 }
 
 template <class Sink>
@@ -84,9 +84,9 @@ void put(Sink& sink, const SE3& T) {
 }
 template <class Sink>
 void put(Sink& sink, const BodyJoint& joint) {
-  put(sink, joint.turned[0]);
-  put(sink, joint.turned[1]);
-  if (joint.law.form == JointLaw::Form::gear) {
+  put(sink, joint.rotated[0]);
+  put(sink, joint.rotated[1]);
+  if (joint.spec.form == JointSpec::Form::gear) {
     put(sink, joint.start[0]);
     put(sink, joint.start[1]);
   }
@@ -97,8 +97,8 @@ void put(Sink& sink, const BodyJoint& joint) {
     stop[row.slot] = row.stop;
   }
   for (int i = 0; i < 6; ++i) {
-    if (joint.law.form == JointLaw::Form::axes) {
-      const JointDrive& d = joint.law.axes[i].drive;
+    if (joint.spec.form == JointSpec::Form::axes) {
+      const JointDrive& d = joint.spec.axes[i].drive;
       for (const double x : {d.position, d.velocity, d.stiffness, d.damping, d.max_force})
         put(sink, x);
     }
@@ -115,16 +115,16 @@ ContactData World::Impl::contact_data() {
 
 template <class Sink>
 void World::Impl::write(Sink& sink) {
-  sink.word(kSnapshotMagic);
-  sink.word(kSnapshotFormat);
-  sink.word(structure);
-  sink.word(bodies.size());
-  sink.word(articulations.size());
-  sink.word(impacts.records.size());
-  sink.word(events.destroyed.size());
+  sink.u64(kSnapshotMagic);
+  sink.u64(kSnapshotFormat);
+  sink.u64(topology_hash);
+  sink.u64(bodies.size());
+  sink.u64(articulations.size());
+  sink.u64(impacts.records.size());
+  sink.u64(events.destroyed.size());
   put(sink, sub_step_state.length);
-  put(sink, sub_step_state.push_length);
-  sink.word(sub_step_state.position_error ? 1 : 0);
+  put(sink, sub_step_state.last_step_length);
+  sink.u64(sub_step_state.position_error ? 1 : 0);
   put(sink, impacts.step);
   for (const Body& body : bodies) {
     if (body.is_link) continue;
@@ -156,19 +156,19 @@ void World::Impl::write(Sink& sink) {
       std::count_if(articulations.begin(), articulations.end(),
                     [](const Articulation& art) { return art.is_loaded(); }));
   if (loads.all().empty() && loaded == 0) return;
-  sink.word(loads.all().size());
+  sink.u64(loads.all().size());
   for (const Body& body : bodies) {
     const BodyLoad* load = loads.of(body);
     if (!load) continue;
-    sink.word(load->body);
+    sink.u64(load->body);
     put(sink, load->force);
     put(sink, load->torque);
   }
-  sink.word(loaded);
+  sink.u64(loaded);
   for (std::size_t a = 0; a < articulations.size(); ++a) {
     const Articulation& art = articulations[a];
     if (!art.is_loaded()) continue;
-    sink.word(a);
+    sink.u64(a);
     for (std::size_t l = 0; l < art.bodies.size(); ++l) {
       const dse3 load = art.load(static_cast<int>(l));
       put(sink, load.m);
@@ -181,7 +181,7 @@ void World::Impl::write(Sink& sink) {
 void World::snapshot(std::vector<std::byte>& bytes) const {
   ByteSink sink(bytes);
   impl_->write(sink);
-  sink.word(sink.digest);
+  sink.u64(sink.digest);
   sink.flush();
 }
 

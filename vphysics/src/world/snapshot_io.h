@@ -17,7 +17,7 @@ inline constexpr std::uint64_t kSnapshotFormat = 13;
 
 template <class Sink>
 void put(Sink& sink, double x) {
-  sink.word(std::bit_cast<std::uint64_t>(x));
+  sink.u64(std::bit_cast<std::uint64_t>(x));
 }
 template <class Sink>
 void put(Sink& sink, const Vec3& a) {
@@ -27,7 +27,7 @@ void put(Sink& sink, const Vec3& a) {
 }
 template <class Sink>
 void put_two(Sink& sink, std::uint32_t high, std::uint32_t low) {
-  sink.word((std::uint64_t{high} << 32) | low);
+  sink.u64((std::uint64_t{high} << 32) | low);
 }
 template <class Sink>
 void put_two(Sink& sink, float high, float low) {
@@ -39,7 +39,7 @@ class Reader {
  public:
   explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
 
-  std::uint64_t word() {
+  std::uint64_t u64() {
     std::uint64_t w = 0;
     if (bytes_.size() < sizeof w) {
       ok_ = false;
@@ -51,7 +51,7 @@ class Reader {
     return w;
   }
   double number() {
-    const double x = std::bit_cast<double>(word());
+    const double x = std::bit_cast<double>(u64());
     check(std::isfinite(x));
     return x;
   }
@@ -78,7 +78,7 @@ class Reader {
     std::uint32_t high, low;
   };
   Two two() {
-    const std::uint64_t w = word();
+    const std::uint64_t w = u64();
     return {static_cast<std::uint32_t>(w >> 32), static_cast<std::uint32_t>(w)};
   }
   struct TwoFloats {
@@ -92,14 +92,14 @@ class Reader {
   }
   // A number below the limit.
   std::uint32_t index(std::uint64_t limit) {
-    const std::uint64_t w = word();
+    const std::uint64_t w = u64();
     check(w < limit);
     return ok_ ? static_cast<std::uint32_t>(w) : 0;
   }
   // How many items follow, of at least so many words each: no more than the bytes hold.
-  std::size_t count(std::size_t words_each) {
-    const std::uint64_t n = word();
-    check(n <= bytes_.size() / (words_each * sizeof(std::uint64_t)));
+  std::size_t count(std::size_t u64s_each) {
+    const std::uint64_t n = u64();
+    check(n <= bytes_.size() / (u64s_each * sizeof(std::uint64_t)));
     return ok_ ? static_cast<std::size_t>(n) : 0;
   }
   void check(bool condition) { ok_ = ok_ && condition; }

@@ -11,8 +11,8 @@ namespace vp {
 // fastest with what moves the bodies themselves [m/s of things of a metre]. A body of more contacts
 // than kCrowd shares both. In short sub-steps velocities push out kSmallDepth [m of such things] at
 // once, which may be what single precision leaves.
-inline constexpr double kPush = 0.1;
-inline constexpr double kFastestPush = 0.25;
+inline constexpr double kUseBias = 0.1;
+inline constexpr double kMaxBiasVelocity = 0.25;
 inline constexpr double kFastestShift = 3.0;
 inline constexpr double kCrowd = 6.0;
 inline constexpr double kSmallDepth = 1e-3;
@@ -22,11 +22,11 @@ inline constexpr double kFastestJoint = 3.0;
 // Joints that hold hard and are open by more than this share of the smaller body's size, or turned
 // by more than this [rad], are a position error.
 inline constexpr double kOpen = 0.5;
-inline constexpr double kTurnedOff = 0.2;
+inline constexpr double kRotationError = 0.2;
 
 // Stops of joints get rows, in steps h, if they are nearer than this: twice as far as the present
 // rate leads, since an impulse may add to it, and than a metre or a radian a second more.
-inline double reach_of_stop(double h, double speed) {
+inline double stop_range(double h, double speed) {
   return h * (2.0 * std::fabs(speed) + 1.0);
 }
 

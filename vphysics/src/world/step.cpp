@@ -11,18 +11,18 @@
 #include <utility>
 
 #include "vphysics/recording.h"
-#include "world/free_turn.h"
+#include "world/free_rotation.h"
 #include "world/impl.h"
-#include "world/refuse.h"
+#include "world/invalid.h"
 #include "world/validate.h"
 
 namespace vp {
 
 Expected<StepStatus> World::step(double dt) {
   if (!(dt >= kShortestStep && dt <= kLongestStep))
-    return refuse("step: dt must be from 1e-7 to 0.1 seconds");
+    return invalid("step: dt must be from 1e-7 to 0.1 seconds");
   if (impl_->dt_now > 0.0)
-    return refuse(
+    return invalid(
         Errc::unsupported,
         "step: a step of this world is going on; call it when that has returned, not from an "
         "observer or a job");
@@ -42,22 +42,22 @@ void World::Impl::begin_step(double dt) {
   status = {};
   position_error_now = false;
   counters = {};
-  narrow.manifold_scratch.looked_at = 0;
+  narrow.manifold_scratch.narrow_phase_pairs = 0;
   narrow.manifold_scratch.crowded = narrow.manifold_scratch.rough = false;
   narrow.renewed = 0;
   events.clear();
   step_contacts.clear();
   impacts.next_records.clear();
   // Room for what a busy step needs, so that the first busy one need not take it from the heap.
-  const std::size_t room = 64 + 2 * colliders.size() + events.destroyed.size();
-  events.reserve(room);
-  impacts.records.reserve(room);
-  impacts.next_records.reserve(room);
-  contact_store.reserve(room);
-  for (auto* list : {&narrow.stale, &narrow.look_again})
-    list->reserve(contact_store.stale.capacity());
-  narrow.looked.reserve(
-      std::min<std::size_t>(room, 256));  // large ones; more come where they are needed
+  const std::size_t capacity = 64 + 2 * colliders.size() + events.destroyed.size();
+  events.reserve(capacity);
+  impacts.records.reserve(capacity);
+  impacts.next_records.reserve(capacity);
+  contact_store.reserve(capacity);
+  for (auto* list : {&narrow.dirty, &narrow.look_again})
+    list->reserve(contact_store.dirty.capacity());
+  narrow.results.reserve(
+      std::min<std::size_t>(capacity, 256));  // large ones; more come where they are needed
   narrow.to_pose.reserve(n);
   lost_bodies.reserve(n);
   sleep_islands.reserve(n);
@@ -68,15 +68,15 @@ void World::Impl::begin_step(double dt) {
     art.forget_step();
   }
   list_bodies();
-  narrow.new_pairs.reserve(room);
+  narrow.new_pairs.reserve(capacity);
   body_rows.resize(n + 1);
   contact_store.graph.resize(n + 1);
   divide_into_regions(dt);
-  sub_step.blocks.words.reserve(room / solve::kLanes +
+  sub_step.blocks.words.reserve(capacity / solve::kLanes +
                                 2 * solve::kColours * contact_store.graph.regions());
-  if (!lists.movers.empty()) contact_store.graph.reserve(lists.movers.size());
-  sub_step.start_ways.resize(n);
-  sub_step.gains.resize(n);
+  if (!lists.awake_bodies.empty()) contact_store.graph.reserve(lists.awake_bodies.size());
+  sub_step.start_displacements.resize(n);
+  sub_step.velocity_changes.resize(n);
   impacts.row_joints.clear();
   if (has_impact_stage()) begin_impact_stage(dt);
   sub_step.joints.active.reserve(joints.size());
@@ -90,12 +90,12 @@ void World::Impl::begin_step(double dt) {
 
 void World::Impl::divide_into_regions(double dt) {
   const std::size_t before = regions.state.count;
-  if (!regions.divide(bodies, lists.movers, static_cast<std::size_t>(desc.region_bodies), dt))
+  if (!regions.divide(bodies, lists.awake_bodies, static_cast<std::size_t>(desc.region_bodies), dt))
     return;
   contact_store.graph.set_regions(std::max<std::size_t>(before, regions.state.count) + 1);
   for (const std::uint32_t i : regions.changed()) contact_store.follow_region(bodies[i], body_set);
   contact_store.graph.set_regions(std::size_t{regions.state.count} + 1);
-  regions.sort(bodies, lists.movers);
+  regions.sort(bodies, lists.awake_bodies);
 }
 
 // What carried a load for a shorter or a longer step is the guess for this one by its share.
@@ -136,29 +136,30 @@ void World::Impl::begin_impact_stage(double dt) {
   // More than a pair has, unless many parts of a compound touch at once: a world's first contact,
   // whenever it comes, allocates nothing.
   constexpr std::size_t kManifoldsOfPair = 64;
-  const std::size_t n = bodies.size(), room = 64 + 2 * colliders.size() + events.destroyed.size();
-  impacts.swept_body_pairs.reserve(n, room);
-  impacts.discrete_body_pairs.reserve(n, room);
-  impacts.discrete_pairs.reserve(room);
-  impacts.swept_pairs.reserve(room);
-  impacts.discrete_contacts.reserve(room);
-  impacts.contacts.reserve(room);
-  impacts.link_contacts.reserve(room);
-  step_contacts.reserve(4 * room);
+  const std::size_t n = bodies.size(),
+                    capacity = 64 + 2 * colliders.size() + events.destroyed.size();
+  impacts.swept_body_pairs.reserve(n, capacity);
+  impacts.discrete_body_pairs.reserve(n, capacity);
+  impacts.discrete_pairs.reserve(capacity);
+  impacts.swept_pairs.reserve(capacity);
+  impacts.discrete_contacts.reserve(capacity);
+  impacts.contacts.reserve(capacity);
+  impacts.link_contacts.reserve(capacity);
+  step_contacts.reserve(4 * capacity);
   narrow.manifolds.reserve(kManifoldsOfPair);
   std::size_t dofs = 0;
   for (const Articulation& art : articulations) dofs = std::max(dofs, art.dofs.size());
-  impacts.instant.reserve(room, impacts.joint_rows.capacity(), dofs);
+  impacts.instant.reserve(capacity, impacts.joint_rows.capacity(), dofs);
   impacts.bodies_on_links.reserve(n);
   impacts.bounds.resize(n);
   impacts.motions.resize(n);
   impacts.solver_bodies.resize(n);
   impacts.start_poses.resize(n);
-  impacts.held.assign(n, 0);
+  impacts.stopped.assign(n, 0);
   impacts.in_contact.assign(n, 0);
   impacts.as_swept.assign(n, 0);
-  if (impacts.scratch_is_stale) {
-    impacts.scratch_is_stale = false;
+  if (impacts.scratch_is_dirty) {
+    impacts.scratch_is_dirty = false;
     impacts.drift.assign(n, {});
     impacts.forced.assign(n, {});
   }
@@ -201,7 +202,7 @@ bool World::Impl::stop_if_out_of_range(std::uint32_t index, const SE3& start) {
   body.prescribed = {};
   body.T = start;
   body.moved();
-  start_way_anew(index);
+  restart_displacement(index);
   forget_joints(bodies[index], joints);
   return true;
 }
@@ -251,11 +252,11 @@ void World::Impl::refresh_solver_bodies() {
 collide::Motion World::Impl::motion_of(const Body& body, const Velocity& more, double h) const {
   collide::Motion motion{reference_point(body), body.v + more.v, body.w + more.w};
   const Vec3& mean = more.w == Vec3{} ? body.w : motion.w;
-  if (h > 0.0 && body.tumbles() && body.turns_freely() && !hardly_turns(mean, h)) {
+  if (h > 0.0 && body.tumbles() && body.rotates_freely() && !hardly_rotates(mean, h)) {
     const Mat3& R = body.T.rotation();
     const Vec3 w = transposed_times(R, mean);
-    const FreeTurn turn = free_turn(body.central, body.inverse_central, w, h);
-    motion.w = (1.0 / h) * (R * constant_turn(turn));
+    const FreeRotation rotation = free_rotation(body.central, body.inverse_central, w, h);
+    motion.w = (1.0 / h) * (R * mean_rotation(rotation));
   }
   return motion;
 }
@@ -263,7 +264,7 @@ collide::Motion World::Impl::motion_of(const Body& body, const Velocity& more, d
 // For the rest of the step. What touches goes as the solver has left it: at the rate of halfway its
 // contacts would close again at once.
 void World::Impl::refresh_motions(double h) {
-  if (!impacts.swept_body_pairs.stale()) {
+  if (!impacts.swept_body_pairs.dirty()) {
     for (const std::uint32_t i : impact_bodies()) refresh_motion_of(i, h);
     return;
   }
@@ -274,23 +275,23 @@ void World::Impl::refresh_motions(double h) {
 void World::Impl::refresh_motion_of(std::uint32_t i, double h) {
   const Body& body = bodies[i];
   if (body.is_link && body.first_collider == kNone) return;
-  const bool stands = impacts.held[i] || !body.alive || body.motion == Motion::fixed;
+  const bool stands = impacts.stopped[i] || !body.alive || body.motion == Motion::fixed;
   impacts.motions[i] = stands ? collide::Motion{reference_point(body), {}, {}}
                               : motion_of(body, impacts.drift[i], impacts.in_contact[i] ? 0.0 : h);
 }
 
 // Motions and bounds for the rest of the step.
-void World::Impl::refresh_ways(double h) {
+void World::Impl::refresh_displacements(double h) {
   refresh_motions(h);
   refresh_bounds(h);
-  meet_remote(h);
+  collide_remote(h);
 }
 
 namespace {
 
 // Of a body at the next, at a constant twist. Angular momentum is what stays and the rate follows
 // from it; but where the body would have more energy so, the rate stays as seen from the body.
-Vec3 rate_on_the_way(const Body& body, const Mat3& next) {
+Vec3 mean_rate(const Body& body, const Mat3& next) {
   const Mat3& R = body.T.rotation();
   const Vec3 was = transposed_times(R, body.w), momentum = R * (body.central * was);
   const Vec3 w = next * (body.inverse_central * transposed_times(next, momentum));
@@ -303,16 +304,16 @@ Vec3 rate_on_the_way(const Body& body, const Mat3& next) {
 void World::Impl::advance_body(Body& body, const collide::Motion& m, double h, bool freely,
                                const Vec3& more_w) {
   const bool tumbles = body.tumbles();
-  if (freely && tumbles && body.turns_freely()) {
-    const Turned free = turned_freely(body, h, more_w);
+  if (freely && tumbles && body.rotates_freely()) {
+    const Rotated free = rotated_freely(body, h, more_w);
     body.w = free.w;
     return place(body, m.x + h * m.v, free.R);
   }
   const Mat3& R = body.T.rotation();
   const bool turns = m.w.x != 0.0 || m.w.y != 0.0 || m.w.z != 0.0;
-  const Mat3 next = turns ? turned(R, h * m.w) : R;
+  const Mat3 next = turns ? rotated(R, h * m.w) : R;
   if (tumbles && turns) {
-    body.w = body.turns_freely() ? rate_on_the_way(body, next) : rate_at(body, next);
+    body.w = body.rotates_freely() ? mean_rate(body, next) : rate_at(body, next);
   }
   place(body, m.x + h * m.v, next);
 }
@@ -320,16 +321,17 @@ void World::Impl::advance_body(Body& body, const collide::Motion& m, double h, b
 // Where nothing is left to be met: to the end of the step in one go.
 void World::Impl::advance_all(double dt) {
   const BodyRows rows = rows_in(dt);
-  workers.in_parallel(lists.movers.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      Body& body = bodies[lists.movers[k]];
-      const bool led = body.motion == Motion::dynamic && body.by_rows();
-      sub_step.mover_news[k] = led && rows.advance(body, lists.movers[k]) ? 0 : 1;
-    }
-  });
-  for (std::size_t k = 0; k < lists.movers.size(); ++k) {
-    if (sub_step.mover_news[k] == 0) continue;
-    const std::uint32_t i = lists.movers[k];
+  workers.in_parallel(
+      lists.awake_bodies.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+          Body& body = bodies[lists.awake_bodies[k]];
+          const bool led = body.motion == Motion::dynamic && body.by_rows();
+          sub_step.awake_body_changed[k] = led && rows.advance(body, lists.awake_bodies[k]) ? 0 : 1;
+        }
+      });
+  for (std::size_t k = 0; k < lists.awake_bodies.size(); ++k) {
+    if (sub_step.awake_body_changed[k] == 0) continue;
+    const std::uint32_t i = lists.awake_bodies[k];
     Body& body = bodies[i];
     const SE3 start = body.T;
     const Velocity more = body.motion == Motion::dynamic ? settle(rows, i) : Velocity{};
@@ -350,9 +352,9 @@ void World::Impl::advance(double h, bool to_end) {
   }
   for (const std::uint32_t i : impact_bodies()) {
     const Body& body = bodies[i];
-    if (body.is_link || is_still(body) || impacts.held[i]) continue;
+    if (body.is_link || is_still(body) || impacts.stopped[i]) continue;
     advance_body(bodies[i], impacts.motions[i], h, !impacts.as_swept[i], impacts.drift[i].w);
-    if (stop_if_out_of_range(i, impacts.start_poses[i])) impacts.held[i] = 1;
+    if (stop_if_out_of_range(i, impacts.start_poses[i])) impacts.stopped[i] = 1;
   }
   advance_articulations(h);
   for (solve::ContactConstraint& c : impacts.discrete_contacts) {
@@ -370,8 +372,8 @@ void World::Impl::apply_corrections() {
     Body& body = bodies[i];
     if (body.is_link || body.motion != Motion::dynamic) continue;
     const solve::SolverBody& s = impacts.solver_bodies[i];
-    if (s.shift == Vec3{} && s.turn == Vec3{}) continue;
-    place(body, s.x + s.shift, orthonormalized(Exp(s.turn).matrix() * body.T.rotation()));
+    if (s.shift == Vec3{} && s.rotation == Vec3{}) continue;
+    place(body, s.x + s.shift, orthonormalized(Exp(s.rotation).matrix() * body.T.rotation()));
   }
 }
 
@@ -393,14 +395,14 @@ double World::Impl::next_impact(double h) {
 
 // Too many impacts: whoever would still meet stands still for the rest of the step. Each round
 // holds at least one more body, so this ends.
-void World::Impl::hold_what_meets(double h) {
+void World::Impl::stop_what_would_hit(double h) {
   status.impact_limit = true;
-  status.time_held = h;
+  status.time_lost = h;
   for (bool again = true; again;) {
     again = false;
     for (const SweptPair& swept : impacts.swept_pairs) {
       const std::uint32_t a = colliders[swept.pair.a].body, b = colliders[swept.pair.b].body;
-      if (swept.sensor || (impacts.held[a] && impacts.held[b])) continue;
+      if (swept.sensor || (impacts.stopped[a] && impacts.stopped[b])) continue;
       const double slop = desc.contact_slop;
       const double target =
           swept.separation > slop ? 0.5 * slop : std::min(-slop, swept.separation - 0.1 * slop);
@@ -416,9 +418,9 @@ void World::Impl::hold_what_meets(double h) {
 namespace {
 
 // Of a velocity to which forces have added `added`, a share: as far as that made it faster.
-void take_back(Vec3& velocity, const Vec3& added, double share) {
+void take_back(Vec3& velocity, const Vec3& added, double fraction) {
   const double with = dot(added, velocity);
-  if (with > 0.0) velocity *= 1.0 - std::min(1.0, share * with / dot(velocity, velocity));
+  if (with > 0.0) velocity *= 1.0 - std::min(1.0, fraction * with / dot(velocity, velocity));
 }
 
 }  // namespace
@@ -426,17 +428,17 @@ void take_back(Vec3& velocity, const Vec3& added, double share) {
 // For what is held no time passes: for so long forces make it no faster. Else it would collect
 // speed in each step in which it is held, and fly off when it is not.
 void World::Impl::take_back_forces(double h) {
-  const double share = h / dt_now;
+  const double fraction = h / dt_now;
   for (const std::uint32_t i : impact_bodies()) {
     Body& body = bodies[i];
-    if (!impacts.held[i] || body.is_link || body.motion != Motion::dynamic) continue;
+    if (!impacts.stopped[i] || body.is_link || body.motion != Motion::dynamic) continue;
     const Velocity a = acceleration_of(body);
-    take_back(body.v, dt_now * a.v, share);
-    take_back(body.w, dt_now * a.w, share);
+    take_back(body.v, dt_now * a.v, fraction);
+    take_back(body.w, dt_now * a.w, fraction);
   }
   for (Articulation& art : articulations) {
-    if (!art.alive || !impacts.held[art.bodies.front()]) continue;
-    art.take_back_forces(share);
+    if (!art.alive || !impacts.stopped[art.bodies.front()]) continue;
+    art.take_back_forces(fraction);
     follow(art);
   }
 }
@@ -451,8 +453,8 @@ void World::Impl::run(double dt) {
     find_contacts(dt);
     list_bodies();  // some may have been woken
   }
-  sub_step.mover_news.resize(lists.movers.size());
-  counters.awake = static_cast<std::uint32_t>(lists.movers.size());
+  sub_step.awake_body_changed.resize(lists.awake_bodies.size());
+  counters.awake = static_cast<std::uint32_t>(lists.awake_bodies.size());
   run_sub_steps(dt);
   if (!has_impact_stage()) {
     const auto stage = in(Stage::advance);
@@ -467,7 +469,7 @@ void World::Impl::feel_forces(double dt) {
   const auto stage = in(Stage::forces);
   integrate_forces(dt);
   const BodyRows rows = rows_in(dt);
-  for (const std::uint32_t i : lists.movers) {
+  for (const std::uint32_t i : lists.awake_bodies) {
     if (joins_sub_steps(bodies[i]) && bodies[i].motion == Motion::dynamic) {
       impacts.drift[i] = settle(rows, i);
       if (bodies[i].by_rows()) continue;
@@ -482,7 +484,7 @@ void World::Impl::run_impacts(double dt) {
   const auto stage = in(Stage::impacts);
   double time = 0.0;
   end_links(dt, sub_steps_taken);
-  refresh_ways(dt);
+  refresh_displacements(dt);
   make_remote();
   find_discrete_pairs(dt);
   find_swept_pairs(dt);
@@ -493,11 +495,11 @@ void World::Impl::run_impacts(double dt) {
     if (solves == 0) remember_impulses(impacts.contacts, 1.0);
     report_contacts(impacts.contacts, time);
     note_contacts(impacts.contacts);
-    refresh_ways(h);
+    refresh_displacements(h);
     find_swept_pairs(h);
     double t = next_impact(h);
     if (t >= 0.0 && solves >= desc.max_impacts_per_step) {
-      hold_what_meets(h);
+      stop_what_would_hit(h);
       t = -1.0;
     }
     const bool last = t < 0.0;
@@ -508,7 +510,7 @@ void World::Impl::run_impacts(double dt) {
     if (last) return note_open_row_joints();
     time += t;
     ++counters.impacts;
-    refresh_ways(dt - time);
+    refresh_displacements(dt - time);
     find_swept_pairs(dt - time);
   }
 }
@@ -516,7 +518,7 @@ void World::Impl::run_impacts(double dt) {
 void World::Impl::count_contacts() {
   status.manifold_limit |= narrow.manifold_scratch.crowded;
   status.distance_limit |= narrow.manifold_scratch.rough;
-  counters.triangles = narrow.manifold_scratch.looked_at;
+  counters.triangles = narrow.manifold_scratch.narrow_phase_pairs;
   solve::ColourSet colours;
   for (std::size_t region = 0; region < contact_store.graph.regions(); ++region) {
     colours.insert(contact_store.graph.colours_in_use(region));
@@ -528,7 +530,7 @@ void World::Impl::count_contacts() {
   counters.colours = static_cast<std::uint32_t>(colours.size());
   counters.regions = regions.state.count;
   if (colours.has(solve::kLastColour)) status.colour_limit = true;
-  counters.pairs += counters.manifolds + contact_store.near.size();
+  counters.pairs += counters.manifolds + contact_store.speculative.size();
   counters.recycled = counters.manifolds - std::min(counters.manifolds, narrow.renewed);
   counters.events = static_cast<std::uint32_t>(events.all().size());
 }

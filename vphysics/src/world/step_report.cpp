@@ -13,7 +13,7 @@ StepStatus& StepStatus::operator|=(const StepStatus& other) {
   distance_limit |= other.distance_limit;
   colour_limit |= other.colour_limit;
   position_error |= other.position_error;
-  time_held += other.time_held;
+  time_lost += other.time_lost;
   return *this;
 }
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <utility>
 
-#include "solve/contact_lane.h"
+#include "solve/contact_slot.h"
 #include "world/impl.h"
 
 namespace vp {
@@ -13,17 +13,17 @@ namespace {
 
 // Share of an accumulated impulse that a sub-step lets go before it is solved for again. It damps
 // what warm starting does to loads that have not settled: without it a wall of 47 bodies never
-// comes to rest. With kPush it leaves a load L, in impulses of a sub-step, to sink by  h (kLoss /
-// kPush) L / m:  0.07 mm under ten boxes at 1 ms.
+// comes to rest. With kUseBias it leaves a load L, in impulses of a sub-step, to sink by  h (kLoss
+// / kUseBias) L / m:  0.07 mm under ten boxes at 1 ms.
 constexpr double kLoss = 0.07;
 // How fast the length of sub-steps that the push is made for follows theirs when they become
 // shorter.
 constexpr double kHurry = 0.02;
 // Passes of pushing in one sub-step.
-constexpr int kRounds = 3;
+constexpr int kIterations = 3;
 // Rounds of bounces in one sub-step: an impact may run through as many contacts against the order
 // of the colours.
-constexpr int kStrikes = 64;
+constexpr int kMaxRestitutionPasses = 64;
 
 // Impulses to start from are of sub-steps before: a load's are as long as these. Only ever shorter:
 // a blow must not come back larger.
@@ -54,7 +54,7 @@ struct SubStepContext {
   const Regions& regions;
   const Workers& workers;
   std::span<solve::BodyRow> rows;
-  std::span<solve::Gain> gains;  // of each body, by the contacts of a sub-step
+  std::span<solve::VelocityChange> velocity_changes;  // of each body, by the contacts of a sub-step
   float restitution_threshold;
 };
 
@@ -67,44 +67,45 @@ class SubSteps {
     context_.contacts.for_parts_of(
         region, [](const auto& p, const auto& part, std::size_t) { p.load_inertias(part); });
   }
-  void accelerate(std::size_t region, bool find_gains) const {
-    for_movers(region, [&](const std::uint32_t* some, std::size_t count) {
-      if (find_gains) pass_.find_gains(rows(), context_.gains.data(), some, count);
+  void accelerate(std::size_t region, bool find_velocity_changes) const {
+    for_moving_bodies(region, [&](const std::uint32_t* some, std::size_t count) {
+      if (find_velocity_changes)
+        pass_.find_velocity_changes(rows(), context_.velocity_changes.data(), some, count);
       pass_.accelerate(rows(), some, count, h_);
     });
   }
-  // Until nothing bounces any more. Returns how many rounds something did: kStrikes if it still
-  // does.
-  int strike() const {
+  // Until nothing bounces any more. Returns how many rounds something did: kMaxRestitutionPasses if
+  // it still does.
+  int apply_restitution() const {
     std::uint32_t* const words = context_.contacts.words();
-    for (int round = 0; round < kStrikes; ++round) {
+    for (int iteration = 0; iteration < kMaxRestitutionPasses; ++iteration) {
       std::fill_n(words, blocks_, 0u);
-      context_.contacts.everywhere([&](std::size_t region) { strike(region); });
-      if (std::find(words, words + blocks_, 1u) == words + blocks_) return round;
+      context_.contacts.everywhere([&](std::size_t region) { apply_restitution(region); });
+      if (std::find(words, words + blocks_, 1u) == words + blocks_) return iteration;
     }
-    return kStrikes;
+    return kMaxRestitutionPasses;
   }
   void keep_velocities(std::size_t region) const {
-    for_movers(region, [&](const std::uint32_t* some, std::size_t count) {
-      pass_.keep(rows(), context_.gains.data(), some, count);
+    for_moving_bodies(region, [&](const std::uint32_t* some, std::size_t count) {
+      pass_.keep(rows(), context_.velocity_changes.data(), some, count);
     });
   }
-  void repeat_gains(std::size_t region) const {
-    for_movers(region, [&](const std::uint32_t* some, std::size_t count) {
-      pass_.repeat(rows(), context_.gains.data(), some, count);
+  void repeat_velocity_changes(std::size_t region) const {
+    for_moving_bodies(region, [&](const std::uint32_t* some, std::size_t count) {
+      pass_.repeat(rows(), context_.velocity_changes.data(), some, count);
     });
   }
   void warm_start(std::size_t region) const {
     context_.contacts.for_parts_of(
         region, [](const auto& p, const auto& part, std::size_t) { p.warm_start(part); });
   }
-  void push(std::size_t region, int round) const {
+  void solve_contacts(std::size_t region, int iteration) const {
     context_.contacts.for_parts_of(region, [&](const auto& p, const auto& part, std::size_t) {
-      (round == 0 ? p.solve_first : p.solve_again)(part, soft_);
+      (iteration == 0 ? p.solve_first : p.solve_again)(part, soft_);
     });
   }
   void move(std::size_t region) const {
-    for_movers(region, [&](const std::uint32_t* some, std::size_t count) {
+    for_moving_bodies(region, [&](const std::uint32_t* some, std::size_t count) {
       pass_.move(rows(), some, count, h_);
     });
   }
@@ -114,7 +115,7 @@ class SubSteps {
     if (last) {
       context_.contacts.for_parts_of(region,
                                      [&](const auto& p, const auto& part, std::size_t first) {
-                                       p.find_news(part, context_.contacts.words() + first);
+                                       p.find_changes(part, context_.contacts.words() + first);
                                      });
     }
     solve::Soft soft = soft_;
@@ -129,20 +130,20 @@ class SubSteps {
   }
   bool some_too_deep() const { return some_too_deep_; }
   // The first sub-step's impulses have been noted.
-  void go_on() { soft_.kept = 1.0f; }
+  void go_on() { soft_.keeps_load = 1.0f; }
 
  private:
   // The word of a block in which something bounces becomes 1.
-  void strike(std::size_t region) const {
+  void apply_restitution(std::size_t region) const {
     context_.contacts.for_parts_of(region, [&](const auto& p, const auto& part, std::size_t first) {
       context_.contacts.words()[first] =
-          p.strike(part, h_, context_.restitution_threshold) ? 1u : 0u;
+          p.apply_restitution(part, h_, context_.restitution_threshold) ? 1u : 0u;
     });
   }
   solve::BodyRow* rows() const { return context_.rows.data(); }
   template <class F>
-  void for_movers(std::size_t region, const F& f) const {
-    const std::span<const std::uint32_t> some = context_.regions.movers_of(region);
+  void for_moving_bodies(std::size_t region, const F& f) const {
+    const std::span<const std::uint32_t> some = context_.regions.awake_bodies_of(region);
     if (region != solve::kBetween) return f(some.data(), some.size());
     context_.workers.in_parallel(some.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
       f(some.data() + begin, end - begin);
@@ -172,7 +173,7 @@ void World::Impl::run_sub_steps(double dt) {
   if (!lists.some_sub_stepped) return;
   take_sub_steps(dt, n);
   const auto stage = in(Stage::report);
-  report_news();
+  report_changes();
 }
 
 void World::Impl::take_sub_steps(double dt, int n) {
@@ -184,23 +185,25 @@ void World::Impl::take_sub_steps(double dt, int n) {
   if (before > h) rescale_impulses(contact_store.graph, joints, h / before);
   // What has sunk in longer sub-steps is not thrown out by shorter ones: the push becomes as fast
   // as theirs by and by.
-  state.push_length = std::max(static_cast<double>(h), state.push_length - kHurry * dt);
-  const double fastest = std::clamp(kPush / state.push_length * kSmallDepth * desc.length_unit,
-                                    kFastestPush * speed_unit, kFastestShift * speed_unit);
+  state.last_step_length = std::max(static_cast<double>(h), state.last_step_length - kHurry * dt);
+  const double fastest =
+      std::clamp(kUseBias / state.last_step_length * kSmallDepth * desc.length_unit,
+                 kMaxBiasVelocity * speed_unit, kFastestShift * speed_unit);
   const ContactRuns runs = contact_runs();
-  SubSteps steps({runs, regions, workers, body_rows, sub_step.gains,
+  SubSteps steps({runs, regions, workers, body_rows, sub_step.velocity_changes,
                   static_cast<float>(desc.restitution_threshold)},
                  h,
-                 {.rate = static_cast<float>(kPush / state.push_length),
-                  .share = static_cast<float>(1.0 - kLoss),
-                  .fastest_push = static_cast<float>(fastest),
+                 {.rate = static_cast<float>(kUseBias / state.last_step_length),
+                  .fraction = static_cast<float>(1.0 - kLoss),
+                  .max_bias_velocity = static_cast<float>(fastest),
                   .inverse_h = 1.0f / h,
-                  .kept = 0.0f,
+                  .keeps_load = 0.0f,
                   .fastest_shift = static_cast<float>(kFastestShift * speed_unit),
                   .h = h,
-                  .reach = static_cast<float>(speed_unit)});
-  JointSteps joint_steps({bodies, joints, body_rows, sub_step.start_ways, workers, speed_unit},
-                         sub_step.joints, h);
+                  .idle_speed = static_cast<float>(speed_unit)});
+  JointSteps joint_steps(
+      {bodies, joints, body_rows, sub_step.start_displacements, workers, speed_unit},
+      sub_step.joints, h);
   const bool links = !impacts.bodies_on_links.empty();
   if (links) find_link_contacts(dt, n);
   const bool contacts_alone = !links && joint_steps.empty();
@@ -211,30 +214,32 @@ void World::Impl::take_sub_steps(double dt, int n) {
   for (int k = 0; k < n; ++k) {
     const bool last = k == n - 1;
     runs.everywhere([&](std::size_t region) { steps.accelerate(region, repeats && k > 0); });
-    const int bounces = steps.strike();
-    counters.bounce_rounds += static_cast<std::uint32_t>(bounces);
-    status.bounce_limit |= bounces == kStrikes;
+    const int bounces = steps.apply_restitution();
+    counters.restitution_iterations += static_cast<std::uint32_t>(bounces);
+    status.bounce_limit |= bounces == kMaxRestitutionPasses;
     if (links) begin_links(h);
     joint_steps.warm_start();
     if (repeats) {
       runs.everywhere([&](std::size_t region) {
-        k == 0 ? steps.keep_velocities(region) : steps.repeat_gains(region);
+        k == 0 ? steps.keep_velocities(region) : steps.repeat_velocity_changes(region);
       });
     }
     if (k == 0 || !repeats) runs.everywhere([&](std::size_t region) { steps.warm_start(region); });
     if (contacts_alone) {
       // All that comes one after another for a region alone is done at once, so that its contacts
       // are read from memory once, but for what strikes and the first warm start look at.
-      for (int round = 0; round < kRounds; ++round) steps.push(solve::kBetween, round);
+      for (int iteration = 0; iteration < kIterations; ++iteration)
+        steps.solve_contacts(solve::kBetween, iteration);
       runs.for_regions([&](std::size_t region) {
-        for (int round = 0; round < kRounds; ++round) steps.push(region, round);
+        for (int iteration = 0; iteration < kIterations; ++iteration)
+          steps.solve_contacts(region, iteration);
         steps.move_and_relax(region, last);
       });
       steps.move_and_relax(solve::kBetween, last);
     } else {
-      for (int round = 0; round < kRounds; ++round) {
-        joint_steps.solve(round);
-        runs.everywhere([&](std::size_t region) { steps.push(region, round); });
+      for (int iteration = 0; iteration < kIterations; ++iteration) {
+        joint_steps.solve(iteration);
+        runs.everywhere([&](std::size_t region) { steps.solve_contacts(region, iteration); });
         if (links) solve_links(h);
       }
       if (links) move_links(h);

@@ -20,18 +20,18 @@ struct TouchReport {
   Events& events;
 
   template <int P>
-  void report_lane(solve::ContactBlock<P>& block, int lane, bool loaded) {
+  void report_slot(solve::ContactBlock<P>& block, int lane, bool loaded) {
     const std::uint32_t index = block.contact.lane[lane];
     Contact& c = contacts[index];
-    const double closing = get(block.closing, lane);
+    const double approach_speed = get(block.approach_speed, lane);
     const double impulse = impulse_of(block, lane);
     block.given.lane[lane] += block.impact.lane[lane];  // for contacts_of()
-    block.closing.lane[lane] = block.impact.lane[lane] = 0.0f;
+    block.approach_speed.lane[lane] = block.impact.lane[lane] = 0.0f;
     block.touches.lane[lane] = loaded ? 1 : 0;
     if (c.is_part()) {
       c.touching = loaded;
-      events.news_of_parts.push_back({c.whole, index, closing, loaded ? impulse : 0.0,
-                                      c.position[0], get(block.normal, lane)});
+      events.part_events.push_back({c.aggregate, index, approach_speed, loaded ? impulse : 0.0,
+                                    c.position[0], get(block.normal, lane)});
       return;
     }
     if (!loaded) {
@@ -40,55 +40,56 @@ struct TouchReport {
     }
     const ColliderPair pair{c.key, c.a, c.b};
     const auto tell = [&](ContactEvent::Kind kind) {
-      events.emit(colliders, kind, pair, c.position[0], get(block.normal, lane), closing, impulse,
-                  0.0);
+      events.emit(colliders, kind, pair, c.position[0], get(block.normal, lane), approach_speed,
+                  impulse, 0.0);
     };
     if (!c.touching) tell(ContactEvent::Kind::begin);
     c.touching = true;
-    if (closing > 0.0) tell(ContactEvent::Kind::hit);
+    if (approach_speed > 0.0) tell(ContactEvent::Kind::hit);
   }
 
   // One event for the whole: the impulses of the parts that have news add up, the largest tells
   // where.
   void report_parts() {
-    std::vector<PartNews>& news = events.news_of_parts;
-    std::sort(news.begin(), news.end(), [](const PartNews& a, const PartNews& b) {
-      return a.whole != b.whole ? a.whole < b.whole : a.part < b.part;
+    std::vector<PartEvent>& changed = events.part_events;
+    std::sort(changed.begin(), changed.end(), [](const PartEvent& a, const PartEvent& b) {
+      return a.aggregate != b.aggregate ? a.aggregate < b.aggregate : a.part < b.part;
     });
-    for (std::size_t k = 0; k < news.size();) {
-      PartNews sum = news[k];
-      double most = sum.impulse;
-      for (++k; k < news.size() && news[k].whole == sum.whole; ++k) {
-        const PartNews& other = news[k];
-        if (other.impulse > most) {
-          most = other.impulse;
+    for (std::size_t k = 0; k < changed.size();) {
+      PartEvent sum = changed[k];
+      double max_value = sum.impulse;
+      for (++k; k < changed.size() && changed[k].aggregate == sum.aggregate; ++k) {
+        const PartEvent& other = changed[k];
+        if (other.impulse > max_value) {
+          max_value = other.impulse;
           sum.point = other.point;
           sum.normal = other.normal;
         }
         sum.impulse += other.impulse;
-        sum.closing = std::max(sum.closing, other.closing);
+        sum.approach_speed = std::max(sum.approach_speed, other.approach_speed);
       }
-      Contact& whole = contacts[sum.whole];
-      const bool touches = contacts.touches_in_parts(whole);
+      Contact& aggregate = contacts[sum.aggregate];
+      const bool touches = contacts.touches_in_parts(aggregate);
       if (!touches) {
-        if (whole.touching) events.touch(colliders, whole, false);
+        if (aggregate.touching) events.touch(colliders, aggregate, false);
         continue;
       }
-      const ColliderPair pair{whole.key, whole.a, whole.b};
+      const ColliderPair pair{aggregate.key, aggregate.a, aggregate.b};
       const auto tell = [&](ContactEvent::Kind kind) {
-        events.emit(colliders, kind, pair, sum.point, sum.normal, sum.closing, sum.impulse, 0.0);
+        events.emit(colliders, kind, pair, sum.point, sum.normal, sum.approach_speed, sum.impulse,
+                    0.0);
       };
-      if (!whole.touching) tell(ContactEvent::Kind::begin);
-      whole.touching = true;
-      if (sum.closing > 0.0) tell(ContactEvent::Kind::hit);
+      if (!aggregate.touching) tell(ContactEvent::Kind::begin);
+      aggregate.touching = true;
+      if (sum.approach_speed > 0.0) tell(ContactEvent::Kind::hit);
     }
-    news.clear();
+    changed.clear();
   }
 };
 
 }  // namespace
 
-void World::Impl::report_news() {
+void World::Impl::report_changes() {
   counters.contacts += contact_store.points;
   TouchReport report{contact_store, colliders, events};
   std::size_t next = 0;
@@ -97,7 +98,7 @@ void World::Impl::report_news() {
       const std::uint32_t found = sub_step.blocks.words[next++];
       for (std::uint32_t bits = found & 0xffffu; bits != 0; bits &= bits - 1) {
         const int lane = std::countr_zero(bits);
-        report.report_lane(block, lane, ((found >> (16 + lane)) & 1u) != 0);
+        report.report_slot(block, lane, ((found >> (16 + lane)) & 1u) != 0);
       }
     }
   });

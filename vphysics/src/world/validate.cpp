@@ -14,7 +14,7 @@ bool positive(double x) {
   return in_range(x) && x > 0.0;
 }
 bool is_size(double x) {
-  return in_range(x) && x >= kLeastSize;
+  return in_range(x) && x >= kMinSize;
 }
 bool not_negative(double x) {
   return in_range(x) && x >= 0.0;
@@ -147,9 +147,9 @@ std::optional<std::string> problem_with(const BodyDesc& desc) {
 
 // A gyration radius of a kilometre of the largest mass.
 bool is_moment(const Sym3& J) {
-  constexpr double kMost = 1e15;
-  return in_range((kLargest / kMost) * Vec3{J.xx, J.yy, J.zz}) &&
-         in_range((kLargest / kMost) * Vec3{J.xy, J.yz, J.zx});
+  constexpr double kMax = 1e15;
+  return in_range((kLargest / kMax) * Vec3{J.xx, J.yy, J.zz}) &&
+         in_range((kLargest / kMax) * Vec3{J.xy, J.yz, J.zx});
 }
 // Second moments of a mass, (tr J) 1 / 2 - J, are no less than zero; but by what numbers of two
 // digits are rounded by.
@@ -160,7 +160,7 @@ bool is_of_mass(const Sym3& J) {
 }
 
 std::optional<std::string> problem_with(const Inertia& J) {
-  if (!in_range(J.mass()) || !(J.mass() >= kLeastMass)) {
+  if (!in_range(J.mass()) || !(J.mass() >= kMinMass)) {
     return "inertia: the mass must be from 1e-15 to 1e9 kg; set a mass or use solid_inertia";
   }
   if (!in_range(J.centre_of_mass()) || !is_moment(J.central())) {
@@ -178,7 +178,7 @@ std::optional<std::string> problem_with(const Inertia& J) {
   }
   const Sym3 inverse_central = inverse(J.central());
   const double largest = std::max({inverse_central.xx, inverse_central.yy, inverse_central.zz});
-  if (!(largest * kLeastMoment <= 1.0 + 1e-9)) {
+  if (!(largest * kMinMoment <= 1.0 + 1e-9)) {
     return "inertia: the moments about the centre of mass must be at least 1e-30 kg m^2; use "
            "solid_inertia, or another unit of length";
   }
@@ -214,8 +214,8 @@ std::optional<std::string> problem_with(const ArticulationDesc& desc) {
       return "link " + std::to_string(l) + ": every number of the model" + kRange;
     }
     for (const JointForces& f : link.forces) {
-      const bool apart = f.lower < kLargest && f.upper > -kLargest && f.lower <= f.upper;
-      if (!apart || !in_range(f.rest) || !(f.stiffness <= 1e30) || !(f.limit_damping <= 1e30)) {
+      const bool separated = f.lower < kLargest && f.upper > -kLargest && f.lower <= f.upper;
+      if (!separated || !in_range(f.rest) || !(f.stiffness <= 1e30) || !(f.limit_damping <= 1e30)) {
         return "link " + std::to_string(l) +
                ": limits and the spring's rest must lie within 1e9, stiffness within 1e30";
       }

@@ -17,7 +17,7 @@ class Articulation;
 inline constexpr double kLargest = 1e9;
 // Least sizes of shapes [m], masses [kg] and moments of inertia [kg m^2] of bodies: a water drop of
 // a micrometre. The solver's single precision holds the inverses with room for products with arms.
-inline constexpr double kLeastSize = 1e-6, kLeastMass = 1e-15, kLeastMoment = 1e-30;
+inline constexpr double kMinSize = 1e-6, kMinMass = 1e-15, kMinMoment = 1e-30;
 // Times that a step may take [s]. In the least one gravity adds eight last bits to a speed of 1 m/s
 // in single precision, and 1000 sub-steps of it leave gaps of kLargest, divided by their length,
 // far within its range.
@@ -61,7 +61,7 @@ std::optional<std::string> problem_with(const Articulation& articulation, std::s
 // Drives are set at every step: whether there is a problem costs no string.
 inline constexpr double kStiffest = 1e15;  // [N/m, N s/m]: beyond it steps cannot tell a difference
 inline bool is_drive(const JointDrive& drive) {
-  const auto up_to = [](double x, double most) { return x >= 0.0 && x <= most; };
+  const auto up_to = [](double x, double max_value) { return x >= 0.0 && x <= max_value; };
   return in_range(drive.position) && in_range(drive.velocity) &&
          up_to(drive.stiffness, kStiffest) && up_to(drive.damping, kStiffest) &&
          up_to(drive.max_force, std::numeric_limits<double>::max());

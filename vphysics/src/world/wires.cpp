@@ -8,10 +8,10 @@ constexpr int kSquares = 10;   // of a half-space's side
 
 class Wire {
  public:
-  Wire(const SE3& T, double half_space_size, DebugMark mark, DebugDraw& draw)
-      : T_(T), half_space_size_(half_space_size), mark_(mark), draw_(draw) {}
+  Wire(const SE3& T, double half_space_size, DebugCategory category, DebugDraw& draw)
+      : T_(T), half_space_size_(half_space_size), category_(category), draw_(draw) {}
 
-  void line(const Vec3& from, const Vec3& to) { draw_.line(T_ * from, T_ * to, mark_); }
+  void line(const Vec3& from, const Vec3& to) { draw_.line(T_ * from, T_ * to, category_); }
 
   void operator()(const Box& box) {
     const Vec3& h = box.half_extents;
@@ -32,10 +32,10 @@ class Wire {
   void operator()(const Capsule& capsule) {
     const double r = capsule.radius;
     for (const double end : {-1.0, 1.0}) {
-      const Vec3 middle{0, 0, end * capsule.half_length}, z{0, 0, end * r};
-      arc(middle, {r, 0, 0}, {0, r, 0}, kSegments);
-      arc(middle, {r, 0, 0}, z, kSegments / 2);
-      arc(middle, {0, r, 0}, z, kSegments / 2);
+      const Vec3 centre{0, 0, end * capsule.half_length}, z{0, 0, end * r};
+      arc(centre, {r, 0, 0}, {0, r, 0}, kSegments);
+      arc(centre, {r, 0, 0}, z, kSegments / 2);
+      arc(centre, {0, r, 0}, z, kSegments / 2);
     }
     sides(r, r, capsule.half_length);
   }
@@ -98,17 +98,17 @@ class Wire {
   }
   void operator()(const Compound& compound) {
     for (const CompoundPart& part : compound.parts()) {
-      draw_wire(part.shape, T_ * part.T_compound_part, half_space_size_, mark_, draw_);
+      draw_wire(part.shape, T_ * part.T_compound_part, half_space_size_, category_, draw_);
     }
   }
 
  private:
   // So many of a circle's segments, from x over y on.
-  void arc(const Vec3& middle, const Vec3& x, const Vec3& y, int segments) {
-    Vec3 from = middle + x;
+  void arc(const Vec3& centre, const Vec3& x, const Vec3& y, int segments) {
+    Vec3 from = centre + x;
     for (int i = 1; i <= segments; ++i) {
       const auto [s, c] = sin_cos(2.0 * kPi * i / kSegments);
-      const Vec3 to = middle + c * x + s * y;
+      const Vec3 to = centre + c * x + s * y;
       line(from, to);
       from = to;
     }
@@ -123,19 +123,19 @@ class Wire {
 
   SE3 T_;
   double half_space_size_;
-  DebugMark mark_;
+  DebugCategory category_;
   DebugDraw& draw_;
 };
 
 }  // namespace
 
-void draw_wire(const Shape& shape, const SE3& T, double half_space_size, DebugMark mark,
+void draw_wire(const Shape& shape, const SE3& T, double half_space_size, DebugCategory category,
                DebugDraw& draw) {
-  std::visit(Wire(T, half_space_size, mark, draw), shape);
+  std::visit(Wire(T, half_space_size, category, draw), shape);
 }
 
-void draw_box(const SE3& T, const Vec3& half_extents, DebugMark mark, DebugDraw& draw) {
-  Wire(T, 0.0, mark, draw)(Box{half_extents});
+void draw_box(const SE3& T, const Vec3& half_extents, DebugCategory category, DebugDraw& draw) {
+  Wire(T, 0.0, category, draw)(Box{half_extents});
 }
 
 }  // namespace vp

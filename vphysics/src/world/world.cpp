@@ -7,9 +7,9 @@
 #include "vphysics/assert.h"
 #include "vphysics/recording.h"
 #include "world/impl.h"
+#include "world/invalid.h"
 #include "world/recorded_call.h"
-#include "world/refuse.h"
-#include "world/structure.h"
+#include "world/topology_hash.h"
 #include "world/validate.h"
 
 namespace vp {
@@ -22,10 +22,10 @@ World::World(const WorldDesc& desc) : impl_(std::make_unique<Impl>()) {
   impl_->desc.restitution_threshold *= impl_->speed_unit;
   impl_->desc.sleep_speed *= impl_->speed_unit;
   impl_->body_rows.resize(1);
-  Structure(impl_->structure).add(desc);
+  TopologyHash(impl_->topology_hash).add(desc);
 }
 Expected<World> World::create(const WorldDesc& desc) {
-  if (auto problem = problem_with(desc)) return refuse("World: " + *problem);
+  if (auto problem = problem_with(desc)) return invalid("World: " + *problem);
   return World(desc);
 }
 World::~World() {
@@ -48,7 +48,7 @@ Vec3 World::Impl::centre_of_mass(const Body& body) {
 }
 
 Expected<BodyId> World::create_body(const BodyDesc& desc) {
-  if (auto problem = problem_with(desc)) return refuse("create_body: " + *problem);
+  if (auto problem = problem_with(desc)) return invalid("create_body: " + *problem);
   const std::uint32_t index = impl_->bodies.take();
   Body& body = impl_->bodies[index];
   body.motion = desc.motion;
@@ -64,7 +64,7 @@ Expected<BodyId> World::create_body(const BodyDesc& desc) {
   if (!body.mass_from_colliders) set_mass(body, desc.inertia);
   impl_->update_mass(index);
   if (index + 1 < impl_->body_rows.size()) impl_->body_rows[index + 1] = {};
-  Structure(impl_->structure).add(0x100u + index, desc);
+  TopologyHash(impl_->topology_hash).add(0x100u + index, desc);
   const BodyId id = impl_->bodies.id(index);
   impl_->lists.invalidate();
   if (desc.motion != Motion::fixed) impl_->give_velocity(index, desc.velocity);
@@ -107,8 +107,8 @@ void World::Impl::release_collider(std::uint32_t index) {
 
 Expected<void> World::destroy_body(BodyId id) {
   Body* body = impl_->find(id);
-  if (!body) return stale("destroy_body", "the body");
-  if (body->is_link) return refuse("destroy_body: a link lives as long as its articulation");
+  if (!body) return unknown_id("destroy_body", "the body");
+  if (body->is_link) return invalid("destroy_body: a link lives as long as its articulation");
   for (std::uint32_t c = body->first_collider; c != kNone; c = impl_->colliders[c].next) {
     impl_->release_collider(c);
   }
@@ -120,7 +120,7 @@ Expected<void> World::destroy_body(BodyId id) {
   body->first_collider = kNone;
   impl_->lists.invalidate();
   impl_->bodies.release(id.index - 1);
-  Structure(impl_->structure).add(0x200u + id.index);
+  TopologyHash(impl_->topology_hash).add(0x200u + id.index);
   if (impl_->recorder) impl_->log({calls::DestroyBody{id}});
   return {};
 }
@@ -133,25 +133,25 @@ void World::Impl::note_collider(std::uint32_t index) {
 
 Expected<ColliderId> World::add_collider(BodyId body_handle, const ColliderDesc& desc) {
   Body* body = impl_->find(body_handle);
-  if (!body) return stale("add_collider", "the body");
-  if (auto problem = problem_with(desc)) return refuse("add_collider: " + *problem);
+  if (!body) return unknown_id("add_collider", "the body");
+  if (auto problem = problem_with(desc)) return invalid("add_collider: " + *problem);
   const bool surface = std::holds_alternative<TriangleMesh>(desc.shape) ||
                        std::holds_alternative<HeightField>(desc.shape);
   if (surface && body->motion == Motion::dynamic) {
-    return refuse(Errc::unsupported,
-                  "add_collider: meshes and height fields are the skin of what nothing pushes; "
-                  "give a dynamic body or a link a compound of convex hulls");
+    return invalid(Errc::unsupported,
+                   "add_collider: meshes and height fields are the skin of what nothing pushes; "
+                   "give a dynamic body or a link a compound of convex hulls");
   }
   const bool half_space = std::holds_alternative<HalfSpace>(desc.shape);
   if (half_space && (body->motion != Motion::fixed)) {
-    return refuse("add_collider: a half-space needs a fixed body");
+    return invalid("add_collider: a half-space needs a fixed body");
   }
   const bool adds_mass = body->mass_from_colliders && body->motion == Motion::dynamic;
   if (adds_mass && !desc.sensor) {
     const Inertia sum = inertia_of_colliders(*body, impl_->colliders) +
                         solid_inertia(desc.shape, desc.density).InvXform(desc.T_body_shape);
     if (auto problem = impl_->problem_with_mass(*body, velocity(body_handle), sum)) {
-      return refuse("add_collider: with it, " + *problem);
+      return invalid("add_collider: with it, " + *problem);
     }
   }
   const std::uint32_t index = impl_->colliders.take();
@@ -177,7 +177,7 @@ Expected<ColliderId> World::add_collider(BodyId body_handle, const ColliderDesc&
   impl_->lists.invalidate();
   impl_->wake(c.body);
   impl_->add_proxy(index);
-  Structure(impl_->structure).add(0x300u + index, body_handle.index, desc);
+  TopologyHash(impl_->topology_hash).add(0x300u + index, body_handle.index, desc);
   if (impl_->recorder) impl_->log({calls::AddCollider{body_handle, desc}});
   return impl_->colliders.id(index);
 }
@@ -227,9 +227,9 @@ Vec3 World::velocity_at(BodyId id, const Vec3& point) const {
 
 Expected<void> World::set_velocity_world(BodyId id, const VelocityWorld& velocity) {
   const Body* body = impl_->find(id);
-  if (!body) return stale("set_velocity_world", "the body");
+  if (!body) return unknown_id("set_velocity_world", "the body");
   if (!in_range(velocity.linear) || !in_range(velocity.angular)) {
-    return refuse("set_velocity_world: every entry must be finite and at most 1e9");
+    return invalid("set_velocity_world: every entry must be finite and at most 1e9");
   }
   const SE3& T = body->T;
   const Vec3 from = T.position() - reference_point(*body);
@@ -239,11 +239,11 @@ Expected<void> World::set_velocity_world(BodyId id, const VelocityWorld& velocit
 
 Expected<void> World::set_pose(BodyId id, const SE3& T) {
   Body* body = impl_->find(id);
-  if (!body) return stale("set_pose", "the body");
-  if (body->is_link) return refuse("set_pose: a link is placed by its joint; use set_joint_state");
-  if (!is_pose(T)) return refuse("set_pose: the pose must be a finite rotation and position");
+  if (!body) return unknown_id("set_pose", "the body");
+  if (body->is_link) return invalid("set_pose: a link is placed by its joint; use set_joint_state");
+  if (!is_pose(T)) return invalid("set_pose: the pose must be a finite rotation and position");
   if (!impl_->loads.can_bear(*body, inertia(id), T)) {
-    return refuse(std::string("set_pose: ") + kUnbearable);
+    return invalid(std::string("set_pose: ") + kUnbearable);
   }
   body->T = SE3(orthonormalized(T.rotation()), T.position());
   body->moved();
@@ -254,13 +254,13 @@ Expected<void> World::set_pose(BodyId id, const SE3& T) {
 
 Expected<void> World::set_velocity(BodyId id, const se3& V) {
   Body* body = impl_->find(id);
-  if (!body) return stale("set_velocity", "the body");
+  if (!body) return unknown_id("set_velocity", "the body");
   if (body->is_link)
-    return refuse("set_velocity: a link is moved by its joint; use set_joint_state");
-  if (body->motion == Motion::fixed) return refuse("set_velocity: the body is fixed");
-  if (!in_range(V)) return refuse("set_velocity: every entry must be finite and at most 1e9");
+    return invalid("set_velocity: a link is moved by its joint; use set_joint_state");
+  if (body->motion == Motion::fixed) return invalid("set_velocity: the body is fixed");
+  if (!in_range(V)) return invalid("set_velocity: every entry must be finite and at most 1e9");
   if (!nearly_in_range(V.v + cross(V.w, body->centre))) {
-    return refuse("set_velocity: the centre of mass would move faster than 1e9 m/s");
+    return invalid("set_velocity: the centre of mass would move faster than 1e9 m/s");
   }
   impl_->give_velocity(id.index - 1, V);
   if (impl_->recorder) impl_->log({calls::SetVelocity{id, V}});
@@ -281,23 +281,23 @@ void World::Impl::give_velocity(std::uint32_t index, const se3& V) {
 
 Expected<void> World::apply_impulse(BodyId id, const Vec3& impulse, const Vec3& point) {
   Body* body = impl_->find(id);
-  if (!body) return stale("apply_impulse", "the body");
-  if (body->motion != Motion::dynamic) return refuse("apply_impulse: the body is not dynamic");
+  if (!body) return unknown_id("apply_impulse", "the body");
+  if (body->motion != Motion::dynamic) return invalid("apply_impulse: the body is not dynamic");
   const double bears = body->is_link ? 1.0 : std::max(1.0, body->mass);  // for 1e9 m/s
   if (!in_range((1.0 / bears) * impulse) || !in_range(point)) {
-    return refuse("apply_impulse: impulse and point must be finite and at most 1e9");
+    return invalid("apply_impulse: impulse and point must be finite and at most 1e9");
   }
   constexpr const char* kTooMuch =
       "apply_impulse: the body would move faster than 1e9 m/s or rad/s; apply less";
   if (body->is_link) {
     Articulation& art = impl_->articulations[body->articulation];
-    if (!art.apply_impulse(body->link, impulse, point)) return refuse(kTooMuch);
+    if (!art.apply_impulse(body->link, impulse, point)) return invalid(kTooMuch);
     impl_->follow(art);
   } else {
     const Vec3 moment = cross(point - reference_point(*body), impulse);
     const Vec3 v = body->v + (1.0 / body->mass) * impulse;
     const Vec3 w = body->w + rotated(body->T.rotation(), body->inverse_central) * moment;
-    if (!nearly_in_range(v) || !nearly_in_range(w)) return refuse(kTooMuch);
+    if (!nearly_in_range(v) || !nearly_in_range(w)) return invalid(kTooMuch);
     impl_->wake(id.index - 1);
     body->v = v;
     body->w = w;
@@ -306,8 +306,8 @@ Expected<void> World::apply_impulse(BodyId id, const Vec3& impulse, const Vec3& 
   return {};
 }
 
-void World::set_jobs(std::shared_ptr<Jobs> jobs) {
-  impl_->workers.jobs = std::move(jobs);
+void World::set_task_scheduler(std::shared_ptr<TaskScheduler> scheduler) {
+  impl_->workers.scheduler = std::move(scheduler);
 }
 
 void World::observe_stages(std::shared_ptr<StageObserver> observer) {

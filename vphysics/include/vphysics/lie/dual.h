@@ -16,7 +16,7 @@ namespace vp {
 template <class T, int N = 1>
 struct DualT {
   T value{};
-  std::array<T, N> slope{};
+  std::array<T, N> derivative{};
 
   constexpr DualT() = default;
   constexpr DualT(const T& v) : value(v) {}
@@ -26,7 +26,7 @@ struct DualT {
   // With slope 1 in one direction: a variable.
   static constexpr DualT variable(const T& v, int direction = 0) {
     DualT out(v);
-    out.slope[static_cast<std::size_t>(direction)] = T(1);
+    out.derivative[static_cast<std::size_t>(direction)] = T(1);
     return out;
   }
 
@@ -66,7 +66,7 @@ struct DualT {
   template <class F>
   constexpr DualT chain(const T& v, const F& f, const DualT& b) const {
     DualT out(v);
-    for (std::size_t i = 0; i < N; ++i) out.slope[i] = f(slope[i], b.slope[i]);
+    for (std::size_t i = 0; i < N; ++i) out.derivative[i] = f(derivative[i], b.derivative[i]);
     return out;
   }
   // f(this), whose value and derivative are given.

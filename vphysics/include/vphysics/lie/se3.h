@@ -165,8 +165,8 @@ namespace detail {
 
 // The slope along v, at w, of 1 + a [w] + b [w]^2, when a and b have slopes a1 and b1 in t = |w|^2.
 template <class T>
-Mat3T<T> quadratic_slope(const Vec3T<T>& w, const Vec3T<T>& v, const T& a, const T& a1, const T& b,
-                         const T& b1) {
+Mat3T<T> quadratic_derivative(const Vec3T<T>& w, const Vec3T<T>& v, const T& a, const T& a1,
+                              const T& b, const T& b1) {
   const T wv = dot(w, v), t1 = T(2) * wv, t = dot(w, w);
   const T k1 = t1 * a1, k2 = t1 * b1;
   const Vec3T<T> c = k1 * w + a * v;  // of a [w]
@@ -183,42 +183,42 @@ Mat3T<T> quadratic_slope(const Vec3T<T>& w, const Vec3T<T>& v, const T& a, const
 
 // dB/dt = (A - 2 B) / (2 t) and dC/dt = (B - 3 C) / (2 t), dD/dt; their series where t is small.
 // Above, they lose up to 5 bits, but are multiplied by theta^2 or more.
-inline constexpr double kSlopeB[] = {
+inline constexpr double kDerivativeB[] = {
     -1.0 / 24,        2.0 / 720,           -3.0 / 40320,           4.0 / 3628800,
     -5.0 / 479001600, 6.0 / 87178291200.0, -7.0 / 20922789888000.0};
-inline constexpr double kSlopeC[] = {-1.0 / 120,
-                                     2.0 / 5040,
-                                     -3.0 / 362880,
-                                     4.0 / 39916800,
-                                     -5.0 / 6227020800.0,
-                                     6.0 / 1307674368000.0,
-                                     -7.0 / 355687428096000.0};
-inline constexpr double kSlopeD[] = {1.0 / 720,
-                                     2.0 / 30240,
-                                     3.0 / 1209600,
-                                     4.0 / 47900160,
-                                     5 * 691.0 / 1307674368000.0,
-                                     6.0 / 74724249600.0,
-                                     7 * 3617.0 / 10670622842880000.0};
+inline constexpr double kDerivativeC[] = {-1.0 / 120,
+                                          2.0 / 5040,
+                                          -3.0 / 362880,
+                                          4.0 / 39916800,
+                                          -5.0 / 6227020800.0,
+                                          6.0 / 1307674368000.0,
+                                          -7.0 / 355687428096000.0};
+inline constexpr double kDerivativeD[] = {1.0 / 720,
+                                          2.0 / 30240,
+                                          3.0 / 1209600,
+                                          4.0 / 47900160,
+                                          5 * 691.0 / 1307674368000.0,
+                                          6.0 / 74724249600.0,
+                                          7 * 3617.0 / 10670622842880000.0};
 template <class T>
-T slope_B(const ExpCoefficients<T>& k) {
+T derivative_B(const ExpCoefficients<T>& k) {
   return choose(
-      k.t < T(kExpSeriesBelow), [&] { return polynomial(k.t, kSlopeB); },
+      k.t < T(kExpSeriesBelow), [&] { return polynomial(k.t, kDerivativeB); },
       [&] { return (k.A - T(2) * k.B) / (T(2) * k.t); });
 }
 template <class T>
-T slope_C(const ExpCoefficients<T>& k, const T& C) {
+T derivative_C(const ExpCoefficients<T>& k, const T& C) {
   return choose(
-      k.t < T(kExpSeriesBelow), [&] { return polynomial(k.t, kSlopeC); },
+      k.t < T(kExpSeriesBelow), [&] { return polynomial(k.t, kDerivativeC); },
       [&] { return (k.B - T(3) * C) / (T(2) * k.t); });
 }
 // From D = (1 - A / (2 B)) / t with dA/dt = (C - B) / 2.
 template <class T>
-T slope_D(const ExpCoefficients<T>& k, const T& D) {
+T derivative_D(const ExpCoefficients<T>& k, const T& D) {
   return choose(
-      k.t < T(kLogSeriesBelow), [&] { return polynomial(k.t, kSlopeD); },
+      k.t < T(kLogSeriesBelow), [&] { return polynomial(k.t, kDerivativeD); },
       [&] {
-        const T A1 = T(0.5) * (coefficient_C(k) - k.B), B1 = slope_B(k);
+        const T A1 = T(0.5) * (coefficient_C(k) - k.B), B1 = derivative_B(k);
         return -(T(0.5) * (A1 - k.A * B1 / k.B) / k.B + D) / k.t;
       });
 }
@@ -232,7 +232,8 @@ SE3JacobianT<T> left_jacobian(const se3T<T>& V) {
   const auto k = detail::exp_coefficients(V.w);
   const T C = detail::coefficient_C(k);
   return {detail::quadratic(V.w, k.B, C),
-          detail::quadratic_slope(V.w, V.v, k.B, detail::slope_B(k), C, detail::slope_C(k, C))};
+          detail::quadratic_derivative(V.w, V.v, k.B, detail::derivative_B(k), C,
+                                       detail::derivative_C(k, C))};
 }
 // Exp(V + d) = Exp(V) Exp(J d)
 template <class T>
@@ -245,7 +246,7 @@ SE3JacobianT<T> left_jacobian_inverse(const se3T<T>& V) {
   const auto k = detail::exp_coefficients(V.w);
   const T D = detail::coefficient_D(k);
   return {detail::quadratic(V.w, T(-0.5), D),
-          detail::quadratic_slope(V.w, V.v, T(-0.5), T(0), D, detail::slope_D(k, D))};
+          detail::quadratic_derivative(V.w, V.v, T(-0.5), T(0), D, detail::derivative_D(k, D))};
 }
 template <class T>
 SE3JacobianT<T> right_jacobian_inverse(const se3T<T>& V) {

@@ -65,9 +65,9 @@ Expected<void> constrained_forward_dynamics(const Model& model, ConstrainedData&
                                             std::span<const double> tau, const Loads& loads,
                                             double rate, std::span<double> a);
 
-struct ClosingOptions {
+struct ClosureOptions {
   double tolerance = 1e-12;  // of every residual
-  int most_steps = 50;
+  int max_steps = 50;
   // Numbers of velocities whose coordinates stay: a driven crank, joints that are locked.
   std::span<const int> held{};
 };
@@ -76,7 +76,7 @@ struct ClosingOptions {
 // measure of kinetic energy; from near, the error is squared each time. Returns the steps taken.
 // Refused: when it cannot be closed from here; q is then the nearest that was found.
 Expected<int> close_loops(const Model& model, ConstrainedData& data, std::span<double> q,
-                          const ClosingOptions& options = {});
+                          const ClosureOptions& options = {});
 
 // v <- the velocities with J v = 0 that are nearest by the measure of kinetic energy: what an
 // impact of the constraints makes of v.

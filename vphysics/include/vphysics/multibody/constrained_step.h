@@ -20,8 +20,8 @@
 namespace vp {
 
 struct StepReport {
-  int rounds = 0;       // of Newton's method over the laws
-  bool settled = true;  // false: the laws are met to 1e-3 only, not to rounding
+  int iterations = 0;     // of Newton's method over the laws
+  bool converged = true;  // false: the laws are met to 1e-3 only, not to rounding
 };
 
 // Replaces q and v by those h [s] later. tau: forces on top of what the model and the motors do;
@@ -37,7 +37,7 @@ Expected<StepReport> constrained_step(const Model& model, ConstrainedData& data,
 
 // Of the last step, a force for each velocity, as the mean over the step [N], [N m]: of all laws
 // together, and of the motors alone.
-std::span<const double> law_forces(const ConstrainedData& data);
+std::span<const double> force_law_forces(const ConstrainedData& data);
 std::span<const double> motor_forces(const ConstrainedData& data);
 
 }  // namespace vp

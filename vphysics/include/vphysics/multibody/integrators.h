@@ -119,7 +119,7 @@ struct AdaptiveT {
   B absolute = B(1e-9), relative = B(1e-9);
   B first_step = B(0);    // 0: found from the first rates
   B minimum_step = B(0);  // 0: 1e-12 of the duration (float: 1e-6)
-  long most_steps = 10'000'000;
+  long max_steps = 10'000'000;
 };
 template <class B>
 struct AdaptiveReportT {
@@ -132,7 +132,7 @@ using Adaptive = AdaptiveT<double>;
 using AdaptiveReport = AdaptiveReportT<double>;
 
 // Over all of step.h, in steps of its own. For double and float. Errc::not_converged: the tolerance
-// asks for a step below the minimum, or for more than most_steps; report says how far it came.
+// asks for a step below the minimum, or for more than max_steps; report says how far it came.
 template <class T>
 Expected<void> advance_adaptive(const ModelT<T>& model, IntegratorDataT<T>& data, std::span<T> q,
                                 std::span<T> v, const std::type_identity_t<StepT<T>>& step,
@@ -144,7 +144,7 @@ Expected<void> advance_adaptive(const ModelT<T>& model, IntegratorDataT<T>& data
 template <class B>
 struct VariationalT {
   B tolerance = sizeof(B) == 8 ? B(1e-14) : B(1e-6);  // of velocities
-  int most_iterations = 50;
+  int max_iterations = 50;
 };
 using Variational = VariationalT<double>;
 

@@ -60,8 +60,8 @@ class UserJoint {
   // joint: the slopes of what evaluate gives. With n degrees, dS[k]/dq[l] in dS_dq[n * k + l], and
   // d rate/dq[l] at fixed v in drate_dq[l], in the link's frame. A joint that does not have them
   // returns false, as here; calls that need them then say so.
-  virtual bool slopes(std::span<const double> /*q*/, std::span<const double> /*v*/,
-                      std::span<se3> /*dS_dq*/, std::span<se3> /*drate_dq*/) const {
+  virtual bool subspace_derivatives(std::span<const double> /*q*/, std::span<const double> /*v*/,
+                                    std::span<se3> /*dS_dq*/, std::span<se3> /*drate_dq*/) const {
     return false;
   }
 };

@@ -1,4 +1,4 @@
-#include "multibody/law_solver.h"
+#include "multibody/force_law_solver.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@ namespace {
 // cannot move by itself.
 constexpr double kNoFreedom = 1e-12;
 constexpr double kExact = 1e-13;  // relative to the terms in a velocity, whose sums round at 1e-16
-constexpr int kMostRounds = 100;
+constexpr int kMaxIterations = 100;
 constexpr int kHalvings = 40;
 // How cautious to be after a step of Newton that did not do: in turns, as one that is too bold
 // picks the same wrong pieces again, and one that is too cautious corrects few
@@ -19,19 +19,19 @@ constexpr double kCaution[8] = {1, 1, 16, 1, 256, 1, 4096, 1};
 
 }  // namespace
 
-LawSolver::LawSolver(std::size_t n)
-    : most(n),
+ForceLawSolver::ForceLawSolver(std::size_t n)
+    : capacity(n),
       G(n * n),
       w_free(n),
       self(n),
-      laws(n),
+      force_laws(n),
       p(n),
       w(n),
       on(n),
       D_(n),
       scale_(n),
       best_(n),
-      way_(n),
+      direction_(n),
       bend_(n),
       A_(n * n),
       rhs_(n),
@@ -40,11 +40,11 @@ LawSolver::LawSolver(std::size_t n)
   active_.reserve(n);
 }
 
-void LawSolver::find_w() {
+void ForceLawSolver::find_w() {
   for (std::size_t i = 0; i < size; ++i) {
     double sum = w_free[i], terms = std::fabs(w_free[i]);
     for (std::size_t j = 0; j < size; ++j) {
-      const double term = G[i * most + j] * p[j];
+      const double term = G[i * capacity + j] * p[j];
       sum += term;
       terms += std::fabs(term);
     }
@@ -55,11 +55,11 @@ void LawSolver::find_w() {
 
 // Where each joint would go by itself, all others as they are; how far the worst is from there. The
 // more cautious, the less a joint leaves the p that it has: all of them change at once.
-double LawSolver::find_pieces(double caution) {
+double ForceLawSolver::find_pieces(double caution) {
   double worst = 0.0;
   for (std::size_t i = 0; i < size; ++i) {
     const double D = caution * D_[i];
-    on[i] = laws[i].meet(w[i] - D * p[i], D);
+    on[i] = force_laws[i].intersect(w[i] - D * p[i], D);
     const double away = D * std::fabs(on[i].p - p[i]);
     if (away > 0.0) worst = std::max(worst, away / (scale_[i] + D * std::fabs(on[i].p)));
   }
@@ -67,7 +67,7 @@ double LawSolver::find_pieces(double caution) {
 }
 
 // All joints on the pieces that they are on now.
-void LawSolver::newton() {
+void ForceLawSolver::newton() {
   active_.clear();
   for (std::size_t i = 0; i < size; ++i) {
     if (on[i].at_step || on[i].beta > 0.0) {
@@ -83,26 +83,26 @@ void LawSolver::newton() {
     double sum = (on[i].at_step ? on[i].w : on[i].alpha * softness) - w_free[i];
     for (std::size_t j = 0; j < size; ++j) {
       const bool known = !on[j].at_step && !(on[j].beta > 0.0);
-      if (known) sum -= G[i * most + j] * p[j];
+      if (known) sum -= G[i * capacity + j] * p[j];
     }
     rhs_[a] = sum;
-    for (std::size_t b = 0; b < n; ++b) A_[a * most + b] = G[i * most + active_[b]];
-    A_[a * most + a] += softness;
+    for (std::size_t b = 0; b < n; ++b) A_[a * capacity + b] = G[i * capacity + active_[b]];
+    A_[a * capacity + a] += softness;
     floor_[a] = kNoFreedom * self[i];
   }
-  cholesky_.factor(A_, n, most, floor_);
+  cholesky_.factor(A_, n, capacity, floor_);
   cholesky_.solve(std::span(rhs_).first(n));
   for (std::size_t a = 0; a < n; ++a) p[active_[a]] = rhs_[a];
 }
 
 // From best_ to where E is least on the way to p. E' rises along it.
-void LawSolver::go_towards_newton() {
-  for (std::size_t i = 0; i < size; ++i) way_[i] = laws[i].cut_off(p[i]) - best_[i];
+void ForceLawSolver::go_towards_newton() {
+  for (std::size_t i = 0; i < size; ++i) direction_[i] = force_laws[i].cut_off(p[i]) - best_[i];
   for (std::size_t i = 0; i < size; ++i) {
     double at_start = w_free[i], bend = 0.0;
     for (std::size_t j = 0; j < size; ++j) {
-      at_start += G[i * most + j] * best_[j];
-      bend += G[i * most + j] * way_[j];
+      at_start += G[i * capacity + j] * best_[j];
+      bend += G[i * capacity + j] * direction_[j];
     }
     w[i] = at_start;
     bend_[i] = bend;
@@ -110,8 +110,9 @@ void LawSolver::go_towards_newton() {
   const auto slope = [&](double t) {
     double sum = 0.0;
     for (std::size_t i = 0; i < size; ++i) {
-      if (way_[i] == 0.0) continue;
-      sum += way_[i] * (w[i] + t * bend_[i] - laws[i].velocity_for(best_[i] + t * way_[i]));
+      if (direction_[i] == 0.0) continue;
+      sum += direction_[i] *
+             (w[i] + t * bend_[i] - force_laws[i].velocity_for(best_[i] + t * direction_[i]));
     }
     return sum;
   };
@@ -120,25 +121,25 @@ void LawSolver::go_towards_newton() {
     const double half = 0.5 * (from + to);
     (slope(half) < 0.0 ? from : to) = half;
   }
-  for (std::size_t i = 0; i < size; ++i) p[i] = best_[i] + from * way_[i];
+  for (std::size_t i = 0; i < size; ++i) p[i] = best_[i] + from * direction_[i];
 }
 
-void LawSolver::sweep() {
+void ForceLawSolver::sweep() {
   for (std::size_t i = 0; i < size; ++i) {
     double sum = w_free[i];
-    for (std::size_t j = 0; j < size; ++j) sum += G[i * most + j] * p[j];
-    p[i] = laws[i].meet(sum - D_[i] * p[i], D_[i]).p;
+    for (std::size_t j = 0; j < size; ++j) sum += G[i * capacity + j] * p[j];
+    p[i] = force_laws[i].intersect(sum - D_[i] * p[i], D_[i]).p;
   }
 }
 
-int LawSolver::solve() {
+int ForceLawSolver::solve() {
   for (std::size_t i = 0; i < size; ++i) {
-    D_[i] = std::max(G[i * most + i], kNoFreedom * self[i]);
+    D_[i] = std::max(G[i * capacity + i], kNoFreedom * self[i]);
   }
   find_w();
   off_ = find_pieces(1.0);
-  int round = 0;
-  for (; round < kMostRounds && !(off_ <= kExact); ++round) {
+  int iteration = 0;
+  for (; iteration < kMaxIterations && !(off_ <= kExact); ++iteration) {
     std::copy_n(p.begin(), size, best_.begin());
     newton();
     find_w();
@@ -150,9 +151,9 @@ int LawSolver::solve() {
     go_towards_newton();
     sweep();
     find_w();
-    off_ = find_pieces(kCaution[round % 8]);
+    off_ = find_pieces(kCaution[iteration % 8]);
   }
-  return round;
+  return iteration;
 }
 
 }  // namespace vp::detail

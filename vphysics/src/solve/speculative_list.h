@@ -10,7 +10,7 @@
 
 namespace vphysics_solver {
 
-struct NearBlock {
+struct SpeculativeBlock {
   IndexField a, b;     // rows of the bodies; of an empty lane the world's
   IndexField contact;  // kNoContact: an empty lane
   // When it was last looked at: the rows' ways, and how far the two may go against each other [m].
@@ -21,29 +21,30 @@ struct NearBlock {
   Field radius;
   Field clearance;
 };
-inline constexpr std::size_t kNearFields =
-    (sizeof(NearBlock) - 3 * sizeof(IndexField)) / sizeof(Field);
-static_assert(sizeof(NearBlock) % sizeof(Field) == 0);
+inline constexpr std::size_t kSpeculativeFields =
+    (sizeof(SpeculativeBlock) - 3 * sizeof(IndexField)) / sizeof(Field);
+static_assert(sizeof(SpeculativeBlock) % sizeof(Field) == 0);
 
 }  // namespace vphysics_solver
 
 namespace vp::solve {
 
-inline std::span<Field, kNearFields> fields_of(NearBlock& block) {
-  return std::span<Field, kNearFields>(reinterpret_cast<Field*>(&block.x_a), kNearFields);
+inline std::span<Field, kSpeculativeFields> fields_of(SpeculativeBlock& block) {
+  return std::span<Field, kSpeculativeFields>(reinterpret_cast<Field*>(&block.x_a),
+                                              kSpeculativeFields);
 }
-inline std::span<const Field, kNearFields> fields_of(const NearBlock& block) {
-  return std::span<const Field, kNearFields>(reinterpret_cast<const Field*>(&block.x_a),
-                                             kNearFields);
+inline std::span<const Field, kSpeculativeFields> fields_of(const SpeculativeBlock& block) {
+  return std::span<const Field, kSpeculativeFields>(reinterpret_cast<const Field*>(&block.x_a),
+                                                    kSpeculativeFields);
 }
 
 // A lane that becomes empty is filled with the last.
-class NearList {
+class SpeculativeList {
  public:
   // The index of its lane; all of that is zero but what is given.
   std::uint32_t add(std::uint32_t contact, std::uint32_t row_a, std::uint32_t row_b);
   // The same, of a lane of another list, as it is.
-  std::uint32_t add(const NearList& from, std::uint32_t index);
+  std::uint32_t add(const SpeculativeList& from, std::uint32_t index);
   // Returns the contact whose lane has now this index, or kNoContact.
   std::uint32_t remove(std::uint32_t index);
 
@@ -54,14 +55,14 @@ class NearList {
   }
 
   std::uint32_t size() const { return lanes_; }
-  std::span<NearBlock> blocks() { return blocks_; }
-  NearBlock& block(std::uint32_t index) { return blocks_[index / kLanes]; }
-  const NearBlock& block(std::uint32_t index) const { return blocks_[index / kLanes]; }
+  std::span<SpeculativeBlock> blocks() { return blocks_; }
+  SpeculativeBlock& block(std::uint32_t index) { return blocks_[index / kLanes]; }
+  const SpeculativeBlock& block(std::uint32_t index) const { return blocks_[index / kLanes]; }
   static int lane(std::uint32_t index) { return static_cast<int>(index % kLanes); }
   void reserve(std::size_t contacts) { blocks_.reserve(contacts / kLanes + 1); }
 
  private:
-  std::vector<NearBlock> blocks_;
+  std::vector<SpeculativeBlock> blocks_;
   std::uint32_t lanes_ = 0;
 };
 

@@ -8,9 +8,9 @@
 namespace vp::detail {
 
 template <class Load>
-class Inflow {
+class ChildSum {
  public:
-  explicit Inflow(std::vector<Load>& places) : places_(places.data()) {}
+  explicit ChildSum(std::vector<Load>& frames) : places_(frames.data()) {}
 
   // Of the slots inwards from the last, each once: all that its children gave,
   const Load& take(const Slot& slot) {
@@ -20,11 +20,11 @@ class Inflow {
   }
   // then what it gives itself.
   void give(const Slot& slot, const Load& load) {
-    Load& place = places_[slot.to];
+    Load& frame = places_[slot.to];
     if (slot.adds) {
-      place = place + load;
+      frame = frame + load;
     } else {
-      place = load;
+      frame = load;
     }
   }
 
@@ -35,9 +35,9 @@ class Inflow {
 // The same for loads so small that the next slot's stays in registers: Load::from and Load::to are
 // how it is read from a place and written there.
 template <class Load, class Place>
-class LightInflow {
+class LightChildSum {
  public:
-  explicit LightInflow(std::vector<Place>& places) : places_(places.data()) {}
+  explicit LightChildSum(std::vector<Place>& frames) : places_(frames.data()) {}
 
   // What its children gave comes on top of the slot's own.
   Load add(const Slot& slot, Load load) const {
@@ -48,8 +48,8 @@ class LightInflow {
   void give(const Slot& slot, const Load& load) {
     next_ = load;
     if (slot.to < Slot::kOthers) return;
-    Place& place = places_[slot.to];
-    (slot.adds ? Load::from(place.x) + load : load).to(place.x);
+    Place& frame = places_[slot.to];
+    (slot.adds ? Load::from(frame.x) + load : load).to(frame.x);
   }
 
  private:

@@ -16,17 +16,17 @@
 
 namespace vp::detail {
 
-struct LawSolver {
-  explicit LawSolver(std::size_t most);
+struct ForceLawSolver {
+  explicit ForceLawSolver(std::size_t capacity);
 
   // What is to be solved: size joints; G's rows are `most` apart. Each self is the diagonal of G
   // before constraints took their share, which tells a diagonal from rounding.
-  std::size_t most, size = 0;
+  std::size_t capacity, size = 0;
   std::vector<double> G, w_free, self;
-  std::vector<ForceLaw> laws;
+  std::vector<ForceLaw> force_laws;
   // The answer, and where each is on its law; a good guess of p makes it quick.
   std::vector<double> p, w;
-  std::vector<OnLaw> on;
+  std::vector<ForceLawPoint> on;
 
   // How many rounds it took; off() then says how far the worst law is missed, relative to the terms
   // in its velocity.
@@ -41,7 +41,7 @@ struct LawSolver {
   void sweep();
 
   double off_ = 0.0;
-  std::vector<double> D_, scale_, best_, way_, bend_, A_, rhs_, floor_;
+  std::vector<double> D_, scale_, best_, direction_, bend_, A_, rhs_, floor_;
   std::vector<std::size_t> active_;
   PivotedCholesky cholesky_;
 };

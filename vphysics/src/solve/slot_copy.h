@@ -10,9 +10,9 @@ namespace vp::solve {
 
 // All that a block knows of a lane.
 template <class Block>
-void copy_lane(const Block& from, int from_lane, Block& to, int to_lane) {
-  const auto* source = reinterpret_cast<const std::byte*>(&from) + sizeof(float) * from_lane;
-  auto* target = reinterpret_cast<std::byte*>(&to) + sizeof(float) * to_lane;
+void copy_slot(const Block& from, int from_slot, Block& to, int to_slot) {
+  const auto* source = reinterpret_cast<const std::byte*>(&from) + sizeof(float) * from_slot;
+  auto* target = reinterpret_cast<std::byte*>(&to) + sizeof(float) * to_slot;
   for (std::size_t f = 0; f < sizeof(Block) / sizeof(Field); ++f) {
     std::memcpy(target + f * sizeof(Field), source + f * sizeof(Field), sizeof(float));
   }

@@ -21,7 +21,7 @@
 namespace vp::detail {
 
 // How far the pass goes.
-enum class Reach { poses, velocities, accelerations };
+enum class PassDepth { poses, velocities, accelerations };
 
 // A body in the axes of the tree. Its central inertia comes as kSpin 1 + a a^T + b b^T: two axes
 // are less to turn than a matrix.
@@ -91,14 +91,14 @@ class SlotMotion {
     const auto& group = layout_.groups[static_cast<std::size_t>(g)];
     const auto k = group_constants<T>(tree_, g);
     const W q = coordinates(g, group);
-    W angle = group.revolute ? q : k.get(kTurn) * q;
+    W angle = group.revolute ? q : k.get(kRotation) * q;
     if (reduce_) angle = reduced(angle);
     const W limit(Angle<B>::kExactBelow);
     near_ = both(near_, both(angle < limit, -angle < limit));
     const auto [sine, cosine] = sin_cos_near(angle);
     return {sine, cosine, group.revolute ? W(B(0)) : k.get(kSlide) * q};
   }
-  VP_APART static W reduced(const W& angle) {
+  VP_NOINLINE static W reduced(const W& angle) {
     W out = angle;
     for (int k = 0; k < W::kLanes; ++k) {
       if (std::fabs(angle[k]) < Angle<B>::kExactBelow) continue;
@@ -137,7 +137,7 @@ class SlotMotion {
   // e^(S q) behind the pose at zero: two columns mix, and z leads along.
   SE3T<W> turned(int g, const Group& group, const Angles& angles) const {
     const auto k = group_constants<T>(tree_, g);
-    const Vec3T<W> x = k.vec(kTurn0), y = k.vec(kTurn0 + 3), z = k.vec(kTurn0 + 6);
+    const Vec3T<W> x = k.vec(kRotation0), y = k.vec(kRotation0 + 3), z = k.vec(kRotation0 + 6);
     Vec3T<W> p = k.vec(kShift0);
     if (!group.revolute) p += angles.slide * z;
     return {Mat3T<W>{angles.cosine * x + angles.sine * y, angles.cosine * y - angles.sine * x, z},
@@ -172,7 +172,7 @@ class SlotMotion {
   bool has_parent(int i) const { return slot(i).parent != kWorld; }
 
   // A slot of a node that is not simple: the first places the node, the others are with it.
-  VP_APART void take_general(int i, int k, SE3T<W>& local) {
+  VP_NOINLINE void take_general(int i, int k, SE3T<W>& local) {
     if (slot(i).kind == SlotKind::simple) return;
     const auto n = static_cast<std::size_t>(slot(i).node);
     const auto& node = tree_.nodes[n];
@@ -207,7 +207,7 @@ class SlotMotion {
     const Vec3T<W> z = X.rotation().cz, s = cross(X.position(), z);
     if (group.revolute) return {z, s};
     const auto k = group_constants<T>(tree_, g);
-    const W turn = k.get(kTurn), slide = k.get(kSlide);
+    const W turn = k.get(kRotation), slide = k.get(kSlide);
     return {turn * z, turn * s + slide * z};
   }
 
@@ -244,7 +244,7 @@ class SlotMotion {
   }
   // The columns of a node turn with its link, all of them: ad_V of what they make together is due
   // at the last. That is V less the parent's, and ad_V V = 0.
-  VP_APART void take_bias(int i, int k, se3T<W>& own) {
+  VP_NOINLINE void take_bias(int i, int k, se3T<W>& own) {
     const Slot& s = slot(i);
     if (s.kind != SlotKind::column) return;
     const auto n = static_cast<std::size_t>(s.node);
@@ -269,9 +269,9 @@ class SlotMotion {
       for (int i = group.first_external; i < group.end_external; ++i) {
         const External& external = layout_.externals[static_cast<std::size_t>(i)];
         if (external.slot != kWorld) {
-          sum = sum + in_lanes<T>(external, work_.slot(external.slot).twist(field));
+          sum = sum + in_blocks<T>(external, work_.slot(external.slot).twist(field));
         } else if (field == kA) {
-          sum = sum + in_lanes<T>(external, work_.A_world);
+          sum = sum + in_blocks<T>(external, work_.A_world);
         }
       }
       fields.set(field, sum);
@@ -306,10 +306,10 @@ class SlotMotion {
 // body_of(k, X) makes of a group's constants and poses what is due of its bodies, and then
 // take(g, body, V, A) has that, with what the reach reaches: in this order little has to be kept at
 // a time.
-template <class T, Reach kReach, class BodyOf, class Take>
-class Outwards {
+template <class T, PassDepth kDepth, class BodyOf, class Take>
+class BaseToTip {
  public:
-  Outwards(SlotMotion<T>& motion, const BodyOf& body_of, const Take& take)
+  BaseToTip(SlotMotion<T>& motion, const BodyOf& body_of, const Take& take)
       : motion_(motion), body_of_(body_of), take_(take) {}
 
   // Of all groups, the first first. The sine and cosine of a joint are a long chain of operations:
@@ -333,7 +333,7 @@ class Outwards {
   using Group = typename SlotMotion<T>::Group;
 
   // Apart, so that simple joints' numbers need not be in memory for what others call.
-  VP_FLATTEN VP_APART void move_any(int g, const Group& group, const Angles& angles) {
+  VP_FLATTEN VP_NOINLINE void move_any(int g, const Group& group, const Angles& angles) {
     move_as<false>(g, group, angles);
   }
 
@@ -352,7 +352,7 @@ class Outwards {
       for (int k = 0; k < group.count; ++k) motion_.take_column(g * kSlots<T> + k, k, S);
     }
     fields.set(kS, S);
-    if constexpr (kReach == Reach::poses) {
+    if constexpr (kDepth == PassDepth::poses) {
       take_(g, body, se3T<W>{}, se3T<W>{});
       return;
     }
@@ -362,7 +362,7 @@ class Outwards {
       for (int k = 0; k < group.count; ++k) motion_.take_root_velocity(g * kSlots<T> + k, k, own);
     }
     const se3T<W> V = motion_.summed(g, group, own, kV);
-    if constexpr (kReach != Reach::accelerations) {
+    if constexpr (kDepth != PassDepth::accelerations) {
       take_(g, body, V, se3T<W>{});
       return;
     }
@@ -386,11 +386,11 @@ class Outwards {
 };
 
 // Runs a pass over all groups.
-template <class T, Reach kReach, class BodyOf, class Take>
+template <class T, PassDepth kDepth, class BodyOf, class Take>
 void outwards(const Tree<base_t<T>>& tree, Work<T>& work, Span<T> q, Span<T> v, Span<T> a,
               const BodyOf& body_of, const Take& take) {
   SlotMotion<T> motion(tree, work, q, v, a);
-  Outwards<T, kReach, BodyOf, Take> pass(motion, body_of, take);
+  BaseToTip<T, kDepth, BodyOf, Take> pass(motion, body_of, take);
   const int count = static_cast<int>(layout_of<T>(tree).groups.size());
   if (count == 0) return;
   for (;;) {
@@ -403,15 +403,15 @@ void outwards(const Tree<base_t<T>>& tree, Work<T>& work, Span<T> q, Span<T> v, 
 
 // The loads' forces on the links, from the bodies' bias forces.
 template <class T, bool kInRows>
-VP_APART void subtract_external(const Tree<base_t<T>>& tree, Work<T>& work,
-                                Span<dse3T<T>> external) {
+VP_NOINLINE void subtract_external(const Tree<base_t<T>>& tree, Work<T>& work,
+                                   Span<dse3T<T>> external) {
   if (external.empty()) return;
-  for (std::size_t l = 0; l < tree.places.size(); ++l) {
-    const auto& place = tree.places[l];
-    if (place.node == kWorld) continue;
-    const int slot = tree.nodes[static_cast<std::size_t>(place.node)].body_slot();
+  for (std::size_t l = 0; l < tree.frames.size(); ++l) {
+    const auto& frame = tree.frames[l];
+    if (frame.node == kWorld) continue;
+    const int slot = tree.nodes[static_cast<std::size_t>(frame.node)].body_slot();
     const auto fields = work.slot(slot);
-    const dse3T<T> F = InvdAd(fields.pose(kX) * wide<T>(place.T_node_link), external[l]);
+    const dse3T<T> F = InvdAd(fields.pose(kX) * wide<T>(frame.T_node_link), external[l]);
     if constexpr (kInRows) {
       T* const at = work.row(slot) + kRowForce;
       const T parts[6] = {F.m.x, F.m.y, F.m.z, F.f.x, F.f.y, F.f.z};

@@ -27,7 +27,7 @@ struct NewContact {
 };
 
 template <int P>
-void write_lane(ContactBlock<P>& block, int lane, const NewContact& contact, const BodyRow& a,
+void write_slot(ContactBlock<P>& block, int lane, const NewContact& contact, const BodyRow& a,
                 const BodyRow& b);
 
 // All accumulated impulses of a block times a factor.

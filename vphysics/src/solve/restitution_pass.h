@@ -20,19 +20,19 @@ namespace vp::solve {
 
 // The impulses of a bounce take this many rounds among the points of one contact: a box that falls
 // flat needs more than one that falls on a corner.
-inline constexpr int kStrikeSweeps = 8;
+inline constexpr int kRestitutionSweeps = 8;
 
 template <int W, int P>
-struct Closing {
+struct Approaching {
   using F = Lanes<W>;
 
-  Closing(const LanesOf<W, P>& c, const Normals<W, P>& normals, float h) {
+  Approaching(const LanesOf<W, P>& c, const Normals<W, P>& normals, float h) {
     normals.speeds(c, u);
     normals.separations(c, s);
     closes = F(0.0f) > F(0.0f);
     for (int i = 0; i < P; ++i) {
-      gap[i] = larger(F(0.0f), s[i]);
-      reaches[i] = F(h) * -u[i] >= gap[i];
+      separation[i] = larger(F(0.0f), s[i]);
+      reaches[i] = F(h) * -u[i] >= separation[i];
       closes = either(closes, reaches[i]);
     }
   }
@@ -48,17 +48,17 @@ struct Closing {
       const F now = -u[i] - added;  // what the sub-step's own forces add is no approach
       reaches[i] = both(reaches[i], now > F(0.0f));
       fastest = larger(fastest, select(reaches[i], now, F(0.0f)));
-      const F time = gap[i] / larger(-u[i], F(1e-30f));
+      const F time = separation[i] / larger(-u[i], F(1e-30f));
       soonest = select(reaches[i], smaller(soonest, time), soonest);
     }
   }
-  F u[P], s[P], gap[P], gain, soonest, fastest;
+  F u[P], s[P], separation[P], gain, soonest, fastest;
   LaneMask<W> reaches[P], closes;  // within h; any of a lane's points does
 };
 
 // True if any lane bounced. Blocks that relaxing has found idle are passed by.
 template <int W, int P>
-bool strike_lanes(LanesOf<W, P>& c, float h, float threshold) {
+bool apply_restitution_lanes(LanesOf<W, P>& c, float h, float threshold) {
   using F = Lanes<W>;
   using V = Vec3T<F>;
   auto& block = c.block();
@@ -66,64 +66,67 @@ bool strike_lanes(LanesOf<W, P>& c, float h, float threshold) {
   const auto rests = sum_of_impulses(c) > F(0.0f);
   const F e = c.get(block.restitution);
   const auto idle = neither_bounces_nor_comes_to_touch(rests, e);
-  c.gather_velocities_and_ways();
+  c.gather_velocities_and_displacements();
   const Normals<W, P> normals(c);
-  Closing<W, P> closing(c, normals, h);
-  if (none(both(closing.closes, !idle))) return false;
-  closing.find_approach(c, normals, h);
-  const auto hits = closing.fastest > F(threshold);
+  Approaching<W, P> approach_speed(c, normals, h);
+  if (none(both(approach_speed.closes, !idle))) return false;
+  approach_speed.find_approach(c, normals, h);
+  const auto hits = approach_speed.fastest > F(threshold);
   if (none(hits)) return false;
   const auto fresh = both(hits, !rests);
-  c.put(block.closing,
-        select(fresh, larger(c.get(block.closing), closing.fastest), c.get(block.closing)));
+  c.put(block.approach_speed,
+        select(fresh, larger(c.get(block.approach_speed), approach_speed.fastest),
+               c.get(block.approach_speed)));
   const auto bounces = both(hits, e > F(0.0f));
   if (none(bounces)) return false;
 
-  F u[P], p[P], mass[P], share[P];
-  const F after = F(h) - closing.soonest;
+  F u[P], p[P], mass[P], fraction[P];
+  const F after = F(h) - approach_speed.soonest;
   F leaving(0.0f), gained(0.0f);
   for (int i = 0; i < P; ++i) {
-    const F start = larger(F(0.0f), -closing.u[i] - F(0.5f * h) * closing.gain);
-    const F at_surface = sqrt(start * start + F(2.0f) * closing.gain * closing.gap[i]);
-    const F target = e * at_surface - closing.gain * (F(0.5f * h) - closing.soonest);
-    leaving = larger(leaving, select(closing.reaches[i], e * at_surface, F(0.0f)));
-    const auto acts = both(bounces, closing.reaches[i]);
-    u[i] = closing.u[i] - target;
+    const F start = larger(F(0.0f), -approach_speed.u[i] - F(0.5f * h) * approach_speed.gain);
+    const F at_surface =
+        sqrt(start * start + F(2.0f) * approach_speed.gain * approach_speed.separation[i]);
+    const F target = e * at_surface - approach_speed.gain * (F(0.5f * h) - approach_speed.soonest);
+    leaving = larger(leaving, select(approach_speed.reaches[i], e * at_surface, F(0.0f)));
+    const auto acts = both(bounces, approach_speed.reaches[i]);
+    u[i] = approach_speed.u[i] - target;
     mass[i] = select(acts, c.get(block.inverse[i]), F(0.0f));
-    share[i] = select(acts, F(1.0f), F(0.0f));
+    fraction[i] = select(acts, F(1.0f), F(0.0f));
     p[i] = F(0.0f);
   }
-  const Points<W, P> points(c, mass, share, u, p);
-  for (int sweep = 0; sweep < (P > 1 ? kStrikeSweeps : 1); ++sweep) {
-    for (int i = 0; i < P; ++i) p[i] = larger(points.wanted(i, p), F(0.0f));
+  const Points<W, P> points(c, mass, fraction, u, p);
+  for (int sweep = 0; sweep < (P > 1 ? kRestitutionSweeps : 1); ++sweep) {
+    for (int i = 0; i < P; ++i) p[i] = larger(points.target(i, p), F(0.0f));
   }
   F load = p[0];
   for (int i = 1; i < P; ++i) load += p[i];
   c.put(block.impact, c.get(block.impact) + load);
   const V v_a = c.v_a, w_a = c.w_a, v_b = c.v_b, w_b = c.w_b;
-  normals.push(c, p);
+  normals.apply_impulse(c, p);
 
   // The way of this sub-step, which will be gone at the new velocities as a whole.
   F now[P];
   normals.speeds(c, now);
   for (int i = 0; i < P; ++i) {
-    gained = larger(gained, select(closing.reaches[i], now[i] - closing.u[i], F(0.0f)));
+    gained =
+        larger(gained, select(approach_speed.reaches[i], now[i] - approach_speed.u[i], F(0.0f)));
   }
-  F speed = now[0], gap = closing.s[0];
+  F speed = now[0], separation = approach_speed.s[0];
   for (int i = 1; i < P; ++i) {
-    const auto first = both(closing.reaches[i], closing.s[i] < gap);
+    const auto first = both(approach_speed.reaches[i], approach_speed.s[i] < separation);
     speed = select(first, now[i], speed);
-    gap = select(first, closing.s[i], gap);
+    separation = select(first, approach_speed.s[i], separation);
   }
-  const F wanted = leaving * after - F(0.5f) * closing.gain * after * after;
-  const F error = wanted - (larger(F(0.0f), gap) + F(h) * speed);
+  const F target = leaving * after - F(0.5f) * approach_speed.gain * after * after;
+  const F error = target - (larger(F(0.0f), separation) + F(h) * speed);
   const auto moves = both(bounces, gained > F(1e-9f));
   const F part = select(moves, clamped(error / larger(gained, F(1e-9f)), F(h)), F(0.0f));
   c.x_a += part * (c.v_a - v_a);
   c.turn_a += part * (c.w_a - w_a);
   c.x_b += part * (c.v_b - v_b);
   c.turn_b += part * (c.w_b - w_b);
-  c.scatter_ways();
+  c.scatter_displacements();
 
   // Friction of the bounce.
   const Grip<W, P> at(c, normals);
@@ -133,8 +136,8 @@ bool strike_lanes(LanesOf<W, P>& c, float h, float threshold) {
   F q[2] = {F(0.0f), F(0.0f)};
   grip_or_slide(c, slide, c.get(block.friction) * load, q);
   const V force = q[0] * at.t + q[1] * at.b;
-  c.push_linear(force);
-  c.push_angular(cross(at.r_a, force), cross(at.r_b, force));
+  c.apply_linear(force);
+  c.apply_angular(cross(at.r_a, force), cross(at.r_b, force));
   c.scatter_velocities();
   return true;
 }
@@ -142,57 +145,60 @@ bool strike_lanes(LanesOf<W, P>& c, float h, float threshold) {
 // Bits of lanes whose geometry must be computed again: by the end of a step of dt, at their present
 // speeds, they will have slid by more than slid_limit or turned by more than `turn` [rad]. What a
 // motor turns may have long arms, and what stands on it goes out by as much as they lag behind.
-inline constexpr float kDrivenTurn = 5e-4f;  // [rad]
+inline constexpr float kDrivenRotation = 5e-4f;  // [rad]
 template <int W, int P>
-std::uint32_t find_moved_lanes(LanesOf<W, P>& c, float dt, float turn) {
+std::uint32_t find_moved_slots(LanesOf<W, P>& c, float dt, float rotation) {
   using F = Lanes<W>;
   using V = Vec3T<F>;
   auto& block = c.block();
-  c.gather_velocities_and_ways();
+  c.gather_velocities_and_displacements();
   const V r_a = c.get(block.grip), r_b = r_a + c.get(block.d);
   const F step(dt);
   const V x_a = c.x_a + step * c.v_a, x_b = c.x_b + step * c.v_b;
   const V turn_a = c.turn_a + step * c.w_a, turn_b = c.turn_b + step * c.w_b;
   const V slid = x_b + cross(turn_b, r_b) - x_a - cross(turn_a, r_a) - c.get(block.slid);
-  const V by_a = turn_a - c.get(block.turned_a), by_b = turn_b - c.get(block.turned_b);
-  const F limit = c.get(block.slid_limit), own(turn * turn), driven(kDrivenTurn * kDrivenTurn);
-  const auto still = both(
-      both(dot(slid, slid) <= limit * limit, dot(by_a, by_a) <= select(c.pushes_a(), own, driven)),
-      dot(by_b, by_b) <= select(c.pushes_b(), own, driven));
+  const V by_a = turn_a - c.get(block.rotated_a), by_b = turn_b - c.get(block.rotated_b);
+  const F limit = c.get(block.slid_limit), own(rotation * rotation),
+          driven(kDrivenRotation * kDrivenRotation);
+  const auto still = both(both(dot(slid, slid) <= limit * limit,
+                               dot(by_a, by_a) <= select(c.is_movable_a(), own, driven)),
+                          dot(by_b, by_b) <= select(c.is_movable_b(), own, driven));
   return lanes::bits_of(!still);
 }
 
 // Bits of lanes that hit, or that push and did not touch, or the other way round; kLanes above,
 // those of lanes that push.
 template <int W, int P>
-std::uint32_t find_news_lanes(const LanesOf<W, P>& c, int at) {
+std::uint32_t find_changed_slots(const LanesOf<W, P>& c, int at) {
   const Lanes<W> zero(0.0f), impact = c.get(c.block().impact);
   const auto loaded = sum_of_impulses(c) + impact > zero;
-  const auto hits = c.get(c.block().closing) + impact > zero;
+  const auto hits = c.get(c.block().approach_speed) + impact > zero;
   std::uint32_t bits = 0;
   for (int i = 0; i < W; ++i) {
     const bool pushes = loaded.lanes[i] != 0;
     if (pushes) c.mark_carried(i);
-    const bool news = hits.lanes[i] != 0 || pushes != (c.block().touches.lane[at + i] != 0);
-    bits |= (news ? 1u : 0u) << i | (pushes ? 1u << kLanes : 0u) << i;
+    const bool changed = hits.lanes[i] != 0 || pushes != (c.block().touches.lane[at + i] != 0);
+    bits |= (changed ? 1u : 0u) << i | (pushes ? 1u << kLanes : 0u) << i;
   }
   return bits;
 }
 
 // Bits of near pairs that may go farther than their clearance.
 template <int W>
-std::uint32_t find_closer_lanes(const NearBlock& block, int at, BodyRow* rows, float dt) {
+std::uint32_t find_closer_slots(const SpeculativeBlock& block, int at, BodyRow* rows, float dt) {
   using F = Lanes<W>;
   using V = Vec3T<F>;
   const auto get = [&](const Field& f) { return F(lanes::load<W>(f.lane + at)); };
   const auto get3 = [&](const Field3& f) { return V{get(f.x), get(f.y), get(f.z)}; };
-  const auto gather = [&](const IndexField& of, V& x, V& turn) {
-    F velocity[8], way[8];
+  const auto gather = [&](const IndexField& of, V& x, V& rotation) {
+    F velocity[8], displacement[8];
     lanes::gather8<W>([&](int i) { return rows[of.lane[at + i]].velocity; }, velocity);
-    lanes::gather8<W>([&](int i) { return rows[of.lane[at + i]].way; }, way);
+    lanes::gather8<W>([&](int i) { return rows[of.lane[at + i]].displacement; }, displacement);
     const F step(dt);
-    x = V{way[0], way[1], way[2]} + step * V{velocity[0], velocity[1], velocity[2]};
-    turn = V{way[3], way[4], way[5]} + step * V{velocity[3], velocity[4], velocity[5]};
+    x = V{displacement[0], displacement[1], displacement[2]} +
+        step * V{velocity[0], velocity[1], velocity[2]};
+    rotation = V{displacement[3], displacement[4], displacement[5]} +
+               step * V{velocity[3], velocity[4], velocity[5]};
   };
   V x_a, turn_a, x_b, turn_b;
   gather(block.a, x_a, turn_a);
@@ -204,8 +210,8 @@ std::uint32_t find_closer_lanes(const NearBlock& block, int at, BodyRow* rows, f
   const V by_b = x_b - get3(block.x_b) + cross(turn_b, arm_b);
   const auto size = [](const V& v) { return sqrt(dot(v, v)); };
   // An arm that turns leaves its tangent by half of the square.
-  const auto bow = [&](const V& turn, const V& arm) {
-    return F(0.5f) * dot(turn, turn) * size(arm);
+  const auto bow = [&](const V& rotation, const V& arm) {
+    return F(0.5f) * dot(rotation, rotation) * size(arm);
   };
   const F gone = size(by_b - by_a) + get(block.radius) * size(turn_b - turn_a) +
                  bow(turn_a, arm_a) + bow(turn_b, arm_b);

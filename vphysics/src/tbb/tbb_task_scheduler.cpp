@@ -1,4 +1,4 @@
-#include "vphysics/tbb_jobs.h"
+#include "vphysics/tbb_task_scheduler.h"
 
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
@@ -7,9 +7,9 @@
 namespace vp {
 namespace {
 
-class TbbJobs final : public Jobs {
+class TbbTaskScheduler final : public TaskScheduler {
  public:
-  explicit TbbJobs(int workers)
+  explicit TbbTaskScheduler(int workers)
       : arena_(workers > 0 ? workers : oneapi::tbb::task_arena::automatic) {}
 
   void run(std::size_t count, std::size_t grain, const Task& task) override {
@@ -28,8 +28,8 @@ class TbbJobs final : public Jobs {
 
 }  // namespace
 
-std::shared_ptr<Jobs> make_tbb_jobs(int workers) {
-  return std::make_shared<TbbJobs>(workers);
+std::shared_ptr<TaskScheduler> make_tbb_task_scheduler(int workers) {
+  return std::make_shared<TbbTaskScheduler>(workers);
 }
 
 }  // namespace vp

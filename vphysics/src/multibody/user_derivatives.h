@@ -9,7 +9,7 @@ namespace vp::detail {
 
 // Of n degrees, in the link's frame.
 template <class T>
-struct UserSlopes {
+struct UserDerivatives {
   std::array<se3T<T>, 36> S{};    // dS[k]/dq[l] at [n * k + l]
   std::array<se3T<T>, 6> rate{};  // d rate/dq[l]
 };
@@ -42,10 +42,12 @@ struct UserState {
 
 // Of one lane. False where the joint does not say them.
 template <class T>
-bool user_slopes(const Node<base_t<T>>& node, const UserState& at, int lane, UserSlopes<T>& out) {
-  UserSlopes<double> found;
-  if (!node.user->slopes(at.coordinates(), at.velocities(), std::span(found.S).first(at.n * at.n),
-                         std::span(found.rate).first(at.n))) {
+bool user_derivatives(const Node<base_t<T>>& node, const UserState& at, int lane,
+                      UserDerivatives<T>& out) {
+  UserDerivatives<double> found;
+  if (!node.user->subspace_derivatives(at.coordinates(), at.velocities(),
+                                       std::span(found.S).first(at.n * at.n),
+                                       std::span(found.rate).first(at.n))) {
     return false;
   }
   for (std::size_t i = 0; i < at.n * at.n; ++i) set_lane(out.S[i], lane, found.S[i]);
@@ -73,12 +75,12 @@ bool user_column_rates(const Node<T>& node, const UserState& at, std::array<se3T
     rates[0] = static_cast<T>(at.v[0]) * user_rate(node, unit);
     return true;
   }
-  UserSlopes<T> slopes;
-  if (!user_slopes<T>(node, at, 0, slopes)) return false;
+  UserDerivatives<T> derivatives;
+  if (!user_derivatives<T>(node, at, 0, derivatives)) return false;
   for (std::size_t k = 0; k < at.n; ++k) {
     rates[k] = {};
     for (std::size_t l = 0; l < at.n; ++l) {
-      rates[k] = rates[k] + static_cast<T>(at.v[l]) * slopes.S[at.n * k + l];
+      rates[k] = rates[k] + static_cast<T>(at.v[l]) * derivatives.S[at.n * k + l];
     }
   }
   return true;

@@ -1,4 +1,4 @@
-#include "solve/contact_lane.h"
+#include "solve/contact_slot.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,14 +13,14 @@ namespace {
 struct Side {
   double mass;
   Sym3 inertia;
-  Vec3 way, turn;
+  Vec3 displacement, rotation;
 
   explicit Side(const BodyRow& row)
       : mass(static_cast<double>(row.velocity[kInverseMass])),
         inertia{at(row.inertia, 0), at(row.inertia, 1), at(row.inertia, 2),
                 at(row.inertia, 3), at(row.inertia, 4), at(row.inertia, 5)},
-        way(vector_of(row.way)),
-        turn(vector_of(row.way + 3)) {}
+        displacement(vector_of(row.displacement)),
+        rotation(vector_of(row.displacement + 3)) {}
 
  private:
   static double at(const float* f, int i) { return static_cast<double>(f[i]); }
@@ -46,13 +46,13 @@ void write_normals(ContactBlock<P>& block, int lane, const NewContact& c, const 
                    const Side& a, const Side& b) {
   const Vec3& n = c.normal;
   const Vec3 d_n = cross(c.x_a - c.x_b, n);
-  const double linear = dot(n, b.way - a.way) + dot(d_n, b.turn);
+  const double linear = dot(n, b.displacement - a.displacement) + dot(d_n, b.rotation);
   Vec3 arm_a[4], arm_b[4], answer_a[4], answer_b[4];
   for (int i = 0; i < P; ++i) {
     if (i >= c.count) {
       put(block.arm[i].t, lane, 0.0);
       put(block.arm[i].b, lane, 0.0);
-      put(block.base[i], lane, static_cast<double>(kFarApart));
+      put(block.base[i], lane, static_cast<double>(kFarSeparated));
       for (Field* f : {&block.impulse[i], &block.inverse[i]}) put(*f, lane, 0.0);
       for (int j = 0; j < i; ++j) put(block.off_diagonal[pair_index(i, j)], lane, 0.0);
       continue;
@@ -71,14 +71,15 @@ void write_normals(ContactBlock<P>& block, int lane, const NewContact& c, const 
     }
     put(block.arm[i].t, lane, dot(arm_a[i], t));
     put(block.arm[i].b, lane, dot(arm_a[i], cross(n, t)));
-    put(block.base[i], lane, c.points[i].separation - linear - dot(arm_a[i], b.turn - a.turn));
+    put(block.base[i], lane,
+        c.points[i].separation - linear - dot(arm_a[i], b.rotation - a.rotation));
     block.impulse[i].lane[lane] = c.points[i].impulse;
   }
 }
 
 // The weighted middle of the points: those that are apart carry nothing and do not count, unless
 // none does.
-Vec3 middle_of(const NewContact& c) {
+Vec3 centre_of_points(const NewContact& c) {
   Vec3 sum{};
   for (int i = 0; i < c.count; ++i) sum += c.points[i].position - c.points[0].position;
   return c.points[0].position + (1.0 / c.count) * sum;
@@ -88,7 +89,7 @@ template <int P>
 void write_friction(ContactBlock<P>& block, int lane, const NewContact& c, const Vec3& t1,
                     const Side& a, const Side& b) {
   const Vec3& n = c.normal;
-  const Vec3 middle = middle_of(c), r_a = middle - c.x_a, r_b = middle - c.x_b;
+  const Vec3 centre = centre_of_points(c), r_a = centre - c.x_a, r_b = centre - c.x_b;
   const Vec3 t2 = cross(n, t1);
   const Vec3 a1 = cross(r_a, t1), a2 = cross(r_a, t2), b1 = cross(r_b, t1), b2 = cross(r_b, t2);
   const double mass = a.mass + b.mass;
@@ -111,12 +112,12 @@ void write_friction(ContactBlock<P>& block, int lane, const NewContact& c, const
   put(block.surface_speed[0], lane, dot(t1, c.surface_velocity));
   put(block.surface_speed[1], lane, dot(t2, c.surface_velocity));
 
-  double reach = 0.0;
-  for (int i = 0; i < c.count; ++i) reach += norm(c.points[i].position - middle);
+  double extent = 0.0;
+  for (int i = 0; i < c.count; ++i) extent += norm(c.points[i].position - centre);
   const Sym3 both = a.inertia + b.inertia;
   const double turns = dot(n, both * n);
   put(block.twist_mass, lane, turns > 0.0 ? 1.0 / turns : 0.0);
-  put(block.twist_arm, lane, c.friction * reach / c.count + c.spinning);
+  put(block.twist_arm, lane, c.friction * extent / c.count + c.spinning);
   put(block.twist_impulse, lane, turns > 0.0 ? dot(n, c.old_moment) : 0.0);
   const double turns_over = dot(t1, both * t1) + dot(t2, both * t2);
   const bool rolls = c.rolling > 0.0 && turns_over > 0.0;
@@ -125,13 +126,14 @@ void write_friction(ContactBlock<P>& block, int lane, const NewContact& c, const
   // What resists nothing must not be handed on: no pass would ever take it back.
   put(block.roll_impulse[0], lane, rolls ? dot(t1, c.old_moment) : 0.0);
   put(block.roll_impulse[1], lane, rolls ? dot(t2, c.old_moment) : 0.0);
-  put(block.slid, lane, b.way + cross(b.turn, r_b) - a.way - cross(a.turn, r_a));
+  put(block.slid, lane,
+      b.displacement + cross(b.rotation, r_b) - a.displacement - cross(a.rotation, r_a));
 }
 
 }  // namespace
 
 template <int P>
-void write_lane(ContactBlock<P>& block, int lane, const NewContact& c, const BodyRow& row_a,
+void write_slot(ContactBlock<P>& block, int lane, const NewContact& c, const BodyRow& row_a,
                 const BodyRow& row_b) {
   const Side a(row_a), b(row_b);
   put(block.active, lane, 1.0);
@@ -141,14 +143,14 @@ void write_lane(ContactBlock<P>& block, int lane, const NewContact& c, const Bod
   write_normals(block, lane, c, t, a, b);
   write_friction(block, lane, c, t, a, b);
   put(block.restitution, lane, c.restitution);
-  put(block.turned_a, lane, a.turn);
-  put(block.turned_b, lane, b.turn);
+  put(block.rotated_a, lane, a.rotation);
+  put(block.rotated_b, lane, b.rotation);
   put(block.slid_limit, lane, c.slid_limit);
 }
 
-template void write_lane<1>(ContactBlock<1>&, int, const NewContact&, const BodyRow&,
+template void write_slot<1>(ContactBlock<1>&, int, const NewContact&, const BodyRow&,
                             const BodyRow&);
-template void write_lane<4>(ContactBlock<4>&, int, const NewContact&, const BodyRow&,
+template void write_slot<4>(ContactBlock<4>&, int, const NewContact&, const BodyRow&,
                             const BodyRow&);
 
 template <int P>

@@ -1,5 +1,6 @@
-// Who does a world's work in parallel: the user's job system, or oneTBB (tbb_jobs.h). The results
-// do not depend on who does it, nor on how many: the same bits with none, one or more workers.
+// Who does a world's work in parallel: the user's job system, or oneTBB (tbb_task_scheduler.h). The
+// results do not depend on who does it, nor on how many: the same bits with none, one or more
+// workers.
 #pragma once
 
 #include <cstddef>
@@ -7,9 +8,9 @@
 
 namespace vp {
 
-class Jobs {
+class TaskScheduler {
  public:
-  virtual ~Jobs() = default;
+  virtual ~TaskScheduler() = default;
 
   // What to do for parts [begin, end) of a range.
   struct Task {

@@ -1,4 +1,4 @@
-#include "world/free_turn.h"
+#include "world/free_rotation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,21 +9,21 @@ namespace {
 // A part turns by no more [rad]: two or three steps of Newton's method, and a nutation within 2%.
 constexpr double kPart = 0.5;
 // Beyond so many parts, 128 rad in a step, where the body points means nothing any more.
-constexpr int kMostParts = 256;
+constexpr int kMaxParts = 256;
 
 // tan(x) / x for |x| <= kPart / 2, by its continued fraction to x^9: to rounding.
-double tangent_share(double xx) {
+double half_tangent_ratio(double xx) {
   return (945.0 - xx * (105.0 - xx)) / (945.0 - xx * (420.0 - 15.0 * xx));
 }
 
 // m of  I (m - w) + b m x I m = 0.
 Vec3 midpoint(const Sym3& I, const Vec3& w, double b) {
   constexpr double kEnough = 1e-12;  // relative to w
-  constexpr int kMost = 8;
+  constexpr int kMax = 8;
   const Mat3 inertia{I * Vec3{1, 0, 0}, I * Vec3{0, 1, 0}, I * Vec3{0, 0, 1}};
   const double enough = kEnough * kEnough * dot(w, w);
   Vec3 m = w;
-  for (int i = 0; i < kMost; ++i) {
+  for (int i = 0; i < kMax; ++i) {
     const Vec3 L = I * m;
     const Mat3 J = inertia + b * (skew(m) * inertia - skew(L));
     const double determinant = dot(J.cx, cross(J.cy, J.cz));
@@ -41,25 +41,25 @@ Vec3 midpoint(const Sym3& I, const Vec3& w, double b) {
 }
 
 // v seen from a frame that has turned by Cayley's map of c.
-Vec3 turned_back(const Vec3& c, const Vec3& v) {
+Vec3 rotated_back(const Vec3& c, const Vec3& v) {
   const Vec3 u = cross(v, c);
   return v + (2.0 / (1.0 + dot(c, c))) * (u + cross(u, c));
 }
 
 }  // namespace
 
-FreeTurn free_turn(const Sym3& I, const Sym3& inverse, const Vec3& start, double dt) {
-  FreeTurn out{{0, 0, 0, 1}, start};
+FreeRotation free_rotation(const Sym3& I, const Sym3& inverse, const Vec3& start, double dt) {
+  FreeRotation out{{0, 0, 0, 1}, start};
   Vec3 L = I * start;
   double left = dt;
-  for (int i = 0; i < kMostParts && left > 0.0; ++i) {
+  for (int i = 0; i < kMaxParts && left > 0.0; ++i) {
     const Vec3 w = out.w;
     const double ww = dot(w, w);
-    if (i == 0 && hardly_turns(w, dt)) {
+    if (i == 0 && hardly_rotates(w, dt)) {
       const Vec3 c = (0.5 * dt) * w;
       const double shrink = 1.0 - 0.5 * dot(c, c);
       out.q = {shrink * c.x, shrink * c.y, shrink * c.z, shrink};
-      out.w = inverse * turned_back(c, L);
+      out.w = inverse * rotated_back(c, L);
       return out;
     }
     if (!(ww > 0.0)) break;
@@ -67,28 +67,30 @@ FreeTurn free_turn(const Sym3& I, const Sym3& inverse, const Vec3& start, double
     const Vec3 change = inverse * cross(L, w);
     const double fastest = std::sqrt(std::max(ww, dot(change, change) / ww));
     const double s = left * fastest > kPart ? kPart / fastest : left;
-    const double b = 0.5 * s * tangent_share(0.25 * s * s * ww);
+    const double b = 0.5 * s * half_tangent_ratio(0.25 * s * s * ww);
     const Vec3 m = midpoint(I, w, b), c = b * m;
     const Quaternion q = out.q;
     const Vec3 v{q.x, q.y, q.z}, next = q.w * c + v + cross(v, c);
     const double shrink = 1.0 / std::sqrt(1.0 + dot(c, c));
     out.q = {shrink * next.x, shrink * next.y, shrink * next.z, shrink * (q.w - dot(v, c))};
-    L = turned_back(c, L);
+    L = rotated_back(c, L);
     out.w = inverse * L;
-    out.way += s * m;
+    out.rotation_sum += s * m;
     left -= s;
   }
   return out;
 }
 
-Vec3 constant_turn(const FreeTurn& turn) {
-  const Vec3 shorter = Log(turn.q);
-  const double angle = norm(shorter), way = norm(turn.way);
-  if (way <= kPi) return shorter;
+Vec3 mean_rotation(const FreeRotation& rotation) {
+  const Vec3 shorter = Log(rotation.q);
+  const double angle = norm(shorter), rotation_sum = norm(rotation.rotation_sum);
+  if (rotation_sum <= kPi) return shorter;
   // With as many whole turns, either way about, as bring it nearest to the way.
-  const Vec3 axis = angle > 1e-9 ? (1.0 / angle) * shorter : (1.0 / way) * turn.way;
-  const double whole = std::floor((dot(axis, turn.way) - angle) / (2.0 * kPi) + 0.5);
-  return (angle + 2.0 * kPi * whole) * axis;
+  const Vec3 axis =
+      angle > 1e-9 ? (1.0 / angle) * shorter : (1.0 / rotation_sum) * rotation.rotation_sum;
+  const double revolutions =
+      std::floor((dot(axis, rotation.rotation_sum) - angle) / (2.0 * kPi) + 0.5);
+  return (angle + 2.0 * kPi * revolutions) * axis;
 }
 
 }  // namespace vp

@@ -15,13 +15,13 @@
 
 namespace vp {
 
-class Structure {
+class TopologyHash {
  public:
-  explicit Structure(std::uint64_t& digest) : digest_(digest) {}
+  explicit TopologyHash(std::uint64_t& digest) : digest_(digest) {}
 
   template <std::unsigned_integral T>
-  void add(T word) {
-    digest_ = mixed(digest_, word);
+  void add(T value) {
+    digest_ = mixed(digest_, value);
   }
   // One after the other.
   template <class A, class B, class... MORE>
@@ -150,7 +150,7 @@ class Structure {
   void add_kind(const auto&) {}  // the others have no constants
   void add_kind(const Hinge& j) { add_limits(j.lower, j.upper); }
   void add_kind(const Slider& j) { add_limits(j.lower, j.upper); }
-  void add_kind(const Distance& j) { add_limits(j.least, j.most); }
+  void add_kind(const Distance& j) { add_limits(j.min, j.max); }
   void add_kind(const Spring& j) {
     for (const double x : {j.length, j.stiffness, j.damping}) add(x);
   }
@@ -171,8 +171,8 @@ class Structure {
     const int rows = j.constraint->rows();
     add(static_cast<std::uint64_t>(rows));
     for (int i = 0; i < rows; ++i) {
-      const PairRowLaw law = j.constraint->law(i);
-      for (const double x : {law.frequency, law.damping_ratio, law.least_force, law.most_force}) {
+      const ConstraintRowDesc spec = j.constraint->row_desc(i);
+      for (const double x : {spec.frequency, spec.damping_ratio, spec.min_force, spec.max_force}) {
         add(x);
       }
     }

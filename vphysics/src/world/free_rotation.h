@@ -14,22 +14,22 @@
 
 namespace vp {
 
-struct FreeTurn {
-  Quaternion q;  // from the frame at the end to that at the start
-  Vec3 w;        // at the end, in the frame of the end [rad/s]
-  Vec3 way{};    // the sum of the parts' turns, each in its own frame [rad]
+struct FreeRotation {
+  Quaternion q;         // from the frame at the end to that at the start
+  Vec3 w;               // at the end, in the frame of the end [rad/s]
+  Vec3 rotation_sum{};  // the sum of the parts' turns, each in its own frame [rad]
 };
 
 // Below this turn [rad] in a step the rate is taken as constant: energy is kept to its square.
-inline constexpr double kHardlyTurns = 1e-6;
-inline bool hardly_turns(const Vec3& w, double dt) {
-  return dt * dt * dot(w, w) < kHardlyTurns * kHardlyTurns;
+inline constexpr double kHardlyRotates = 1e-6;
+inline bool hardly_rotates(const Vec3& w, double dt) {
+  return dt * dt * dot(w, w) < kHardlyRotates * kHardlyRotates;
 }
 
 // Inertia I about the centre of mass and w in the body's frame.
-FreeTurn free_turn(const Sym3& I, const Sym3& inverse, const Vec3& w, double dt);
+FreeRotation free_rotation(const Sym3& I, const Sym3& inverse, const Vec3& w, double dt);
 
 // The one turn at a constant rate that comes to the same end [rad], in the start's frame.
-Vec3 constant_turn(const FreeTurn& turn);
+Vec3 mean_rotation(const FreeRotation& rotation);
 
 }  // namespace vp

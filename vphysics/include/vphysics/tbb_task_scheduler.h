@@ -3,12 +3,12 @@
 
 #include <memory>
 
-#include "vphysics/jobs.h"
+#include "vphysics/task_scheduler.h"
 
 namespace vp {
 
 // workers: how many threads at most take part, the caller's included; 0: as many as the machine
 // has. The object may serve any number of worlds, one after another.
-std::shared_ptr<Jobs> make_tbb_jobs(int workers = 0);
+std::shared_ptr<TaskScheduler> make_tbb_task_scheduler(int workers = 0);
 
 }  // namespace vp

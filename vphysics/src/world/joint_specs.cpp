@@ -9,10 +9,10 @@ namespace vp {
 namespace {
 
 // Of what is hard: the share of an error that a sub-step takes out, and G as a share of K.
-constexpr double kJointPush = 0.2;
+constexpr double kJointBias = 0.2;
 constexpr double kJointLoss = 0.05;
 // Of what is as good as free; times K it is a number in single precision.
-constexpr double kMostLoss = 1e9;
+constexpr double kMaxLoss = 1e9;
 
 AxisDesc axis(AxisMotion motion, double lower = 0.0, double upper = 0.0, JointDrive drive = {}) {
   return {motion, lower, upper, drive};
@@ -21,79 +21,79 @@ AxisDesc free_or_limited(double lower, double upper, const JointDrive& drive) {
   const bool free = lower == -kNoLimit && upper == kNoLimit;
   return axis(free ? AxisMotion::free : AxisMotion::limited, lower, upper, drive);
 }
-void lock(JointLaw& law, int first, int last) {
-  for (int i = first; i <= last; ++i) law.axes[i].motion = AxisMotion::locked;
+void lock(JointSpec& spec, int first, int last) {
+  for (int i = first; i <= last; ++i) spec.axes[i].motion = AxisMotion::locked;
 }
 
-void fill(JointLaw& law, const BallSocket&) {
-  lock(law, 0, 2);
+void fill(JointSpec& spec, const BallSocket&) {
+  lock(spec, 0, 2);
 }
-void fill(JointLaw& law, const Hinge& hinge) {
-  lock(law, 0, 4);
-  law.axes[5] = free_or_limited(hinge.lower, hinge.upper, hinge.drive);
+void fill(JointSpec& spec, const Hinge& hinge) {
+  lock(spec, 0, 4);
+  spec.axes[5] = free_or_limited(hinge.lower, hinge.upper, hinge.drive);
 }
-void fill(JointLaw& law, const Slider& slider) {
-  lock(law, 0, 5);
-  law.axes[2] = free_or_limited(slider.lower, slider.upper, slider.drive);
+void fill(JointSpec& spec, const Slider& slider) {
+  lock(spec, 0, 5);
+  spec.axes[2] = free_or_limited(slider.lower, slider.upper, slider.drive);
 }
-void fill(JointLaw& law, const Weld&) {
-  lock(law, 0, 5);
+void fill(JointSpec& spec, const Weld&) {
+  lock(spec, 0, 5);
 }
-void fill(JointLaw& law, const Distance& distance) {
-  law.form = JointLaw::Form::distance;
-  const bool rod = distance.least == distance.most;
-  law.axes[0] = axis(rod ? AxisMotion::locked : AxisMotion::limited, distance.least, distance.most);
+void fill(JointSpec& spec, const Distance& distance) {
+  spec.form = JointSpec::Form::distance;
+  const bool rod = distance.min == distance.max;
+  spec.axes[0] = axis(rod ? AxisMotion::locked : AxisMotion::limited, distance.min, distance.max);
 }
-void fill(JointLaw& law, const Spring& spring) {
-  law.form = JointLaw::Form::distance;
-  law.axes[0].drive = {spring.length, 0.0, spring.stiffness, spring.damping, kNoLimit};
+void fill(JointSpec& spec, const Spring& spring) {
+  spec.form = JointSpec::Form::distance;
+  spec.axes[0].drive = {spring.length, 0.0, spring.stiffness, spring.damping, kNoLimit};
 }
-void fill(JointLaw& law, const ConeTwist& cone) {
-  lock(law, 0, 2);
-  law.cone = true;
-  law.swing_x = cone.swing_x;
-  law.swing_y = cone.swing_y;
-  law.axes[5] = free_or_limited(cone.lower, cone.upper, cone.drive);
+void fill(JointSpec& spec, const ConeTwist& cone) {
+  lock(spec, 0, 2);
+  spec.cone = true;
+  spec.swing_x = cone.swing_x;
+  spec.swing_y = cone.swing_y;
+  spec.axes[5] = free_or_limited(cone.lower, cone.upper, cone.drive);
 }
-void fill(JointLaw& law, const SixDof& six) {
-  for (int i = 0; i < 6; ++i) law.axes[i] = six.axes[i];
+void fill(JointSpec& spec, const SixDof& six) {
+  for (int i = 0; i < 6; ++i) spec.axes[i] = six.axes[i];
 }
-void fill(JointLaw& law, const Gear& gear) {
-  law.form = JointLaw::Form::gear;
-  law.axes[0].motion = AxisMotion::locked;
-  law.ratio = gear.ratio;
-  law.slides_a = gear.slides_a;
-  law.slides_b = gear.slides_b;
+void fill(JointSpec& spec, const Gear& gear) {
+  spec.form = JointSpec::Form::gear;
+  spec.axes[0].motion = AxisMotion::locked;
+  spec.ratio = gear.ratio;
+  spec.slides_a = gear.slides_a;
+  spec.slides_b = gear.slides_b;
 }
-void fill(JointLaw& law, const UserConstraint& user) {
-  law.form = JointLaw::Form::user;
-  law.user = user.constraint;
-  law.user_rows = user.constraint->rows();
-  for (int i = 0; i < law.user_rows; ++i) law.user_laws[i] = user.constraint->law(i);
+void fill(JointSpec& spec, const UserConstraint& user) {
+  spec.form = JointSpec::Form::user;
+  spec.user = user.constraint;
+  spec.user_rows = user.constraint->rows();
+  for (int i = 0; i < spec.user_rows; ++i) spec.user_row_descs[i] = user.constraint->row_desc(i);
 }
 
 // Rate and loss of a spring of frequency f against K alone, integrated implicitly.
 void soften(BodyJointRow& row, double frequency, double damping_ratio, double h) {
   if (frequency == 0.0) {
-    row.rate = kJointPush / h;
+    row.rate = kJointBias / h;
     row.loss = kJointLoss;
     row.relaxes = true;
     return;
   }
-  const double turn = 2.0 * kPi * frequency, both = 2.0 * damping_ratio + h * turn;
-  row.rate = turn / both;
-  row.loss = std::min(1.0 / (h * turn * both), kMostLoss);
+  const double rotation = 2.0 * kPi * frequency, both = 2.0 * damping_ratio + h * rotation;
+  row.rate = rotation / both;
+  row.loss = std::min(1.0 / (h * rotation * both), kMaxLoss);
   row.relaxes = false;
 }
 
-BodyJointRow held_row(int slot) {
+BodyJointRow locked_row(int slot) {
   BodyJointRow row;
   row.slot = static_cast<std::uint8_t>(slot);
   return row;
 }
 void set_drive(BodyJointRow& row, const JointDrive& drive, double h) {
-  row.most = std::min(h * drive.max_force, BodyJointRow::kNowhere);
-  row.least = -row.most;
+  row.max_impulse = std::min(h * drive.max_force, BodyJointRow::kNowhere);
+  row.min_impulse = -row.max_impulse;
   row.stiffness = drive.stiffness;
   row.damping = drive.damping;
   row.position = drive.position;
@@ -102,11 +102,11 @@ void set_drive(BodyJointRow& row, const JointDrive& drive, double h) {
 
 struct Rows {
   BodyJointRow rows[solve::kJointRows];
-  int count = 0, held = 0;
-  void add(const BodyJointRow& row, bool is_held) {
-    if (is_held) {
-      for (int i = count; i > held; --i) rows[i] = rows[i - 1];
-      rows[held++] = row;
+  int count = 0, locked = 0;
+  void add(const BodyJointRow& row, bool is_locked) {
+    if (is_locked) {
+      for (int i = count; i > locked; --i) rows[i] = rows[i - 1];
+      rows[locked++] = row;
     } else {
       rows[count] = row;
     }
@@ -118,16 +118,16 @@ bool has_drive(const AxisDesc& desc) {
   return desc.drive.max_force > 0.0;
 }
 
-Rows rows_of_axes(const JointLaw& law, double h) {
+Rows rows_of_axes(const JointSpec& spec, double h) {
   Rows out;
-  const int axes = law.form == JointLaw::Form::axes ? 6 : 1;
+  const int axes = spec.form == JointSpec::Form::axes ? 6 : 1;
   for (int i = 0; i < axes; ++i) {
-    const AxisDesc& desc = law.axes[i];
-    const bool of_cone = law.cone && i == static_cast<int>(JointAxis::turn_x);
+    const AxisDesc& desc = spec.axes[i];
+    const bool of_cone = spec.cone && i == static_cast<int>(JointAxis::rotation_x);
     if (desc.motion == AxisMotion::free && !has_drive(desc) && !of_cone) continue;
-    BodyJointRow row = held_row(i);
-    const bool held = desc.motion == AxisMotion::locked;
-    if (held) {
+    BodyJointRow row = locked_row(i);
+    const bool locked = desc.motion == AxisMotion::locked;
+    if (locked) {
       row.position = desc.lower;  // of a rod
     } else {
       set_drive(row, desc.drive, h);
@@ -137,21 +137,21 @@ Rows rows_of_axes(const JointLaw& law, double h) {
       }
       if (of_cone) row.lower = 0.0;
     }
-    out.add(row, held);
+    out.add(row, locked);
   }
   return out;
 }
 
-Rows rows_of_user(const JointLaw& law, double h) {
+Rows rows_of_user(const JointSpec& spec, double h) {
   Rows out;
-  for (int i = 0; i < law.user_rows; ++i) {
-    const PairRowLaw& own = law.user_laws[i];
-    BodyJointRow row = held_row(i);
-    const bool held = own.least_force == -kNoLimit && own.most_force == kNoLimit;
-    row.bounded_hold = !held;
-    row.least = std::max(h * own.least_force, -BodyJointRow::kNowhere);
-    row.most = std::min(h * own.most_force, BodyJointRow::kNowhere);
-    out.add(row, held);
+  for (int i = 0; i < spec.user_rows; ++i) {
+    const ConstraintRowDesc& own = spec.user_row_descs[i];
+    BodyJointRow row = locked_row(i);
+    const bool locked = own.min_force == -kNoLimit && own.max_force == kNoLimit;
+    row.bounded_hold = !locked;
+    row.min_impulse = std::max(h * own.min_force, -BodyJointRow::kNowhere);
+    row.max_impulse = std::min(h * own.max_force, BodyJointRow::kNowhere);
+    out.add(row, locked);
   }
   return out;
 }
@@ -186,11 +186,11 @@ std::optional<std::string> problem_in(const Slider& slider) {
   return problem_with_axis(slider.lower, slider.upper, slider.drive);
 }
 std::optional<std::string> problem_in(const Distance& distance) {
-  const double most = distance.most;
-  if (distance.least >= 0.0 && distance.least <= most && in_range(distance.least) &&
-      (in_range(most) || most == kNoLimit) && most > 0.0)
+  const double max = distance.max;
+  if (distance.min >= 0.0 && distance.min <= max && in_range(distance.min) &&
+      (in_range(max) || max == kNoLimit) && max > 0.0)
     return std::nullopt;
-  return "distance: least must be zero or more, most positive and not below it";
+  return "distance: min must be zero or more, max positive and not below it";
 }
 std::optional<std::string> problem_in(const Spring& spring) {
   if (!in_range(spring.length) || spring.length < 0.0)
@@ -220,7 +220,7 @@ std::optional<std::string> problem_in(const SixDof& six) {
   for (const int i : {3, 4}) {
     const AxisDesc& desc = six.axes[i];
     if (desc.motion == AxisMotion::limited && (desc.lower < -kPi || desc.upper > kPi))
-      return "axis: limits of turn_x and turn_y must lie within half a turn";
+      return "axis: limits of rotation_x and rotation_y must lie within half a turn";
   }
   return std::nullopt;
 }
@@ -233,11 +233,11 @@ std::optional<std::string> problem_in(const UserConstraint& user) {
   const int rows = user.constraint->rows();
   if (rows < 1 || rows > solve::kJointRows) return "constraint: it must have 1 to 6 rows";
   for (int i = 0; i < rows; ++i) {
-    const PairRowLaw law = user.constraint->law(i);
-    if (!in_range(law.frequency) || law.frequency < 0.0 || !in_range(law.damping_ratio) ||
-        law.damping_ratio < 0.0)
+    const ConstraintRowDesc spec = user.constraint->row_desc(i);
+    if (!in_range(spec.frequency) || spec.frequency < 0.0 || !in_range(spec.damping_ratio) ||
+        spec.damping_ratio < 0.0)
       return "constraint: a row's frequency and damping ratio must be zero or more and finite";
-    if (!(law.least_force <= 0.0 && law.most_force >= 0.0))
+    if (!(spec.min_force <= 0.0 && spec.max_force >= 0.0))
       return "constraint: a row's bounds must have zero between them";
   }
   return std::nullopt;
@@ -245,19 +245,19 @@ std::optional<std::string> problem_in(const UserConstraint& user) {
 
 }  // namespace
 
-PairRowLaw PairConstraint::law(int) const {
+ConstraintRowDesc PairConstraint::row_desc(int) const {
   return {};
 }
 
-JointLaw law_of(const JointKind& kind) {
-  JointLaw law;
-  std::visit([&](const auto& k) { fill(law, k); }, kind);
-  return law;
+JointSpec spec_of(const JointKind& kind) {
+  JointSpec spec;
+  std::visit([&](const auto& k) { fill(spec, k); }, kind);
+  return spec;
 }
 
-double first_turn(const JointLaw& law) {
-  const AxisDesc& twist = law.axes[static_cast<int>(JointAxis::turn_z)];
-  if (law.form != JointLaw::Form::axes || twist.motion != AxisMotion::limited) return 0.0;
+double first_rotation(const JointSpec& spec) {
+  const AxisDesc& twist = spec.axes[static_cast<int>(JointAxis::rotation_z)];
+  if (spec.form != JointSpec::Form::axes || twist.motion != AxisMotion::limited) return 0.0;
   if (!(twist.lower > -kNoLimit)) return std::min(0.0, twist.upper);
   if (!(twist.upper < kNoLimit)) return std::max(0.0, twist.lower);
   return 0.5 * (twist.lower + twist.upper);
@@ -273,12 +273,12 @@ int main_slot(const JointKind& kind) {
 }
 
 void lay_out(BodyJoint& joint, double h) {
-  const bool user = joint.law.form == JointLaw::Form::user;
-  Rows laid = user ? rows_of_user(joint.law, h) : rows_of_axes(joint.law, h);
+  const bool user = joint.spec.form == JointSpec::Form::user;
+  Rows laid = user ? rows_of_user(joint.spec, h) : rows_of_axes(joint.spec, h);
   for (int i = 0; i < laid.count; ++i) {
     BodyJointRow& row = laid.rows[i];
     if (user) {
-      const PairRowLaw& own = joint.law.user_laws[row.slot];
+      const ConstraintRowDesc& own = joint.spec.user_row_descs[row.slot];
       soften(row, own.frequency, own.damping_ratio, h);
     } else {
       soften(row, joint.frequency, joint.damping_ratio, h);
@@ -291,7 +291,7 @@ void lay_out(BodyJoint& joint, double h) {
   }
   std::copy_n(laid.rows, laid.count, joint.rows);
   joint.count = laid.count;
-  joint.held = laid.held;
+  joint.locked = laid.locked;
 }
 
 std::optional<std::string> problem_with(const JointDesc& desc) {
