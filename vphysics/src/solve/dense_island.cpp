@@ -58,8 +58,8 @@ void DenseIsland::read() {
       p_[r] = p.normal_impulse;
       p_[r + 1] = p.tangent_impulse[0];
       p_[r + 2] = p.tangent_impulse[1];
-      for (int k = 0; k < 3; ++k) {
-        u_[r + static_cast<std::uint32_t>(k)] = u.along[k] + through_links(c, own + k);
+      for (int way = 0; way < kRowsOfPoint; ++way) {
+        u_[r + static_cast<std::uint32_t>(way)] = u.along[way] + through_links(c, own + way);
       }
     }
     if (c.rolling <= 0.0) continue;
