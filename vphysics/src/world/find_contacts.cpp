@@ -194,7 +194,7 @@ void World::Impl::find_stale_contacts(double dt) {
                                                     body_rows.data(), step, found.data() + begin);
                       });
   for (std::size_t b = 0; b < blocks.size(); ++b)
-    contact_store.mark_stale_lanes(blocks[b].contact, found[b]);
+    contact_store.mark_stale_pairs(blocks[b], found[b]);
 }
 
 // In the order of their slots; then those that these have woken. Some at a time, so that what is
