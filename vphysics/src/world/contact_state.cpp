@@ -187,8 +187,12 @@ void ContactState::read_near(Reader& in, solve::NearList& near, bool parked) {
     c.parked = parked;
     c.near_index = near.add(index, vp::end_of(world_.bodies, world_.colliders[c.a].body).row,
                             vp::end_of(world_.bodies, world_.colliders[c.b].body).row);
-    read_fields(in, solve::fields_of(near.block(c.near_index)),
-                solve::NearList::lane(c.near_index));
+    solve::NearPair& pair = near.pair(c.near_index);
+    for (std::size_t f = 0; f < solve::kNearFloats; f += 2) {
+      const Reader::TwoFloats both = in.two_floats();
+      solve::set_near_float(pair, f, both.high);
+      solve::set_near_float(pair, f + 1, both.low);
+    }
   }
 }
 

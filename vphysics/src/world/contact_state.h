@@ -137,8 +137,10 @@ void write_contacts(Sink& sink, const ContactData& world) {
   for (const solve::NearList* list : {&world.contacts.near, &world.contacts.parked_near}) {
     sink.word(list->size());
     for (std::uint32_t i = 0; i < list->size(); ++i) {
-      sink.word(list->block(i).contact.lane[solve::NearList::lane(i)]);
-      write_fields(solve::fields_of(list->block(i)), solve::NearList::lane(i));
+      const solve::NearPair& pair = list->pair(i);
+      sink.word(pair.contact);
+      for (std::size_t f = 0; f < solve::kNearFloats; f += 2)
+        put_two(sink, solve::near_float(pair, f), solve::near_float(pair, f + 1));
     }
   }
   sink.word(world.regions.count);

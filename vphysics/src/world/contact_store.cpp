@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "solve/row_vector.h"
-#include "world/lane_fields.h"
 
 namespace vp {
 namespace {
@@ -135,21 +134,19 @@ void ContactStore::set_near(std::uint32_t index, double clearance, const BodySet
 }
 
 void ContactStore::set_clearance(const Contact& c, double clearance, const BodySet& on) {
-  solve::NearBlock& block = near.block(c.near_index);
-  const int lane = solve::NearList::lane(c.near_index);
+  solve::NearPair& pair = near.pair(c.near_index);
   const Collider &a = on.colliders[c.a], &b = on.colliders[c.b];
   const Vicinity at = vicinity_of(on.bodies, a, b);
-  const auto put_end = [&](std::uint32_t row, const Body& body, solve::Field3& x,
-                           solve::Field3& turn, solve::Field3& arm) {
+  const auto put_end = [&](std::uint32_t row, const Body& body, float* x, float* turn, float* arm) {
     const float* way = on.rows[row].way;
-    put(x, lane, vector_of(way));
-    put(turn, lane, vector_of(way + 3));
-    put(arm, lane, row == solve::kWorldRow ? Vec3{} : at.centre - reference_point(body));
+    std::copy_n(way, 3, x);
+    std::copy_n(way + 3, 3, turn);
+    put(arm, row == solve::kWorldRow ? Vec3{} : at.centre - reference_point(body));
   };
-  put_end(block.a.lane[lane], on.bodies[a.body], block.x_a, block.turn_a, block.arm_a);
-  put_end(block.b.lane[lane], on.bodies[b.body], block.x_b, block.turn_b, block.arm_b);
-  block.clearance.lane[lane] = static_cast<float>(clearance);
-  block.radius.lane[lane] = static_cast<float>(at.radius);
+  put_end(pair.a, on.bodies[a.body], pair.x_a, pair.turn_a, pair.arm_a);
+  put_end(pair.b, on.bodies[b.body], pair.x_b, pair.turn_b, pair.arm_b);
+  pair.clearance = static_cast<float>(clearance);
+  pair.radius = static_cast<float>(at.radius);
 }
 
 void ContactStore::reset_near(const Contact& c, const BodySet& on) {
@@ -163,24 +160,21 @@ void ContactStore::unset_near(std::uint32_t index) {
 }
 
 double ContactStore::clearance(const Contact& c) const {
-  return static_cast<double>(
-      near.block(c.near_index).clearance.lane[solve::NearList::lane(c.near_index)]);
+  return static_cast<double>(near.pair(c.near_index).clearance);
 }
 
 // As find_closer counts it.
 void ContactStore::use_clearance(const Contact& c, const BodySet& on) {
-  solve::NearBlock& block = near.block(c.near_index);
-  const int lane = solve::NearList::lane(c.near_index);
-  const auto gone = [&](const solve::IndexField& rows, const solve::Field3& x,
-                        const solve::Field3& turn, const solve::Field3& arm) {
-    const float* way = on.rows[rows.lane[lane]].way;
-    const Vec3 r = get(arm, lane), by = vector_of(way + 3) - get(turn, lane);
-    return Gone{vector_of(way) - get(x, lane) + cross(by, r), by, 0.5 * dot(by, by) * norm(r)};
+  solve::NearPair& pair = near.pair(c.near_index);
+  const auto gone = [&](std::uint32_t row, const float* x, const float* turn, const float* arm) {
+    const float* way = on.rows[row].way;
+    const Vec3 r = vector_of(arm), by = vector_of(way + 3) - vector_of(turn);
+    return Gone{vector_of(way) - vector_of(x) + cross(by, r), by, 0.5 * dot(by, by) * norm(r)};
   };
-  const Gone a = gone(block.a, block.x_a, block.turn_a, block.arm_a);
-  const Gone b = gone(block.b, block.x_b, block.turn_b, block.arm_b);
-  const double turned = static_cast<double>(block.radius.lane[lane]) * norm(b.turn - a.turn);
-  block.clearance.lane[lane] -=
+  const Gone a = gone(pair.a, pair.x_a, pair.turn_a, pair.arm_a);
+  const Gone b = gone(pair.b, pair.x_b, pair.turn_b, pair.arm_b);
+  const double turned = static_cast<double>(pair.radius) * norm(b.turn - a.turn);
+  pair.clearance -=
       static_cast<float>(norm(b.displacement - a.displacement) + turned + a.bow + b.bow);
 }
 
@@ -235,6 +229,13 @@ void ContactStore::mark_stale_of(const Body& body) {
 void ContactStore::mark_stale_lanes(const solve::IndexField& contacts, std::uint32_t bits) {
   for (; bits != 0; bits &= bits - 1) {
     const std::uint32_t contact = contacts.lane[std::countr_zero(bits)];
+    if (contact != solve::kNoContact) mark_stale(contact);
+  }
+}
+
+void ContactStore::mark_stale_pairs(const solve::NearBlock& block, std::uint32_t bits) {
+  for (; bits != 0; bits &= bits - 1) {
+    const std::uint32_t contact = block.pairs[std::countr_zero(bits)].contact;
     if (contact != solve::kNoContact) mark_stale(contact);
   }
 }

@@ -80,6 +80,7 @@ class ContactStore {
   void mark_stale(std::uint32_t contact);
   void mark_stale_of(const Body& body);
   void mark_stale_lanes(const solve::IndexField& contacts, std::uint32_t bits);
+  void mark_stale_pairs(const solve::NearBlock& near, std::uint32_t bits);
   // The stale ones, ascending, each once; then none is.
   void take_stale(std::vector<std::uint32_t>& ascending);
 

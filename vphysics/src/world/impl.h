@@ -257,7 +257,8 @@ struct World::Impl {
   void put_in_lane(std::uint32_t contact, const collide::Manifold& manifold);
   Approach approach_in(double dt) const { return {bodies, loads, desc, speed_unit, dt}; }
   void look_at_stale_contacts(double dt);
-  void find_manifolds_of_stale(double dt, bool first);
+  void list_stale_contacts(double dt, bool first);
+  void find_manifolds_of(std::span<const std::uint32_t> contacts, double dt);
   void note_limits(const collide::Manifold& manifold);
 
   // link_contacts.cpp

@@ -57,8 +57,7 @@ void World::Impl::begin_step(double dt) {
   contact_store.reserve(room);
   for (auto* list : {&narrow.stale, &narrow.look_again})
     list->reserve(contact_store.stale.capacity());
-  narrow.looked.reserve(
-      std::min<std::size_t>(room, 256));  // large ones; more come where they are needed
+  narrow.looked.reserve(std::min(room, kLookedAtOnce));
   narrow.to_pose.reserve(n);
   lost_bodies.reserve(n);
   sleep_islands.reserve(n);
