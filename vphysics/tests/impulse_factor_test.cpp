@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "multibody/kinematics.h"
 #include "trees.h"
 #include "vphysics/multibody/dynamics.h"
 
@@ -101,6 +102,56 @@ TEST(ImpulseFactor, AccelerationsAreThoseOfForwardDynamics) {
       EXPECT_NEAR(force[i], expected[i], 1e-9 * scale) << "tree " << k << ", velocity " << i;
     }
   }
+}
+
+TEST(ImpulseFactor, ThreeRowsAtOnceAreThoseOfOneEach) {
+  Random random(43);
+  for (int k = 0; k < kTrees; ++k) {
+    const Case c(random, 1 + k % 20);
+    for (int link = 0; link < c.model.links(); ++link) {
+      const Vec3 ways[] = {{0.6, 0.0, -0.8}, {0.0, 1.0, 0.0}, {0.8, 0.1, 0.6}};
+      const Vec3 point{0.3, -0.2, 0.1 * k};
+      const std::size_t depth = c.factor.depth(link);
+      std::vector<double> forces(3 * depth), moments(3 * depth), one(depth);
+      c.factor.force_rows(link, point, ways, forces.data());
+      c.factor.moment_rows(link, ways, moments.data());
+      for (std::size_t way = 0; way < 3; ++way) {
+        c.factor.force_row(link, point, ways[way], one.data());
+        for (std::size_t i = 0; i < depth; ++i) EXPECT_EQ(forces[way * depth + i], one[i]);
+        c.factor.moment_row(link, ways[way], one.data());
+        for (std::size_t i = 0; i < depth; ++i) EXPECT_EQ(moments[way * depth + i], one[i]);
+      }
+    }
+  }
+}
+
+// Every free root is somewhere else, and everything has other velocities.
+TEST(ImpulseFactor, KinematicsOfMovedRootsAreThoseOfForwardKinematics) {
+  Random random(44);
+  int moved = 0;
+  for (int k = 0; k < kTrees; ++k) {
+    const Case c(random, 1 + k % 20);
+    std::vector<double> q = c.state.q;
+    for (const auto& node : c.model.tree().nodes) {
+      if (!node.free_root()) continue;
+      for (int i = 0; i < 3; ++i) q[static_cast<std::size_t>(node.q + i)] += 0.1 * (i + 1);
+      ++moved;
+    }
+    std::vector<double> v = c.state.v;
+    for (double& x : v) x = 0.7 * x - 0.1;
+    Data data(c.model, Arithmetic::reproducible), whole(c.model, Arithmetic::reproducible);
+    forward_kinematics<double>(c.model, data, c.state.q, c.state.v);
+    detail::ImpulseFactor::kinematics_of(c.model, data, q, v);
+    forward_kinematics<double>(c.model, whole, q, v);
+    for (int link = 0; link < c.model.links(); ++link) {
+      EXPECT_TRUE(T_world_link(c.model, data, link) == T_world_link(c.model, whole, link));
+    }
+    for (int node = 0; node < static_cast<int>(c.model.tree().nodes.size()); ++node) {
+      EXPECT_TRUE(detail::velocity_of(data.work(), node) ==
+                  detail::velocity_of(whole.work(), node));
+    }
+  }
+  EXPECT_GT(moved, 5);
 }
 
 }  // namespace

@@ -27,9 +27,9 @@ inline constexpr std::array kStages{
 const char* name_of(Stage stage);  // "broad phase"
 
 // Told of each stage on the thread that calls step(), outside of all jobs. Stages do not overlap,
-// and come once a step, in order; but narrow_phase and lanes follow one another once more for each
-// round of sleepers that what they have found wakes. Must not change the world (a step within
-// the step is refused), nor throw.
+// and come once a step, in order; but narrow_phase and lanes alternate where many contacts are
+// looked at, some hundred at a time, and once more for each round of sleepers that what they have
+// found wakes. Must not change the world (a step within the step is refused), nor throw.
 class StageObserver {
  public:
   virtual ~StageObserver() = default;

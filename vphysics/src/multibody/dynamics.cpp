@@ -2,6 +2,7 @@
 #include "vphysics/multibody/dynamics.h"
 
 #include <string>
+#include <type_traits>
 
 #include "multibody/instantiate.h"
 #include "multibody/instruction_set.h"
@@ -18,6 +19,13 @@ using vphysics_kernels::Kernels;
 
 template <class T>
 const Kernels& kernels_of(const DataT<T>& data) {
+#ifdef VP_INSTRUCTION_SETS
+  if constexpr (std::is_same_v<T, double>) {
+    const InstructionSet set = data.work().instruction_set;
+    if (set == InstructionSet::avx512_same_bits) return vphysics_kernels::kAvx512SameBits;
+    if (set == InstructionSet::avx2_same_bits) return vphysics_kernels::kAvx2SameBits;
+  }
+#endif
   switch (data.work().instruction_set) {
 #ifdef VP_INSTRUCTION_SETS
     case InstructionSet::avx512:

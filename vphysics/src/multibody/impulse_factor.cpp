@@ -1,19 +1,32 @@
 #include "multibody/impulse_factor.h"
 
 #include <algorithm>
-#include <cmath>
 
-#include "multibody/kinematics.h"
+#include "multibody/factor_passes.h"
+#include "multibody/instruction_set.h"
+#include "multibody/work.h"
 
 namespace vp::detail {
 namespace {
 
-// An Omega below this share of what its terms could sum to is rounding: a joint about a point mass.
-constexpr double kNoInertia = 1e-14;
+using vphysics_factor::kInertia;
+using vphysics_factor::Passes;
 
-double largest_omega(const AInertia& J, const se3& S) {
-  const Sym3 &I = J.angular(), &M = J.linear();
-  return (I.xx + I.yy + I.zz) * dot(S.w, S.w) + (M.xx + M.yy + M.zz) * dot(S.v, S.v);
+const Passes& best_passes() {
+  switch (instruction_set_for(Arithmetic::reproducible)) {
+#ifdef VP_INSTRUCTION_SETS
+    case InstructionSet::avx512_same_bits:
+      return vphysics_factor::kAvx512;
+    case InstructionSet::avx2_same_bits:
+      return vphysics_factor::kAvx2;
+#endif
+    default:
+      return vphysics_factor::kBaseline;
+  }
+}
+const Passes& passes() {
+  static const Passes& best = best_passes();
+  return best;
 }
 
 }  // namespace
@@ -27,9 +40,19 @@ ImpulseFactor::ImpulseFactor(const Model& model) {
   a_.resize(n);
   A_.resize(n);
   r_.resize(n);
-  J_.resize(tree.nodes.size());
-  own_.resize(tree.nodes.size());
+  J_ = AlignedArray<double>(vphysics_factor::kArticulated * tree.nodes.size());
+  constexpr std::size_t kGroup = kSlots<double>;
+  const std::size_t numbers = kInertia * kGroup * tree.one.groups.size();
+  bodies_ = AlignedArray<double>(numbers);
+  inertias_ = AlignedArray<double>(numbers);
   for (const auto& node : tree.nodes) {
+    const auto slot = static_cast<std::size_t>(node.body_slot());
+    const std::size_t at = slot / kGroup * kGroup * kInertia + slot % kGroup;
+    inertia_at_.push_back(static_cast<std::uint32_t>(at));
+    const Fields<double, double> body(bodies_.data() + at);
+    body.set(0, node.J.mass());
+    body.set(1, node.J.first_moment());
+    body.set(4, node.J.rotational());
     body_dof_.push_back(static_cast<std::uint32_t>(node.v));
     const bool root = node.parent == kWorld;
     std::uint32_t next =
@@ -63,37 +86,18 @@ ImpulseFactor::ImpulseFactor(const Model& model) {
   }
 }
 
-bool ImpulseFactor::factor(const Model& model, const Data& data, double damping_time) {
+void ImpulseFactor::find_inertias(const Model& model, const Data& data) {
+  passes().inertias(&model.tree(), &data.work(), bodies_.data(), inertias_.data());
+}
+
+bool ImpulseFactor::factor(const Model& model, const Data& data, double damping_time,
+                           bool inertias_are_found) {
+  if (!inertias_are_found) find_inertias(model, data);
   const Tree<double>& tree = model.tree();
   const Work<double>& work = data.work();
-  const auto nodes = static_cast<int>(tree.nodes.size());
-  for (int i = 0; i < nodes; ++i) {
-    const auto n = static_cast<std::size_t>(i);
-    own_[n] = detail::inertia_of(tree, work, i);
-    J_[n] = AInertia(own_[n]);
-  }
   for (CachedRow& cached : joint_rows_) cached.valid = false;
-  bool fine = true;
-  for (int i = nodes; i-- > 0;) {
-    const auto& node = tree.nodes[static_cast<std::size_t>(i)];
-    AInertia& J = J_[static_cast<std::size_t>(i)];
-    const double added = node.armature + damping_time * node.damping;
-    for (int k = 0; k < node.dofs; ++k) {
-      Column& c = columns_[static_cast<std::size_t>(node.v + k)];
-      c.S = column_of(tree, work, i, k);
-      const dse3 U = J * c.S;
-      const double omega = c.S * U + added;
-      fine = fine && omega > kNoInertia * largest_omega(J, c.S);
-      c.g = 1.0 / std::sqrt(omega);
-      c.s = c.g * c.S;
-      c.G = c.g * U;
-      J = J - outer(1.0, c.G);
-    }
-    if (node.parent != kWorld) {
-      AInertia& parent = J_[static_cast<std::size_t>(node.parent)];
-      parent = parent + J;
-    }
-  }
+  const bool fine =
+      passes().factor(&tree, &work, damping_time, inertias_.data(), columns_.data(), J_.data());
   for (std::size_t l = 0; l < links_.size(); ++l) {
     const int node = tree.frames[l].node;
     if (node != kWorld) links_[l].origin = origin_of(work, node);
@@ -116,6 +120,19 @@ void ImpulseFactor::force_row(int link, const Vec3& point, const Vec3& direction
 void ImpulseFactor::moment_row(int link, const Vec3& direction, double* y) const {
   row(links_[static_cast<std::size_t>(link)].first, {direction, {}}, y);
 }
+void ImpulseFactor::force_rows(int link, const Vec3& point, const Vec3 (&directions)[3],
+                               double* y) const {
+  const LinkPath& path = links_[static_cast<std::size_t>(link)];
+  const Vec3 arm = point - path.origin;
+  const auto force = [&](const Vec3& d) { return dse3{cross(arm, d), d}; };
+  const dse3 wrenches[] = {force(directions[0]), force(directions[1]), force(directions[2])};
+  passes().rows(columns_.data(), next_.data(), path.first, wrenches, path.depth, y);
+}
+void ImpulseFactor::moment_rows(int link, const Vec3 (&directions)[3], double* y) const {
+  const LinkPath& path = links_[static_cast<std::size_t>(link)];
+  const dse3 wrenches[] = {{directions[0], {}}, {directions[1], {}}, {directions[2], {}}};
+  passes().rows(columns_.data(), next_.data(), path.first, wrenches, path.depth, y);
+}
 ImpulseFactor::JointRow ImpulseFactor::joint_row(std::uint32_t dof) {
   CachedRow& cached = joint_rows_[dof];
   double* const y = cached_.data() + cached.begin;
@@ -134,10 +151,10 @@ void ImpulseFactor::to_velocities(std::span<double> x) {
   for (std::size_t i = inwards_.size(); i-- > 0;) {
     const std::uint32_t d = inwards_[i], next = next_[d];
     const Column& c = columns_[d];
-    const se3 a = next == kEnd ? se3{} : a_[next];
+    const se3 a = next == kEnd ? se3{} : A_[next];
     const double t = x[d] - c.G * a;
     x[d] = c.g * t;
-    a_[d] = a + t * c.s;
+    A_[d] = a + t * c.s;
   }
 }
 
@@ -152,21 +169,29 @@ void ImpulseFactor::solve(std::span<double> x) {
 }
 
 void ImpulseFactor::twists(std::span<const double> v) {
-  for (std::size_t i = inwards_.size(); i-- > 0;) {
-    const std::uint32_t d = inwards_[i], next = next_[d];
-    const se3 own = v[d] * columns_[d].S;
-    a_[d] = next == kEnd ? own : a_[next] + own;
-  }
+  passes().twists(columns_.data(), inwards_.data(), next_.data(), inwards_.size(), v.data(),
+                  a_.data());
+}
+
+ImpulseFactor::Momentum ImpulseFactor::momentum_at(std::span<const int> nodes, const Data& data,
+                                                   const void* twists) const {
+  Momentum sum;
+  passes().momenta({body_dof_.size(), inertias_.data(), inertia_at_.data(), body_dof_.data(),
+                    parent_dof_.data(), twists, nullptr, nullptr},
+                   nodes.data(), nodes.size(), &data.work(), &sum.inertia, &sum.momentum);
+  return sum;
+}
+
+void ImpulseFactor::kinematics_of(const Model& model, Data& data, std::span<const double> q,
+                                  std::span<const double> v) {
+  passes().velocities(&model.tree(), &data.work(), q.data(), v.data());
 }
 
 void ImpulseFactor::bias(const Vec3& gravity, std::span<double> force) {
   for (dse3& r : r_) r = {};
-  for (std::size_t i = 0; i < own_.size(); ++i) {
-    const std::uint32_t body = body_dof_[i], parent = parent_dof_[i];
-    const se3& V = a_[body];
-    A_[body] = parent == kEnd ? se3{{}, -gravity} : A_[parent] + ad(a_[parent], V);
-    r_[body] = own_[i] * A_[body] - dad(V, own_[i] * V);
-  }
+  passes().body_forces({body_dof_.size(), inertias_.data(), inertia_at_.data(), body_dof_.data(),
+                        parent_dof_.data(), a_.data(), A_.data(), r_.data()},
+                       &gravity.x);
   for (const std::uint32_t d : inwards_) {
     const std::uint32_t next = next_[d];
     force[d] = columns_[d].S * r_[d];

@@ -21,6 +21,8 @@
 #include <span>
 #include <vector>
 
+#include "multibody/factor_column.h"
+#include "multibody/lanes.h"
 #include "vphysics/multibody/dynamics.h"
 
 namespace vp::detail {
@@ -31,10 +33,13 @@ class ImpulseFactor {
 
   explicit ImpulseFactor(const Model& model);
 
-  // From the configuration that the last call has left in the data. With a time h the joints'
-  // viscous damping D is in it: M + h D in the place of M, for implicit steps. False if a joint
-  // moves no inertia; what is computed with the factors then is unspecified.
-  bool factor(const Model& model, const Data& data, double damping_time = 0.0);
+  // The inertias of the bodies in the configuration that the last call has left in the data.
+  void find_inertias(const Model& model, const Data& data);
+  // From that configuration, whose inertias are found unless they have been. With a time h the
+  // joints' viscous damping D is in it: M + h D in the place of M, for implicit steps. False if a
+  // joint moves no inertia; what is computed with the factors then is unspecified.
+  bool factor(const Model& model, const Data& data, double damping_time = 0.0,
+              bool inertias_are_found = false);
 
   // The degrees of freedom that a link's rows have entries for: the first, those next to it, and
   // how many they are. None for a link that is fixed to the world.
@@ -49,6 +54,9 @@ class ImpulseFactor {
   // many entries as the link is deep.
   void force_row(int link, const Vec3& point, const Vec3& direction, double* y) const;
   void moment_row(int link, const Vec3& direction, double* y) const;
+  // Three of either, one behind the other.
+  void force_rows(int link, const Vec3& point, const Vec3 (&directions)[3], double* y) const;
+  void moment_rows(int link, const Vec3 (&directions)[3], double* y) const;
   // Of a force of one joint coordinate: y, as long as the coordinate is deep, kept until the next
   // factor(); and (y, y), what a unit impulse gives the coordinate's own speed.
   struct JointRow {
@@ -70,10 +78,22 @@ class ImpulseFactor {
     const se3& V = a_[path.first];
     return {V.w, V.v + cross(V.w, point - path.origin)};
   }
-  // Of one node's body, in the tree's frame: its inertia, and its twist once twists() has been
-  // called.
-  const Inertia& inertia_of(int node) const { return own_[static_cast<std::size_t>(node)]; }
-  const se3& twist_of(int node) const { return a_[body_dof_[static_cast<std::size_t>(node)]]; }
+  // Of some nodes' bodies, ascending, together, in the tree's frame: the inertia, once
+  // find_inertias() has been called, and the momentum at the data's twists or at those of twists().
+  struct Momentum {
+    Inertia inertia;
+    dse3 momentum{};
+  };
+  Momentum momentum_of(std::span<const int> nodes, const Data& data) const {
+    return momentum_at(nodes, data, nullptr);
+  }
+  Momentum momentum_of_twists(std::span<const int> nodes, const Data& data) const {
+    return momentum_at(nodes, data, a_.data());
+  }
+  // What forward_kinematics() makes of these, to the same bits, where poses have changed by the
+  // places of free roots alone since it was called last. Not of users' joints.
+  static void kinematics_of(const Model& model, Data& data, std::span<const double> q,
+                            std::span<const double> v);
 
   // The joints' forces that keep the velocities that twists() was given last: those of the
   // velocities, and those against gravity. Without damping; of models whose joints' subspaces are
@@ -85,11 +105,7 @@ class ImpulseFactor {
   void add_load(int link, const Vec3& point, const dse3& load, std::span<double> force) const;
 
  private:
-  struct Column {
-    se3 S, s;
-    dse3 G;
-    double g;
-  };
+  using Column = FactorColumn;
   struct CachedRow {
     std::uint32_t begin = 0;  // in cached_
     bool valid = false;
@@ -100,6 +116,7 @@ class ImpulseFactor {
     Vec3 origin;  // of its tree, in the world
   };
   void row(std::uint32_t dof, dse3 impulse, double* y) const;
+  Momentum momentum_at(std::span<const int> nodes, const Data& data, const void* twists) const;
 
   std::vector<Column> columns_;              // of each degree of freedom
   std::vector<std::uint32_t> next_, depth_;  // likewise
@@ -109,12 +126,15 @@ class ImpulseFactor {
   std::vector<double> cached_;
   std::vector<std::uint32_t> body_dof_;  // of each node: that which carries its body
   std::vector<std::uint32_t>
-      parent_dof_;            // of each node: that which carries its parent's body, or kEnd
-  std::vector<Inertia> own_;  // of each node's body
-  std::vector<AInertia> J_;   // of each node: scratch
-  std::vector<se3> A_;        // of each degree of freedom that carries a body: scratch
-  std::vector<se3> a_;        // of each degree of freedom: scratch, and what twists() leaves
-  std::vector<dse3> r_;       // scratch
+      parent_dof_;  // of each node: that which carries its parent's body, or kEnd
+  // Inertias of the slots' bodies, by groups of slots (lanes.h): in the nodes' own frames, and in
+  // the tree's; where each node's begins.
+  AlignedArray<double> bodies_, inertias_;
+  std::vector<std::uint32_t> inertia_at_;
+  AlignedArray<double> J_;  // of each node: scratch
+  std::vector<se3> A_;      // of each degree of freedom: scratch
+  std::vector<se3> a_;      // likewise: what twists() leaves
+  std::vector<dse3> r_;     // scratch
   std::uint32_t deepest_ = 0;
 };
 

@@ -96,14 +96,24 @@ constexpr Kernels kernels() {
 
 }  // namespace
 
+#ifdef VP_SAME_BITS
+constexpr Kernels table() {
+  return kernels<double>();
+}
+#else
 constexpr vphysics_kernels::Table table() {
 #define VP_TABLE_ENTRY(T) kernels<T>(),
   return {{VP_FOR_EACH_SCALAR(VP_TABLE_ENTRY)}};
 }
+#endif
 
 }  // namespace detail
 }  // namespace vp
 
 namespace vphysics_kernels {
+#ifdef VP_SAME_BITS
+const Kernels VP_KERNELS = vp::detail::table();
+#else
 const Table VP_KERNELS = vp::detail::table();
-}
+#endif
+}  // namespace vphysics_kernels

@@ -2,9 +2,9 @@
 // starts: docs/decisions/0012.
 //
 // The baseline gives the same bits everywhere; the wider sets have fused multiply-add and give
-// their own. kernels.cpp is compiled once for each set, in a namespace of its own, so that the
-// linker can never take an inline function of one for another's. What crosses between the
-// namespaces is this header's: addresses.
+// their own, but for those that are compiled without it (VP_SAME_BITS). kernels.cpp is compiled
+// once for each set, in a namespace of its own, so that the linker can never take an inline
+// function of one for another's. What crosses between the namespaces is this header's: addresses.
 #pragma once
 
 #include <array>
@@ -41,5 +41,8 @@ extern const Table kBaseline;
 // Only in libraries built with VP_INSTRUCTION_SETS.
 extern const Table kAvx2;
 extern const Table kAvx512;
+// Of double alone, without fused multiply-add and in the order of the baseline: its bits.
+extern const Kernels kAvx2SameBits;
+extern const Kernels kAvx512SameBits;
 
 }  // namespace vphysics_kernels

@@ -2,14 +2,15 @@
 //
 // Inwards nothing is alike between slots, so the recursions of one state cannot use a lane for each
 // slot as the rest of a pass does (lanes.h). With registers of 512 bits they use lanes for the
-// numbers of one slot instead: a force is one register, an articulated inertia six.
+// numbers of one slot instead: a force is one register, an articulated inertia six. That sums in
+// another order than the baseline does.
 #pragma once
 
 #include "multibody/lanes.h"
 
 namespace vp::detail {
 
-#if defined(__AVX512F__) && defined(__AVX512VL__)
+#if defined(__AVX512F__) && defined(__AVX512VL__) && !defined(VP_SAME_BITS)
 template <class T>
 inline constexpr bool kByRows = kSlots<T> > 1;
 #else

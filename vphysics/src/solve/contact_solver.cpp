@@ -152,6 +152,9 @@ void prepare(const StepContext& s, ContactConstraint& c) {
     prepare_approach(s, a, b, c, p);
     p.target = target_of(s, c, p);
     p.position_impulse = 0.0;
+    if (!c.is_steady()) continue;
+    const PointSpeeds speeds = speeds_of(a, b, c, p);
+    std::copy(std::begin(speeds.along), std::end(speeds.along), std::begin(p.steady));
   }
 }
 
@@ -175,11 +178,17 @@ void warm_start(const StepContext& s) {
 // Returns the change of speed.
 double solve_friction(SolverBody& a, SolverBody& b, const ContactConstraint& c, ContactPoint& p,
                       int row) {
-  const Vec3 u = relative_velocity(a, b, c, p);
+  // Without a load there is none.
+  if (p.normal_impulse == 0.0 && p.tangent_impulse[0] == 0.0 && p.tangent_impulse[1] == 0.0)
+    return 0.0;
+  double u[2] = {p.steady[1], p.steady[2]};
+  if (!c.is_steady()) {
+    const Vec3 all = relative_velocity(a, b, c, p);
+    for (int k = 0; k < 2; ++k) u[k] = dot(c.tangent[k], all);
+  }
   double next[2] = {p.tangent_impulse[0], p.tangent_impulse[1]};
-  friction_after(c, p, dot(c.tangent[0], u) + through_links(c, row) - c.surface_speed[0],
-                 dot(c.tangent[1], u) + through_links(c, row + 1) - c.surface_speed[1],
-                 p.normal_impulse, next);
+  friction_after(c, p, u[0] + through_links(c, row) - c.surface_speed[0],
+                 u[1] + through_links(c, row + 1) - c.surface_speed[1], p.normal_impulse, next);
   const double change0 = next[0] - p.tangent_impulse[0], change1 = next[1] - p.tangent_impulse[1];
   apply(a, b, c, p, change0 * c.tangent[0] + change1 * c.tangent[1]);
   apply_to_links(c, row, change0);
@@ -205,9 +214,11 @@ double solve_rolling(SolverBody& a, SolverBody& b, ContactConstraint& c) {
 // Returns the change of speed.
 double solve_normal(SolverBody& a, SolverBody& b, const ContactConstraint& c, ContactPoint& p,
                     int row) {
-  const double speed = dot(c.normal, relative_velocity(a, b, c, p)) + through_links(c, row);
+  const double own = c.is_steady() ? p.steady[0] : dot(c.normal, relative_velocity(a, b, c, p));
+  const double speed = own + through_links(c, row);
   const double next = std::max(0.0, p.normal_impulse + p.normal_mass * (p.target - speed));
   const double change = next - p.normal_impulse;
+  if (change == 0.0) return 0.0;
   p.normal_impulse = next;
   apply(a, b, c, p, change * c.normal);
   apply_to_links(c, row, change);

@@ -44,7 +44,8 @@ struct ContactPoint {
   double fall;             // what they add to its square while the gap closes [m^2/s^2]
   bool hits;               // faster than the threshold; what rests does not hit
   bool bounces;
-  double target;  // least normal speed after it
+  double target;     // least normal speed after it
+  double steady[3];  // speeds along the normal and the tangents, of steady contacts
   // Impulses; what they hold before the solve is the warm start.
   double normal_impulse;
   double tangent_impulse[2];
@@ -70,6 +71,7 @@ struct ContactConstraint {
   bool consistent = true;
   // Prepared. An impulse moves the body itself; the body has no velocity, and gets none.
   bool moves_a, moves_b, stands_a, stands_b;
+  bool is_steady() const { return !moves_a && !moves_b; }  // links alone answer
   ContactPoint points[collide::kMaxPoints];
   LinkSide side_a, side_b;  // prepared
 

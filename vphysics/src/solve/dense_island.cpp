@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solve/dense_passes.h"
 #include "solve/fours.h"
 #include "solve/impulses.h"
 
@@ -53,13 +54,14 @@ void DenseIsland::read() {
       const ContactPoint& p = c.points[i];
       const int own = row_of(i, kNormal);
       const std::uint32_t r = contacts_[k].row + static_cast<std::uint32_t>(own);
-      const Vec3 u = relative_velocity(a, b, c, p);
+      const PointSpeeds u = speeds_of(a, b, c, p);
       p_[r] = p.normal_impulse;
       p_[r + 1] = p.tangent_impulse[0];
       p_[r + 2] = p.tangent_impulse[1];
-      u_[r] = vp::dot(c.normal, u) + through_links(c, own);
-      u_[r + 1] = vp::dot(c.tangent[0], u) + through_links(c, own + 1);
-      u_[r + 2] = vp::dot(c.tangent[1], u) + through_links(c, own + 2);
+      for (int displacement = 0; displacement < kRowsOfPoint; ++displacement) {
+        u_[r + static_cast<std::uint32_t>(displacement)] =
+            u.along[displacement] + through_links(c, own + displacement);
+      }
     }
     if (c.rolling <= 0.0) continue;
     const std::uint32_t r = contacts_[k].row_of_rolling();
@@ -266,9 +268,7 @@ void DenseIsland::write_equation(std::size_t i, double* A) const {
   A[i] += e.softness;
 }
 
-// Gauss's elimination. Of the symmetric part, which is positive definite, only what is right of the
-// diagonal is kept up; of the rest the largest of each column is the pivot. False where there is
-// none.
+// Gauss's elimination; the symmetric part is positive definite. False where there is no pivot.
 bool DenseIsland::solve_directly() {
   find_equations();
   const std::size_t n = free_count_, stride = in_fours(n);
@@ -280,30 +280,7 @@ bool DenseIsland::solve_directly() {
     write_equation(i, A[i]);
     for (std::size_t j = n; j < stride; ++j) A[i][j] = 0.0;
   }
-  for (std::size_t k = 0; k < n; ++k) {
-    if (k >= symmetric_count_) {
-      std::size_t best = k;
-      for (std::size_t i = k + 1; i < n; ++i) {
-        if (std::fabs(A[i][k]) > std::fabs(A[best][k])) best = i;
-      }
-      std::swap(A[k], A[best]);
-      std::swap(step_[k], step_[best]);
-    }
-    if (!(std::fabs(A[k][k]) > 0.0)) return false;
-    const double inverse = 1.0 / A[k][k];
-    for (std::size_t i = k + 1; i < n; ++i) {
-      const bool symmetric = i < symmetric_count_;
-      const double factor = (symmetric ? A[k][i] : A[i][k]) * inverse;
-      if (factor == 0.0) continue;
-      const std::size_t begin = (symmetric ? i : k) / kFour * kFour;
-      add_scaled(A[i] + begin, A[k] + begin, -factor, stride - begin);
-      step_[i] -= factor * step_[k];
-    }
-  }
-  for (std::size_t k = n; k-- > 0;) {
-    for (std::size_t j = k + 1; j < n; ++j) step_[k] -= A[k][j] * step_[j];
-    step_[k] /= A[k][k];
-  }
+  if (!dense_passes().solve({A.data(), step_.data(), n, symmetric_count_, stride})) return false;
   return std::all_of(step_.begin(), step_.begin() + n, [](double x) { return std::isfinite(x); });
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <span>
 
+#include "solve/dense_passes.h"
 #include "solve/fours.h"
 #include "solve/impulses.h"
 
@@ -129,7 +130,12 @@ class Assembly {
     const auto mover = static_cast<std::uint32_t>(key);
     size_ = is_body ? BodyAnswer::kSize : in_fours(s_.articulations[mover].factor->dofs());
     scratch_.rows.clear();
-    scratch_.answers.clear();
+    std::size_t rows = 0;
+    for (const DenseEnd& end : ends) {
+      const bool of_joint = end.contact == kNoContact;
+      rows += of_joint ? 1 : static_cast<std::size_t>(rows_of(s_.contacts[end.contact]));
+    }
+    scratch_.answers.assign(rows * size_, 0.0);
     for (const DenseEnd& end : ends) {
       if (end.contact == kNoContact) {
         add_joint(s_.joints[joints_[end.row]], is_body, mover, append(end.row, 1));
@@ -165,31 +171,15 @@ class Assembly {
   double* append(std::uint32_t first, int count) {
     const std::size_t before = scratch_.rows.size();
     for (int r = 0; r < count; ++r) scratch_.rows.push_back(first + static_cast<std::uint32_t>(r));
-    scratch_.answers.resize(scratch_.rows.size() * size_, 0.0);
     return scratch_.answers.data() + before * size_;
   }
 
-  // To the lower half alone: rows ascend. Most of a y is zero: links of different branches share
-  // only what carries both.
+  // To the lower half alone: rows ascend. Links of different branches share only what carries both.
   void add_products() {
-    const auto& rows = scratch_.rows;
-    const std::size_t n = rows.size(), width = in_fours(n);
-    const double* y = scratch_.answers.data();
-    auto& columns = scratch_.columns;
-    columns.assign(size_ * width, 0.0);
-    for (std::size_t i = 0; i < n; ++i) {
-      for (std::size_t k = 0; k < size_; ++k) columns[k * width + i] = y[i * size_ + k];
-    }
-    std::array<double, kMaxDenseRows> sums;
-    for (std::size_t i = 0; i < n; ++i, y += size_) {
-      const std::size_t end = in_fours(i + 1);
-      std::fill_n(sums.begin(), end, 0.0);
-      for (std::size_t k = 0; k < size_; ++k) {
-        if (y[k] != 0.0) add_scaled(sums.data(), columns.data() + k * width, y[k], end);
-      }
-      double* const line = W_ + rows[i] * stride_;
-      for (std::size_t j = 0; j <= i; ++j) line[rows[j]] += sums[j];
-    }
+    const std::size_t n = scratch_.rows.size(), numbers = size_ * in_fours(n);
+    if (scratch_.columns.size() < numbers) scratch_.columns.resize(numbers);
+    dense_passes().add_products({scratch_.answers.data(), n, size_, scratch_.rows.data(),
+                                 scratch_.columns.data(), W_, stride_});
   }
 
   static constexpr std::uint32_t kNoContact = 0xffffffffu;

@@ -23,6 +23,15 @@ inline Vec3 relative_velocity(const SolverBody& a, const SolverBody& b, const Co
   if (!c.stands_a) u = u - a.v - cross(a.w, p.arm_a);
   return u;
 }
+// The same along the normal and the tangents.
+struct PointSpeeds {
+  double along[3];
+};
+inline PointSpeeds speeds_of(const SolverBody& a, const SolverBody& b, const ContactConstraint& c,
+                             const ContactPoint& p) {
+  const Vec3 u = relative_velocity(a, b, c, p);
+  return {{dot(c.normal, u), dot(c.tangent[0], u), dot(c.tangent[1], u)}};
+}
 // What the solve has added to a row's speed through links.
 inline double through_links(const ContactConstraint& c, int row) {
   if (!c.has_links()) return 0.0;

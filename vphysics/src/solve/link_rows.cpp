@@ -31,17 +31,15 @@ double* fill(const StepContext& s, const ContactConstraint& c, std::uint32_t bod
   const detail::ImpulseFactor& factor =
       *s.articulations[static_cast<std::size_t>(link.articulation)].factor;
   side.rows = y;
+  const Vec3 directions[] = {sign * c.normal, sign * c.tangent[0], sign * c.tangent[1]};
   for (int i = 0; i < c.count; ++i) {
-    for (const Vec3* d : {&c.normal, &c.tangent[0], &c.tangent[1]}) {
-      factor.force_row(link.link, c.points[i].position, sign * *d, y);
-      y += side.depth;
-    }
+    factor.force_rows(link.link, c.points[i].position, directions, y);
+    y += kRowsOfPoint * side.depth;
   }
   if (c.rolling > 0.0) {
-    for (const Vec3& d : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) {
-      factor.moment_row(link.link, sign * d, y);
-      y += side.depth;
-    }
+    const Vec3 axes[] = {sign * Vec3{1, 0, 0}, sign * Vec3{0, 1, 0}, sign * Vec3{0, 0, 1}};
+    factor.moment_rows(link.link, axes, y);
+    y += kRowsOfPoint * side.depth;
   }
   return y;
 }

@@ -130,7 +130,7 @@ template <int P>
   for (std::size_t b = 0; b < count; ++b) {
     std::uint32_t found = 0;
     for (int at = 0; at < kLanes; at += W) {
-      found |= find_closer_slots<W>(blocks[b], at, rows, dt) << at;
+      found |= find_closer_pairs<W>(blocks[b].pairs + at, rows, dt) << at;
     }
     bits[b] = found;
   }

@@ -1,4 +1,5 @@
 // Which of the instruction sets this machine has.
+#include "solve/dense_passes.h"
 #include "solve/passes.h"
 
 namespace vp::solve {
@@ -7,6 +8,7 @@ namespace {
 struct Tables {
   const Passes* contacts;
   const AllJointPasses* joints;
+  const vphysics_dense::Passes* dense;
 };
 
 Tables best() {
@@ -15,11 +17,11 @@ Tables best() {
   const bool avx2 = __builtin_cpu_supports("avx2");
   if (avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
       __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw")) {
-    return {&kAvx512, &kAvx512Joints};
+    return {&kAvx512, &kAvx512Joints, &vphysics_dense::kAvx512};
   }
-  if (avx2) return {&kAvx2, &kAvx2Joints};
+  if (avx2) return {&kAvx2, &kAvx2Joints, &vphysics_dense::kAvx2};
 #endif
-  return {&kBaseline, &kBaselineJoints};
+  return {&kBaseline, &kBaselineJoints, &vphysics_dense::kBaseline};
 }
 
 const Tables& tables() {
@@ -34,6 +36,9 @@ const Passes& passes() {
 }
 const AllJointPasses& joint_passes() {
   return *tables().joints;
+}
+const vphysics_dense::Passes& dense_passes() {
+  return *tables().dense;
 }
 
 }  // namespace vp::solve

@@ -183,17 +183,21 @@ std::uint32_t find_changed_slots(const LanesOf<W, P>& c, int at) {
   return bits;
 }
 
-// Bits of near pairs that may go farther than their clearance.
+// Bits of W near pairs: of those that may go farther than their clearance.
 template <int W>
-std::uint32_t find_closer_slots(const SpeculativeBlock& block, int at, BodyRow* rows, float dt) {
+std::uint32_t find_closer_pairs(const NearPair* pairs, BodyRow* rows, float dt) {
   using F = Lanes<W>;
   using V = Vec3T<F>;
-  const auto get = [&](const Field& f) { return F(lanes::load<W>(f.lane + at)); };
-  const auto get3 = [&](const Field3& f) { return V{get(f.x), get(f.y), get(f.z)}; };
-  const auto gather = [&](const IndexField& of, V& x, V& rotation) {
+  F of_pair[24];
+  for (int c = 0; c < 24; c += 8) {
+    lanes::gather8<W>([&](int i) { return reinterpret_cast<const float*>(&pairs[i]) + c; },
+                      of_pair + c);
+  }
+  const auto get3 = [&](int f) { return V{of_pair[f], of_pair[f + 1], of_pair[f + 2]}; };
+  const auto gather = [&](std::uint32_t NearPair::*row, V& x, V& rotation) {
     F velocity[8], displacement[8];
-    lanes::gather8<W>([&](int i) { return rows[of.lane[at + i]].velocity; }, velocity);
-    lanes::gather8<W>([&](int i) { return rows[of.lane[at + i]].displacement; }, displacement);
+    lanes::gather8<W>([&](int i) { return rows[pairs[i].*row].velocity; }, velocity);
+    lanes::gather8<W>([&](int i) { return rows[pairs[i].*row].displacement; }, displacement);
     const F step(dt);
     x = V{displacement[0], displacement[1], displacement[2]} +
         step * V{velocity[0], velocity[1], velocity[2]};
@@ -201,21 +205,21 @@ std::uint32_t find_closer_slots(const SpeculativeBlock& block, int at, BodyRow* 
                step * V{velocity[3], velocity[4], velocity[5]};
   };
   V x_a, turn_a, x_b, turn_b;
-  gather(block.a, x_a, turn_a);
-  gather(block.b, x_b, turn_b);
-  turn_a -= get3(block.turn_a);
-  turn_b -= get3(block.turn_b);
-  const V arm_a = get3(block.arm_a), arm_b = get3(block.arm_b);
-  const V by_a = x_a - get3(block.x_a) + cross(turn_a, arm_a);
-  const V by_b = x_b - get3(block.x_b) + cross(turn_b, arm_b);
+  gather(&NearPair::a, x_a, turn_a);
+  gather(&NearPair::b, x_b, turn_b);
+  turn_a -= get3(3);
+  turn_b -= get3(9);
+  const V arm_a = get3(12), arm_b = get3(15);
+  const V by_a = x_a - get3(0) + cross(turn_a, arm_a);
+  const V by_b = x_b - get3(6) + cross(turn_b, arm_b);
   const auto size = [](const V& v) { return sqrt(dot(v, v)); };
   // An arm that turns leaves its tangent by half of the square.
   const auto bow = [&](const V& rotation, const V& arm) {
     return F(0.5f) * dot(rotation, rotation) * size(arm);
   };
-  const F gone = size(by_b - by_a) + get(block.radius) * size(turn_b - turn_a) +
-                 bow(turn_a, arm_a) + bow(turn_b, arm_b);
-  const auto stays = gone <= get(block.clearance);
+  const F gone = size(by_b - by_a) + of_pair[18] * size(turn_b - turn_a) + bow(turn_a, arm_a) +
+                 bow(turn_b, arm_b);
+  const auto stays = gone <= of_pair[19];
   return lanes::bits_of(!stays);
 }
 

@@ -1,50 +1,50 @@
 #include "solve/speculative_list.h"
 
-#include "solve/slot_copy.h"
-
 namespace vp::solve {
 namespace {
 
-const SpeculativeBlock& empty_speculative_block() {
-  static const SpeculativeBlock kEmpty = [] {
-    SpeculativeBlock block;
-    std::memset(static_cast<void*>(&block), 0, sizeof block);
-    for (std::uint32_t& c : block.contact.lane) c = kNoContact;
-    for (float& c : block.clearance.lane) c = kFarSeparated;
-    return block;
-  }();
-  return kEmpty;
+constexpr NearPair kEmptyPair = [] {
+  NearPair pair{};
+  pair.contact = kNoContact;
+  pair.clearance = kFarSeparated;
+  return pair;
+}();
+
+SpeculativeBlock empty_speculative_block() {
+  SpeculativeBlock block;
+  for (NearPair& pair : block.pairs) pair = kEmptyPair;
+  return block;
 }
 
 }  // namespace
 
 std::uint32_t SpeculativeList::add(std::uint32_t contact, std::uint32_t row_a,
                                    std::uint32_t row_b) {
-  const std::uint32_t index = lanes_++;
+  const std::uint32_t index = size_++;
   if (index / kLanes == blocks_.size()) blocks_.push_back(empty_speculative_block());
-  SpeculativeBlock& to = block(index);
-  to.a.lane[lane(index)] = row_a;
-  to.b.lane[lane(index)] = row_b;
-  to.contact.lane[lane(index)] = contact;
-  to.clearance.lane[lane(index)] = 0.0f;
+  NearPair& to = pair(index);
+  to.a = row_a;
+  to.b = row_b;
+  to.contact = contact;
+  to.clearance = 0.0f;
   return index;
 }
 
 std::uint32_t SpeculativeList::add(const SpeculativeList& from, std::uint32_t index) {
   const std::uint32_t slot = add(0, 0, 0);
-  copy_slot(from.block(index), lane(index), block(slot), lane(slot));
+  pair(slot) = from.pair(index);
   return slot;
 }
 
 std::uint32_t SpeculativeList::remove(std::uint32_t index) {
-  const std::uint32_t last = --lanes_;
+  const std::uint32_t last = --size_;
   std::uint32_t moved = kNoContact;
   if (last != index) {
-    copy_slot(block(last), lane(last), block(index), lane(index));
-    moved = block(index).contact.lane[lane(index)];
+    pair(index) = pair(last);
+    moved = pair(index).contact;
   }
-  copy_slot(empty_speculative_block(), 0, block(last), lane(last));
-  if (lane(last) == 0) blocks_.pop_back();
+  pair(last) = kEmptyPair;
+  if (last % kLanes == 0) blocks_.pop_back();
   return moved;
 }
 

@@ -13,41 +13,60 @@ constexpr double kBornePull = 50.0;
 
 }  // namespace
 
+// What gravity alone adds, which most bodies have, is no more than margins bear.
 Velocity Approach::pull_of(const Body& body) const {
   if (body.motion != Motion::dynamic || body.is_link || body.asleep) return {};
+  if (body.load == kNone) {
+    const Vec3 gravity = body.gravity_scale * desc.gravity;
+    if (dot(gravity, gravity) <= kBornePull * kBornePull) return {};
+  }
   const Velocity a = loads.acceleration(body, desc.gravity);
-  if (body.load == kNone && dot(a.v, a.v) <= kBornePull * kBornePull) return {};
   const double max_value = norm(a.v) + body.bounding_radius * norm(a.w);
   if (max_value <= kBornePull || dt * dt * max_value <= desc.contact_slop) return {};
   const double mean = 0.5 * dt * (1.0 + 1.0 / sub_steps_in(desc, speed_unit, dt));
   return {mean * a.w, mean * a.v};
 }
 
+namespace {
+
+// One of the two, for this step.
+struct Approaching {
+  const Body& body;
+  Vec3 reference;
+  Velocity pull;
+  bool pulled;
+
+  Approaching(const Body& b, const Velocity& p)
+      : body(b), reference(reference_point(b)), pull(p), pulled(!(p == Velocity{})) {}
+
+  Vec3 velocity(const Vec3& at) const { return body.v + cross(body.w, at - reference); }
+  // What the pull adds to the speed of what is within that radius of a point of the body.
+  double pulled_by(const Vec3& at, double radius) const {
+    if (!pulled) return 0.0;
+    return norm(pull.v + cross(pull.w, at - reference)) + radius * norm(pull.w);
+  }
+  // How far a step's rotation moves what is within the collider's ball, about its center.
+  double rotated(const Collider& collider, double dt) const {
+    if (collider.geometry.kind == collide::Kind::sphere) return 0.0;
+    const double rotation = dt * (pulled ? norm(body.w) + norm(pull.w) : norm(body.w));
+    return collider.radius * std::min(rotation, 2.0);
+  }
+};
+
+}  // namespace
+
 double Approach::of(const Collider& a, const Collider& b) const {
   const Body &body_a = bodies[a.body], &body_b = bodies[b.body];
-  const auto velocity = [&](const Body& body, const Vec3& at) {
-    return body.v + cross(body.w, at - reference_point(body));
-  };
-  const Velocity pull_a = pull_of(body_a), pull_b = pull_of(body_b);
-  // Of what is within that radius of a point of the body.
-  const auto pulled = [&](const Body& body, const Velocity& pull, const Vec3& at, double radius) {
-    if (pull == Velocity{}) return 0.0;
-    return norm(pull.v + cross(pull.w, at - reference_point(body))) + radius * norm(pull.w);
-  };
+  const Approaching by_a(body_a, pull_of(body_a)), by_b(body_b, pull_of(body_b));
   const Vicinity at = vicinity_of(bodies, a, b);
-  const double together = norm(velocity(body_b, at.centre) - velocity(body_a, at.centre)) +
+  const double together = norm(by_b.velocity(at.centre) - by_a.velocity(at.centre)) +
                           at.radius * norm(body_b.w - body_a.w) +
-                          pulled(body_a, pull_a, at.centre, at.radius) +
-                          pulled(body_b, pull_b, at.centre, at.radius);
-  const auto rotated = [&](const Collider& c, const Body& body, const Velocity& pull) {
-    const double rotation = dt * (norm(body.w) + norm(pull.w));
-    return c.geometry.kind == collide::Kind::sphere ? 0.0 : c.radius * std::min(rotation, 2.0);
-  };
+                          by_a.pulled_by(at.centre, at.radius) +
+                          by_b.pulled_by(at.centre, at.radius);
   const Vec3 end_a = body_a.T * a.centre, end_b = body_b.T * b.centre;
-  const double separation = norm(velocity(body_b, end_b) - velocity(body_a, end_a)) +
-                            pulled(body_a, pull_a, end_a, 0.0) + pulled(body_b, pull_b, end_b, 0.0);
-  return std::min(dt * together,
-                  dt * separation + rotated(a, body_a, pull_a) + rotated(b, body_b, pull_b));
+  const double separation = norm(by_b.velocity(end_b) - by_a.velocity(end_a)) +
+                            by_a.pulled_by(end_a, 0.0) + by_b.pulled_by(end_b, 0.0);
+  return std::min(dt * together, dt * separation + by_a.rotated(a, dt) + by_b.rotated(b, dt));
 }
 
 }  // namespace vp

@@ -112,6 +112,7 @@ Articulation::Articulation(const Model& model, const Vec3& gravity)
   forward_kinematics<double>(model_, data_, q, v);
   regular_ = factor_.factor(model_, data_);
   factored_ = Factored::without_damping;
+  factor_.twists(zero_);
   find_change(1.0, zero_);
   fall_ = change_;
   if (constant_) {
@@ -129,7 +130,7 @@ void Articulation::refresh() {
   }
   forward_kinematics<double>(model_, data_, q, v);
   factored_ = Factored::no;
-  twists_ = false;
+  twists_ = inertias_ = false;
 }
 
 // A joint that looks the other way along its line slides and turns backwards.
@@ -299,7 +300,8 @@ SE3 Articulation::T_world_link(int link) const {
 void Articulation::update_factor() {
   const bool damped = factored_ == Factored::for_the_step && damped_;
   if (factored_ != Factored::no && !damped) return;
-  (void)factor_.factor(model_, data_);
+  (void)factor_.factor(model_, data_, 0.0, inertias_);
+  inertias_ = true;
   factored_ = Factored::without_damping;
 }
 
@@ -328,13 +330,10 @@ void Articulation::advance(double h) {
     if (!remote) update_line_poses();
     return;
   }
-  if (!floating_.empty()) {
-    advance_floating(h);
-  } else {
-    for (std::size_t i = 0; i < v.size(); ++i) rate_[i] = h * v[i];
-    integrate<double>(model_, q, rate_, q);
-  }
-  refresh();  // in full, as restore() does: to the same bits
+  if (!floating_.empty()) return advance_floating(h);
+  for (std::size_t i = 0; i < v.size(); ++i) rate_[i] = h * v[i];
+  integrate<double>(model_, q, rate_, q);
+  refresh();
 }
 
 // Poses alone, until look_back().
@@ -358,26 +357,33 @@ void Articulation::look_back() {
 // The root turns at the rate that it will have halfway, where its momentum is what it is now.
 void Articulation::advance_floating(double h) {
   if (factored_ == Factored::no) update_factor();
-  factor_.twists(v);
-  for (std::size_t i = 0; i < floating_.size(); ++i)
-    composites_[i] = floating_[i].composite(data_, factor_);
+  if (!twists_) factor_.twists(v);
+  for (std::size_t i = 0; i < floating_.size(); ++i) {
+    composites_[i] = floating_[i].whole_of_twists(data_, factor_);
+  }
   for (std::size_t i = 0; i < v.size(); ++i) rate_[i] = 0.5 * h * v[i];
   integrate<double>(model_, q, rate_, moved_q_);
   forward_kinematics<double>(model_, data_, moved_q_, v);
+  factor_.find_inertias(model_, data_);
   rate_ = v;
   for (std::size_t i = 0; i < floating_.size(); ++i) {
-    floating_[i].set_momentum(model_, data_, floating_[i].composite(model_, data_), composites_[i],
-                              rate_);
+    const CompositeBody now = floating_[i].composite(data_, factor_);
+    floating_[i].set_momentum(model_, data_, now, composites_[i], rate_);
   }
   for (double& r : rate_) r *= h;
   integrate<double>(model_, q, rate_, q);
-  forward_kinematics<double>(model_, data_, q, v);
+  refresh();
+  factor_.find_inertias(model_, data_);
+  inertias_ = true;
   for (std::size_t i = 0; i < floating_.size(); ++i) {
-    const CompositeBody &from = composites_[i], now = floating_[i].composite(model_, data_);
+    const CompositeBody &from = composites_[i], now = floating_[i].composite(data_, factor_);
     const Vec3 centre = from.centre + (h / from.mass) * from.linear;
     floating_[i].shift(model_, centre - now.centre, q);
     floating_[i].set_momentum(model_, data_, now, from, v);
   }
+  // To the same bits as refresh(), as of a state that has been restored.
+  if (has_user_joints_) return refresh();
+  detail::ImpulseFactor::kinematics_of(model_, data_, q, v);
 }
 
 void Articulation::mark_moving() {
@@ -390,6 +396,7 @@ void Articulation::advance_sub_step(double h) {
   for (std::size_t i = 0; i < v.size(); ++i) change_[i] = v[i] - moving_[i];
   velocity_ = change_;  // advance() has its own use for the rest
   v = moving_;
+  twists_ = false;
   sub_stepped = false;
   advance(h);
   sub_stepped = true;

@@ -257,7 +257,8 @@ class Articulation {
   enum class Factored : std::uint8_t { no, without_damping, for_the_step };
   Factored factored_ = Factored::no;  // of this configuration
   double factored_time_ = 0.0;        // for how long, for the step
-  bool twists_ = false;               // the factor has the links' velocities, else the data
+  bool inertias_ = false;             // the factor has them of this configuration
+  bool twists_ = false;               // it has the links' velocities, else the data
   bool regular_ = false;
   bool loaded_ = false;
   std::vector<dse3> loads_;          // of each link

@@ -8,13 +8,12 @@
 
 namespace vp {
 
-// change_ = (M + dt D)^-1 dt (f - h(q, at) - D v)
+// change_ = (M + dt D)^-1 dt (f - h(q, at) - D v); the factor has the twists of `at`.
 void Articulation::find_change(double dt, std::span<const double> at) {
   if (has_user_joints_) {
     inverse_dynamics<double>(model_, data_, q, at, zero_, {.gravity = gravity_}, force_);
     for (std::size_t i = 0; i < v.size(); ++i) force_[i] -= damping_[i] * at[i];
   } else {
-    factor_.twists(at);
     factor_.bias(gravity_, force_);
   }
   for (std::size_t i = 0; i < v.size(); ++i) {
@@ -49,7 +48,7 @@ void Articulation::add_loads_of_trees(double dt) {
     tree.angular += dt * (load.m + cross(at - tree.centre, load.f));
   };
   for (std::size_t l = 0; l < loads_.size(); ++l) {
-    if (floating_of_[l] < 0) continue;
+    if (floating_of_[l] < 0 || loads_[l] == dse3{}) continue;
     const SE3 T = T_world_link(static_cast<int>(l));
     add(composites_[static_cast<std::size_t>(floating_of_[l])], T.position(), loads_[l]);
   }
@@ -136,15 +135,18 @@ bool Articulation::add_forces(double dt, bool& changed) {
     changed = add_constant_forces(dt);
     return true;
   }
-  const bool fine = factor_.factor(model_, data_, damped_ ? dt : 0.0);
+  const bool fine = factor_.factor(model_, data_, damped_ ? dt : 0.0, inertias_);
+  inertias_ = true;
   factored_ = Factored::for_the_step;
   factored_time_ = dt;
-  if (!floating_.empty()) factor_.twists(v);
-  for (std::size_t i = 0; i < floating_.size(); ++i)
-    composites_[i] = floating_[i].composite(data_, factor_);
+  if (!has_user_joints_ || !floating_.empty()) factor_.twists(v);
+  for (std::size_t i = 0; i < floating_.size(); ++i) {
+    composites_[i] = floating_[i].whole_of_twists(data_, factor_);
+  }
   if (loaded_) find_force_response();
   find_change(dt, v);
   for (std::size_t i = 0; i < v.size(); ++i) rate_[i] = v[i] + 0.5 * change_[i];
+  if (!has_user_joints_) factor_.twists(rate_);
   find_change(dt, rate_);
   for (std::size_t i = 0; i < v.size(); ++i) v[i] += change_[i];
   if (!floating_.empty()) factor_.twists(v);
@@ -153,8 +155,8 @@ bool Articulation::add_forces(double dt, bool& changed) {
   }
   if (loaded_) add_loads_of_trees(dt);
   for (std::size_t i = 0; i < floating_.size(); ++i) {
-    floating_[i].set_momentum(model_, data_, floating_[i].composite(data_, factor_), composites_[i],
-                              v);
+    const CompositeBody now = floating_[i].whole_of_twists(data_, factor_);
+    floating_[i].set_momentum(model_, data_, now, composites_[i], v);
   }
   update_twists();
   return fine;

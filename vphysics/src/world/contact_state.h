@@ -138,8 +138,10 @@ void write_contacts(Sink& sink, const ContactData& world) {
        {&world.contacts.speculative, &world.contacts.parked_speculative}) {
     sink.u64(list->size());
     for (std::uint32_t i = 0; i < list->size(); ++i) {
-      sink.u64(list->block(i).contact.lane[solve::SpeculativeList::lane(i)]);
-      write_fields(solve::fields_of(list->block(i)), solve::SpeculativeList::lane(i));
+      const solve::NearPair& pair = list->pair(i);
+      sink.u64(pair.contact);
+      for (std::size_t f = 0; f < solve::kNearFloats; f += 2)
+        put_two(sink, solve::near_float(pair, f), solve::near_float(pair, f + 1));
     }
   }
   sink.u64(world.regions.count);

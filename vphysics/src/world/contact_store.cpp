@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "solve/row_vector.h"
-#include "world/lane_fields.h"
 
 namespace vp {
 namespace {
@@ -135,21 +134,20 @@ void ContactStore::set_speculative(std::uint32_t index, double clearance, const 
 }
 
 void ContactStore::set_clearance(const Contact& c, double clearance, const BodySet& on) {
-  solve::SpeculativeBlock& block = speculative.block(c.speculative_index);
-  const int lane = solve::SpeculativeList::lane(c.speculative_index);
+  solve::NearPair& pair = speculative.pair(c.speculative_index);
   const Collider &a = on.colliders[c.a], &b = on.colliders[c.b];
   const Vicinity at = vicinity_of(on.bodies, a, b);
-  const auto put_end = [&](std::uint32_t row, const Body& body, solve::Field3& x,
-                           solve::Field3& rotation, solve::Field3& arm) {
+  const auto put_end = [&](std::uint32_t row, const Body& body, float* x, float* rotation,
+                           float* arm) {
     const float* displacement = on.rows[row].displacement;
-    put(x, lane, vector_of(displacement));
-    put(rotation, lane, vector_of(displacement + 3));
-    put(arm, lane, row == solve::kWorldRow ? Vec3{} : at.centre - reference_point(body));
+    std::copy_n(displacement, 3, x);
+    std::copy_n(displacement + 3, 3, rotation);
+    put(arm, row == solve::kWorldRow ? Vec3{} : at.centre - reference_point(body));
   };
-  put_end(block.a.lane[lane], on.bodies[a.body], block.x_a, block.turn_a, block.arm_a);
-  put_end(block.b.lane[lane], on.bodies[b.body], block.x_b, block.turn_b, block.arm_b);
-  block.clearance.lane[lane] = static_cast<float>(clearance);
-  block.radius.lane[lane] = static_cast<float>(at.radius);
+  put_end(pair.a, on.bodies[a.body], pair.x_a, pair.turn_a, pair.arm_a);
+  put_end(pair.b, on.bodies[b.body], pair.x_b, pair.turn_b, pair.arm_b);
+  pair.clearance = static_cast<float>(clearance);
+  pair.radius = static_cast<float>(at.radius);
 }
 
 void ContactStore::reset_speculative(const Contact& c, const BodySet& on) {
@@ -163,27 +161,23 @@ void ContactStore::unset_speculative(std::uint32_t index) {
 }
 
 double ContactStore::clearance(const Contact& c) const {
-  return static_cast<double>(
-      speculative.block(c.speculative_index)
-          .clearance.lane[solve::SpeculativeList::lane(c.speculative_index)]);
+  return static_cast<double>(speculative.pair(c.speculative_index).clearance);
 }
 
 // As find_closer counts it.
 void ContactStore::use_clearance(const Contact& c, const BodySet& on) {
-  solve::SpeculativeBlock& block = speculative.block(c.speculative_index);
-  const int lane = solve::SpeculativeList::lane(c.speculative_index);
-  const auto gone = [&](const solve::IndexField& rows, const solve::Field3& x,
-                        const solve::Field3& rotation, const solve::Field3& arm) {
-    const float* displacement = on.rows[rows.lane[lane]].displacement;
-    const Vec3 r = get(arm, lane), by = vector_of(displacement + 3) - get(rotation, lane);
-    return Gone{vector_of(displacement) - get(x, lane) + cross(by, r), by,
+  solve::NearPair& pair = speculative.pair(c.speculative_index);
+  const auto gone = [&](std::uint32_t row, const float* x, const float* rotation,
+                        const float* arm) {
+    const float* displacement = on.rows[row].displacement;
+    const Vec3 r = vector_of(arm), by = vector_of(displacement + 3) - vector_of(rotation);
+    return Gone{vector_of(displacement) - vector_of(x) + cross(by, r), by,
                 0.5 * dot(by, by) * norm(r)};
   };
-  const Gone a = gone(block.a, block.x_a, block.turn_a, block.arm_a);
-  const Gone b = gone(block.b, block.x_b, block.turn_b, block.arm_b);
-  const double rotated =
-      static_cast<double>(block.radius.lane[lane]) * norm(b.rotation - a.rotation);
-  block.clearance.lane[lane] -=
+  const Gone a = gone(pair.a, pair.x_a, pair.turn_a, pair.arm_a);
+  const Gone b = gone(pair.b, pair.x_b, pair.turn_b, pair.arm_b);
+  const double rotated = static_cast<double>(pair.radius) * norm(b.rotation - a.rotation);
+  pair.clearance -=
       static_cast<float>(norm(b.displacement - a.displacement) + rotated + a.bow + b.bow);
 }
 
@@ -238,6 +232,13 @@ void ContactStore::mark_contacts_dirty(const Body& body) {
 void ContactStore::mark_dirty_slots(const solve::IndexField& contacts, std::uint32_t bits) {
   for (; bits != 0; bits &= bits - 1) {
     const std::uint32_t contact = contacts.lane[std::countr_zero(bits)];
+    if (contact != solve::kNoContact) mark_dirty(contact);
+  }
+}
+
+void ContactStore::mark_stale_pairs(const solve::SpeculativeBlock& block, std::uint32_t bits) {
+  for (; bits != 0; bits &= bits - 1) {
+    const std::uint32_t contact = block.pairs[std::countr_zero(bits)].contact;
     if (contact != solve::kNoContact) mark_dirty(contact);
   }
 }

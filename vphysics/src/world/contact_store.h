@@ -80,6 +80,7 @@ class ContactStore {
   void mark_dirty(std::uint32_t contact);
   void mark_contacts_dirty(const Body& body);
   void mark_dirty_slots(const solve::IndexField& contacts, std::uint32_t bits);
+  void mark_stale_pairs(const solve::SpeculativeBlock& speculative, std::uint32_t bits);
   // The stale ones, ascending, each once; then none is.
   void take_dirty(std::vector<std::uint32_t>& ascending);
 

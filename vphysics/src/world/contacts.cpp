@@ -171,6 +171,7 @@ void World::Impl::note_touched_articulations() {
   note_joined_bodies();
 }
 
+// At the start of a step all; then what an impact concerns.
 void World::Impl::solve_contacts(double h, double dt, bool first) {
   if (!first) {
     // An impact: contacts found at the start of the step take part with fresh impulses.
@@ -182,14 +183,15 @@ void World::Impl::solve_contacts(double h, double dt, bool first) {
       }
     }
   }
-  if (first && impacts.swept_pairs.empty()) {  // no impact will follow that wants them again
+  if (first && impacts.swept_body_pairs.empty()) {  // no impact will follow that wants them again
     impacts.contacts.swap(impacts.discrete_contacts);
     impacts.discrete_contacts.clear();
   } else {
     impacts.contacts.assign(impacts.discrete_contacts.begin(), impacts.discrete_contacts.end());
   }
   find_swept_contacts(first);
-  impacts.in_contact.assign(bodies.size(), 0);
+  const std::span<const std::uint32_t> solved = first ? impact_bodies() : impacts.concerned;
+  for (const std::uint32_t i : solved) impacts.in_contact[i] = 0;
   for (const solve::ContactConstraint& c : impacts.contacts) {
     if (c.swept) impacts.in_contact[c.a] = impacts.in_contact[c.b] = 1;
   }
@@ -199,12 +201,12 @@ void World::Impl::solve_contacts(double h, double dt, bool first) {
   add_joint_rows(h, dt, of_joints.of);
   add_row_joints(of_joints);
   if (impacts.contacts.empty() && impacts.joint_rows.empty()) return;
-  refresh_solver_bodies();
+  refresh_solver_bodies(solved);
   begin_solve_articulations(first);
   solve::solve({impacts.solver_bodies, impacts.contacts, impacts.joint_rows, impacts.joint_pairs,
                 impacts.solver_articulations, impacts.link_rows, impacts.instant, h, dt,
                 desc.contact_slop, desc.restitution_threshold, desc.velocity_iterations});
-  for (const std::uint32_t i : impact_bodies()) {
+  for (const std::uint32_t i : solved) {
     Body& body = bodies[i];
     if (body.is_link || body.motion != Motion::dynamic) continue;
     if (first) carry(i, impacts.solver_bodies[i].w - body.w, impacts.solver_bodies[i].v - body.v);
@@ -215,7 +217,7 @@ void World::Impl::solve_contacts(double h, double dt, bool first) {
   note_link_impulses(impacts.contacts);
   end_solve_articulations(first);
   take_back_row_joints(of_joints);
-  apply_corrections();
+  apply_corrections(solved);
   for (const solve::ContactConstraint& c : impacts.contacts) {
     counters.contacts += static_cast<std::uint32_t>(c.count);
   }
@@ -260,19 +262,6 @@ void World::Impl::report_sensor(const ColliderPair& pair, const Vec3& point, con
   record.touching = true;
   if (!known)
     events.emit(colliders, ContactEvent::Kind::begin, pair, point, normal, 0.0, 0.0, time);
-}
-
-// Swept bodies report a sensor even if they are through it within the step.
-void World::Impl::report_swept_sensors(double h, double time) {
-  const ImpactTimes times = impact_times();
-  for (const SweptPair& swept : impacts.swept_pairs) {
-    if (!swept.sensor) continue;
-    const double t = swept.separation <= times.tolerance() ? 0.0 : times.until(swept, 0.0, h);
-    if (t < 0.0) continue;
-    const Collider& c = colliders[swept.swept_is_a ? swept.pair.a : swept.pair.b];
-    const Vec3 centre = c.T.position() + t * impacts.motions[c.body].v;
-    report_sensor(swept.pair, centre, {0, 0, 0}, time + t);
-  }
 }
 
 // What carries a resting load at the start of the step is the best guess for the next one.

@@ -87,6 +87,7 @@ void find_manifold_of(Contact& c, NarrowPhaseResult& found, const NarrowPhaseInp
                   in.approach.pull_of(in.bodies[b.body]) == Velocity{};
   found.clearance = (found.by_part ? found.margin_at_rest : found.margin) - in.slop;
   found.manifold.count = 0;
+  found.manifold.rough = false;
   if (disables_collision(in.bodies, in.joints, a.body, b.body)) {
     found.clearance = kNeverTouches;
   } else if (!c.has_parts) {
@@ -193,28 +194,37 @@ void World::Impl::find_dirty_contacts(double dt) {
                                                     body_rows.data(), step, found.data() + begin);
                       });
   for (std::size_t b = 0; b < blocks.size(); ++b)
-    contact_store.mark_dirty_slots(blocks[b].contact, found[b]);
+    contact_store.mark_stale_pairs(blocks[b], found[b]);
 }
 
-// In the order of their slots; then those that these have woken.
+// In the order of their slots; then those that these have woken. Some at a time, so that what is
+// read of colliders and bodies to find manifolds is in the cache when these are taken over.
 void World::Impl::update_dirty_contacts(double dt) {
   narrow.look_again.clear();
   for (bool first = true; first || !contact_store.dirty.empty(); first = false) {
-    find_dirty_manifolds(dt, first);
-    const auto stage = in(Stage::lanes);
-    for (const NarrowPhaseResult& found : narrow.results) take_over(found);
+    std::size_t done = 0;
+    do {
+      {
+        const auto stage = in(Stage::narrow_phase);
+        if (done == 0) list_stale_contacts(dt, first);
+        const std::span<const std::uint32_t> left = std::span(narrow.dirty).subspan(done);
+        find_manifolds_of(left.first(std::min(left.size(), kLookedAtOnce)), dt);
+      }
+      const auto stage = in(Stage::lanes);
+      for (const NarrowPhaseResult& found : narrow.results) take_over(found);
+      done += narrow.results.size();
+    } while (done < narrow.dirty.size());
   }
   contact_store.dirty.swap(narrow.look_again);
 }
 
-void World::Impl::find_dirty_manifolds(double dt, bool first) {
-  const auto stage = in(Stage::narrow_phase);
+// Those that have to be looked at; what has parted is dropped.
+void World::Impl::list_stale_contacts(double dt, bool first) {
   if (first) find_dirty_contacts(dt);
   contact_store.take_dirty(narrow.dirty);
-  std::vector<NarrowPhaseResult>& results = narrow.results;
   std::vector<std::uint32_t>& to_pose = narrow.to_pose;
-  results.clear();
   to_pose.clear();
+  std::size_t count = 0;
   for (const std::uint32_t index : narrow.dirty) {
     const Contact& c = contact_store[index];
     if (!c.alive || !c.dirty || c.parked) continue;
@@ -223,7 +233,7 @@ void World::Impl::find_dirty_manifolds(double dt, bool first) {
       drop_contact(index);
       continue;
     }
-    results.push_back({index, {}, 0.0, 0.0, 0.0, false});
+    narrow.dirty[count++] = index;
     for (const std::uint32_t collider : {c.a, c.b}) {
       Body& body = bodies[colliders[collider].body];
       if (body.posed || body.target) continue;
@@ -231,13 +241,20 @@ void World::Impl::find_dirty_manifolds(double dt, bool first) {
       to_pose.push_back(colliders[collider].body);
     }
   }
+  narrow.dirty.resize(count);
   workers.in_parallel(to_pose.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) pose_colliders(bodies[to_pose[k]], colliders);
   });
+}
+
+void World::Impl::find_manifolds_of(std::span<const std::uint32_t> contacts, double dt) {
+  std::vector<NarrowPhaseResult>& results = narrow.results;
+  results.resize(contacts.size());
   const NarrowPhaseInput input{bodies, colliders, joints, approach_in(dt), desc.contact_slop};
   workers.in_parallel(results.size(), kLookGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      find_manifold_of(contact_store[results[k].contact], results[k], input);
+      results[k].contact = contacts[k];
+      find_manifold_of(contact_store[contacts[k]], results[k], input);
     }
   });
 }

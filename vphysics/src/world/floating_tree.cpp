@@ -33,25 +33,15 @@ std::vector<FloatingTree> FloatingTree::of(const Model& model) {
   return found;
 }
 
-CompositeBody FloatingTree::composite(const Model& model, const Data& data) const {
-  Inertia J;
-  dse3 P{};
-  for (const int node : nodes_) {
-    const Inertia own = detail::inertia_of(model.tree(), data.work(), node);
-    J = J + own;
-    P = P + own * detail::velocity_of(data.work(), node);
-  }
-  return composite(data, J, P);
+CompositeBody FloatingTree::composite(const Data& data, const detail::ImpulseFactor& factor) const {
+  const auto sum = factor.momentum_of(nodes_, data);
+  return composite(data, sum.inertia, sum.momentum);
 }
 
-CompositeBody FloatingTree::composite(const Data& data, const detail::ImpulseFactor& factor) const {
-  Inertia J;
-  dse3 P{};
-  for (const int node : nodes_) {
-    J = J + factor.inertia_of(node);
-    P = P + factor.inertia_of(node) * factor.twist_of(node);
-  }
-  return composite(data, J, P);
+CompositeBody FloatingTree::whole_of_twists(const Data& data,
+                                            const detail::ImpulseFactor& factor) const {
+  const auto sum = factor.momentum_of_twists(nodes_, data);
+  return composite(data, sum.inertia, sum.momentum);
 }
 
 CompositeBody FloatingTree::composite(const Data& data, const Inertia& J, const dse3& P) const {

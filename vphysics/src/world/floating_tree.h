@@ -32,11 +32,10 @@ class FloatingTree {
   // Those of a model.
   static std::vector<FloatingTree> of(const Model& model);
 
-  // Of the configuration and velocities that forward_kinematics() was given last.
-  CompositeBody composite(const Model& model, const Data& data) const;
-  // The same of the velocities that factor.twists() was given last; the factor is of the data's
-  // configuration.
+  // Of the configuration that forward_kinematics() and factor.find_inertias() were given last, and
+  // of the former's velocities, or those that factor.twists() was given last.
   CompositeBody composite(const Data& data, const detail::ImpulseFactor& factor) const;
+  CompositeBody whole_of_twists(const Data& data, const detail::ImpulseFactor& factor) const;
   // Changes the root's velocities in v, of which the tree is as it is now, to those with the
   // momentum wanted.
   void set_momentum(const Model& model, const Data& data, const CompositeBody& now,

@@ -1,6 +1,7 @@
 #include "world/impact_pairs.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace vp {
 namespace {
@@ -30,6 +31,7 @@ double travel_of_bounds(const Body& body, const collide::Motion& m, double h) {
 
 void SweptBodyPairs::reserve(std::size_t bodies, std::size_t pairs) {
   pairs_.reserve(pairs);
+  edges_.reserve(2 * pairs);
   leavers_.reserve(bodies);
 }
 
@@ -56,11 +58,46 @@ void SweptBodyPairs::find_all(const BodyMotions& all, double slop, double h) {
   std::erase_if(pairs_, [&bodies](const collide::IndexPair& p) {
     return !may_overlap(bodies[p.a], bodies[p.b]);
   });
+  first_edges_.assign(bodies.size(), kNone);
+  edges_.resize(2 * pairs_.size());
+  for (std::uint32_t k = 0; k < pairs_.size(); ++k) link_pair(k);
+}
+
+void SweptBodyPairs::link_edge(std::uint32_t body, std::uint32_t edge, std::uint32_t other) {
+  const std::uint32_t next = std::exchange(first_edges_[body], edge);
+  edges_[edge] = {other, next, kNone};
+  if (next != kNone) edges_[next].previous = edge;
+}
+void SweptBodyPairs::unlink_edge(std::uint32_t body, std::uint32_t edge) {
+  const Edge& e = edges_[edge];
+  (e.previous == kNone ? first_edges_[body] : edges_[e.previous].next) = e.next;
+  if (e.next != kNone) edges_[e.next].previous = e.previous;
+}
+void SweptBodyPairs::link_pair(std::uint32_t pair) {
+  const auto [a, b] = pairs_[pair];
+  link_edge(a, 2 * pair, b);
+  link_edge(b, 2 * pair + 1, a);
+}
+
+// The last pair gets its place.
+void SweptBodyPairs::remove_pair(std::uint32_t pair) {
+  const auto unlink = [this](std::uint32_t k) {
+    unlink_edge(pairs_[k].a, 2 * k);
+    unlink_edge(pairs_[k].b, 2 * k + 1);
+  };
+  unlink(pair);
+  const auto last = static_cast<std::uint32_t>(pairs_.size() - 1);
+  if (pair != last) {
+    unlink(last);
+    pairs_[pair] = pairs_[last];
+    link_pair(pair);
+  }
+  pairs_.pop_back();
+  edges_.resize(2 * pairs_.size());
 }
 
 void SweptBodyPairs::find_of(const Bodies& bodies, std::uint32_t index) {
-  std::erase_if(pairs_,
-                [index](const collide::IndexPair& p) { return p.a == index || p.b == index; });
+  while (first_edges_[index] != kNone) remove_pair(first_edges_[index] / 2);
   for (std::uint32_t j = 0; j < bodies.size(); ++j) {
     if (j == index || !(sweeps_[index] || sweeps_[j]) || collide::empty(cached_bounds_[j]))
       continue;
@@ -68,6 +105,8 @@ void SweptBodyPairs::find_of(const Bodies& bodies, std::uint32_t index) {
         !may_overlap(bodies[index], bodies[j]))
       continue;
     pairs_.push_back({std::min(index, j), std::max(index, j)});
+    edges_.resize(2 * pairs_.size());
+    link_pair(static_cast<std::uint32_t>(pairs_.size() - 1));
   }
 }
 

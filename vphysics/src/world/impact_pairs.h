@@ -37,19 +37,37 @@ class SweptBodyPairs {
   bool dirty() const { return dirty_; }
   void reserve(std::size_t bodies, std::size_t pairs);
 
-  // moving: all whose bounds may have changed, ascending.
+  // moving: all whose bounds may have changed.
   std::span<const collide::IndexPair> find(const BodyMotions& all,
                                            std::span<const std::uint32_t> moving, double slop,
                                            double h);
+  // Calls f with the other body of each pair of the body. Their order depends on earlier steps.
+  template <class F>
+  void for_each_partner(std::uint32_t body, const F& f) const {
+    for (std::uint32_t e = first_edges_[body]; e != kNone; e = edges_[e].next) f(edges_[e].other);
+  }
+  bool empty() const { return pairs_.empty(); }
   bool sweeps(std::uint32_t body) const { return sweeps_[body] != 0; }
 
  private:
+  // Edges 2 k and 2 k + 1 are those of pair k, in the lists of its bodies a and b.
+  struct Edge {
+    std::uint32_t other;  // body
+    std::uint32_t next, previous;
+  };
+
   void keep_bounds(const BodyMotions& all, std::uint32_t body, double slop, double h);
   void find_all(const BodyMotions& all, double slop, double h);
   void find_of(const Bodies& bodies, std::uint32_t body);
+  void link_edge(std::uint32_t body, std::uint32_t edge, std::uint32_t other);
+  void unlink_edge(std::uint32_t body, std::uint32_t edge);
+  void link_pair(std::uint32_t pair);
+  void remove_pair(std::uint32_t pair);
 
   bool dirty_ = true;
   std::vector<collide::IndexPair> pairs_;
+  std::vector<Edge> edges_;
+  std::vector<std::uint32_t> first_edges_;  // of each body
   std::vector<collide::Bounds> cached_bounds_;
   std::vector<std::uint8_t> sweeps_;  // of each body: it is continuous
   collide::BroadPhase broad_phase_;

@@ -8,6 +8,7 @@
 #include "solve/contact_solver.h"
 #include "solve/instant_scratch.h"
 #include "world/impact_pairs.h"
+#include "world/impact_queue.h"
 
 namespace vp {
 
@@ -37,6 +38,9 @@ struct StepContact {
   Vec3 friction;  // on b
 };
 
+// Whether the impact of now concerns a body (impacts.cpp).
+enum class Concern : std::uint8_t { none, listed, searched };
+
 struct ImpactStage {
   // State, sorted by key and part; next: of the step that is going on.
   std::vector<PairRecord> records, next_records;
@@ -60,10 +64,17 @@ struct ImpactStage {
   std::vector<Velocity> forced;          // what the step's forces added
   std::vector<std::uint8_t> stopped;     // stands for the rest of the step
   std::vector<std::uint8_t> in_contact;  // of the last solve
-  std::vector<std::uint8_t> as_swept;    // goes to the next impact at the twist it is swept at
+  std::vector<std::uint8_t> as_swept;    // goes to its next impact at the twist it is swept at
+  // Of a free body: when in the step it is where its pose says. Links are at the last impact.
+  std::vector<double> times;
+  std::vector<std::uint8_t> brought;  // has gone some way at its motion
+  std::vector<Concern> concerns;
+  std::vector<double> first_impacts;  // of the pairs that are being queued [s]
   std::vector<solve::SolverBody> solver_bodies;
 
-  // --- of a round
+  // --- of an impact
+  std::vector<std::uint32_t> concerned, moved;  // bodies
+  std::vector<std::uint32_t> reached_sensors;   // pairs of the queue
   std::vector<ColliderPair> discrete_pairs;
   std::vector<SweptPair> swept_pairs;
   std::vector<solve::ContactConstraint> discrete_contacts, contacts;
@@ -74,6 +85,7 @@ struct ImpactStage {
   solve::InstantScratch instant;
 
   // --- of a step
+  ImpactQueue queue;
   std::vector<std::uint32_t> row_joints;  // that are alive (row_joints.h)
   std::vector<SE3> next_poses;            // of each body: of links that they join
 

@@ -174,28 +174,47 @@ struct World::Impl {
   void begin_impact_stage(double dt);
   void integrate_forces(double dt);
   solve::SolverBody solver_body(std::uint32_t body, const Vec3& at) const;
-  void refresh_solver_bodies();
+  void refresh_solver_bodies(std::span<const std::uint32_t> of);
   void note_touched_articulations();
   void refresh_motions(double h);
   void refresh_motion_of(std::uint32_t body, double h);
   void refresh_displacements(double h);
   bool stop_if_out_of_range(std::uint32_t body, const SE3& start);
   collide::Motion motion_of(const Body& body, const Velocity& drift, double h) const;
-  void advance(double h, bool to_end);
+  void advance_discrete_contacts(double h);
   void advance_body(Body& body, const collide::Motion& motion, double h, bool freely,
                     const Vec3& more_w);
   void advance_all(double dt);
-  void apply_corrections();
+  void apply_corrections(std::span<const std::uint32_t> of);
   void note_position_error();
   void finish_step();
   InStage in(Stage stage) const { return {observer.get(), stage}; }
   void count_contacts();
   void run(double dt);
   void feel_forces(double dt);
-  void run_impacts(double dt);
-  double next_impact(double h);
-  void stop_what_would_hit(double h);
   void take_back_forces(double h);
+
+  // impacts.cpp
+  void queue_swept_pairs(double now, double h);
+  double time_of(const SweptPair& swept, double h);
+  void look_at_waiting(std::uint32_t pair, const Instant& now);
+  bool next_impact(const Instant& now, Instant& next);
+  void report_reached_sensors();
+  void bring(std::uint32_t body, const Instant& now);
+  void bring_concerned(std::uint32_t body, const Instant& now);
+  void move_within_step(std::uint32_t body, double h, bool freely);
+  void concern(std::uint32_t body);
+  void advance_links(const Instant& previous, const Instant& now);
+  void refresh_links(double h);
+  void concern_bodies_that_meet(const Instant& now);
+  bool touches_at(const QueuedPair& pair, const Instant& now);
+  void concern_what_touches(const Instant& now);
+  void find_swept_pairs_of(std::uint32_t body, const Instant& now, double h);
+  void find_swept_pairs_of_concerned(const Instant& now);
+  void solve_impact(const Instant& previous, const Instant& now);
+  void stop_what_would_hit(const Instant& now);
+  void advance_to_end(const Instant& now);
+  void run_impacts(double dt);
 
   // bodies.cpp
   void list_bodies();
@@ -240,7 +259,8 @@ struct World::Impl {
   void assign_slot(std::uint32_t contact, const collide::Manifold& manifold);
   Approach approach_in(double dt) const { return {bodies, loads, desc, speed_unit, dt}; }
   void update_dirty_contacts(double dt);
-  void find_dirty_manifolds(double dt, bool first);
+  void list_stale_contacts(double dt, bool first);
+  void find_manifolds_of(std::span<const std::uint32_t> contacts, double dt);
   void note_limits(const collide::Manifold& manifold);
 
   // link_contacts.cpp
@@ -285,8 +305,11 @@ struct World::Impl {
   void refresh_bounds(double h);
   void refresh_bounds_of(std::uint32_t body, double h);
   void find_discrete_pairs(double h);
+  void find_touching_pairs(double h);
   void find_swept_pairs(double h);
+  void add_swept_pairs_of(const collide::IndexPair& pair, double h);
   void add_swept_pairs(std::uint32_t swept_body, std::uint32_t other_body, double h);
+  void sort_swept_pairs();
   double discrete_margin(const ColliderPair& pair, double h) const;
 
   // joint_reactions.cpp
@@ -307,7 +330,6 @@ struct World::Impl {
   void remember_impulses(std::span<const solve::ContactConstraint> solved, double scale);
   void report_ends();
   void report_sensor(const ColliderPair& pair, const Vec3& point, const Vec3& normal, double time);
-  void report_swept_sensors(double h, double time);
 
   class Drawing;  // debug_draw.cpp
 

@@ -10,6 +10,7 @@ namespace vp {
 
 bool disables_collision(const Bodies& bodies, const Joints& joints, std::uint32_t a,
                         std::uint32_t b) {
+  if (bodies[b].first_joint == kNone) return false;
   for (std::uint32_t e = bodies[a].first_joint; e != kNone; e = joints[e / 2].next[e % 2]) {
     const BodyJoint& joint = joints[e / 2];
     if (!joint.collide && (joint.a == b || joint.b == b)) return true;

@@ -19,6 +19,10 @@ struct NarrowPhaseResult {
   bool by_part;  // of a compound: each part within its own margin
 };
 
+// Contacts that are looked at before any of them is taken over: with their colliders and bodies
+// they fit the second-level cache.
+inline constexpr std::size_t kLookedAtOnce = 512;
+
 // Kept for its capacity.
 struct NarrowPhaseScratch {
   std::vector<collide::ProxyPair> new_pairs;

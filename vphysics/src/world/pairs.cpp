@@ -180,23 +180,46 @@ void World::Impl::add_swept_pairs(std::uint32_t index, std::uint32_t other, doub
   }
 }
 
-void World::Impl::find_swept_pairs(double h) {
+// Two continuous bodies meet once, in the order of their slots, but for sensors: those that are not
+// swept are found by what the other sweeps.
+void World::Impl::add_swept_pairs_of(const collide::IndexPair& p, double h) {
+  if (disables_collision(bodies, joints, p.a, p.b)) return;
+  const bool a = impacts.swept_body_pairs.sweeps(p.a), b = impacts.swept_body_pairs.sweeps(p.b);
+  if (a) add_swept_pairs(p.a, p.b, h);
+  if (b && (!a || bodies[p.a].has_sensor)) add_swept_pairs(p.b, p.a, h);
+}
+
+// Which touch: of all bodies, which are at one time.
+void World::Impl::find_touching_pairs(double h) {
   impacts.swept_pairs.clear();
-  // Two continuous bodies meet once, in the order of their slots, but for sensors: those that are
-  // not swept are found by what the other sweeps.
+  const auto bounds_of_body = [this](std::uint32_t i) -> const collide::Bounds& {
+    return bounds_at_pose(bodies[i], colliders);
+  };
   for (const collide::IndexPair& p :
        impacts.swept_body_pairs.find(body_motions(), impact_bodies(), desc.contact_slop, h)) {
-    if (!overlap(impacts.bounds[p.a], impacts.bounds[p.b])) continue;
-    if (disables_collision(bodies, joints, p.a, p.b)) continue;
-    const bool a = impacts.swept_body_pairs.sweeps(p.a), b = impacts.swept_body_pairs.sweeps(p.b);
-    if (a) add_swept_pairs(p.a, p.b, h);
-    if (b && (!a || bodies[p.a].has_sensor)) add_swept_pairs(p.b, p.a, h);
+    if (empty(impacts.bounds[p.a]) || empty(impacts.bounds[p.b])) continue;
+    if (!overlap(grown(bounds_of_body(p.a), desc.contact_slop), bounds_of_body(p.b))) continue;
+    add_swept_pairs_of(p, 0.0);
   }
-  std::sort(impacts.swept_pairs.begin(), impacts.swept_pairs.end(),
-            [](const SweptPair& p, const SweptPair& q) { return p.pair.key < q.pair.key; });
+  sort_swept_pairs();
+}
+
+// That can meet within h: of all bodies, which are at one time.
+void World::Impl::find_swept_pairs(double h) {
+  impacts.swept_pairs.clear();
+  for (const collide::IndexPair& p :
+       impacts.swept_body_pairs.find(body_motions(), impact_bodies(), desc.contact_slop, h)) {
+    if (overlap(impacts.bounds[p.a], impacts.bounds[p.b])) add_swept_pairs_of(p, h);
+  }
+  sort_swept_pairs();
   counters.pairs = std::max(
       counters.pairs,
       static_cast<std::uint32_t>(impacts.discrete_pairs.size() + impacts.swept_pairs.size()));
+}
+
+void World::Impl::sort_swept_pairs() {
+  std::sort(impacts.swept_pairs.begin(), impacts.swept_pairs.end(),
+            [](const SweptPair& p, const SweptPair& q) { return p.pair.key < q.pair.key; });
 }
 
 }  // namespace vp

@@ -1,8 +1,9 @@
 // One step: forces, then contacts and impacts in the order of time.
 //
 //   integrate forces over dt
-//   repeat   solve what touches now
-//            advance everything at constant twists to the next impact of a continuous body
+//   solve what touches now
+//   repeat   advance what the next impact of a continuous body concerns, at constant twists
+//            solve what touches there (impacts.cpp)
 //   until the step is over; after max_impacts_per_step impacts, what would meet is held instead.
 //
 // See docs/decisions/0002-impacts-and-contacts.md.
@@ -56,8 +57,7 @@ void World::Impl::begin_step(double dt) {
   contact_store.reserve(capacity);
   for (auto* list : {&narrow.dirty, &narrow.look_again})
     list->reserve(contact_store.dirty.capacity());
-  narrow.results.reserve(
-      std::min<std::size_t>(capacity, 256));  // large ones; more come where they are needed
+  narrow.results.reserve(std::min(capacity, kLookedAtOnce));
   narrow.to_pose.reserve(n);
   lost_bodies.reserve(n);
   sleep_islands.reserve(n);
@@ -158,6 +158,14 @@ void World::Impl::begin_impact_stage(double dt) {
   impacts.stopped.assign(n, 0);
   impacts.in_contact.assign(n, 0);
   impacts.as_swept.assign(n, 0);
+  impacts.brought.assign(n, 0);
+  impacts.times.assign(n, 0.0);
+  impacts.concerns.assign(n, Concern::none);
+  impacts.first_impacts.resize(n);
+  impacts.concerned.reserve(n);
+  impacts.moved.reserve(n);
+  impacts.queue.reserve(capacity);
+  impacts.reached_sensors.reserve(capacity);
   if (impacts.scratch_is_dirty) {
     impacts.scratch_is_dirty = false;
     impacts.drift.assign(n, {});
@@ -229,16 +237,16 @@ solve::SolverBody World::Impl::solver_body(std::uint32_t index, const Vec3& at) 
   return s;
 }
 
-// Of links and what is fixed only those that touch something: there may be many, and few of them
-// do.
-void World::Impl::refresh_solver_bodies() {
-  for (const std::uint32_t i : impact_bodies()) {
+// Of links and what nothing moves only those that touch something: there may be many, and few of
+// them do.
+void World::Impl::refresh_solver_bodies(std::span<const std::uint32_t> of) {
+  for (const std::uint32_t i : of) {
     const Body& body = bodies[i];
     if (!body.is_link) impacts.solver_bodies[i] = solver_body(i, reference_point(body));
   }
   for (const solve::ContactConstraint& c : impacts.contacts) {
     for (const std::uint32_t i : {c.a, c.b}) {
-      const bool listed = !bodies[i].is_link && bodies[i].motion != Motion::fixed;
+      const bool listed = !bodies[i].is_link && bodies[i].motion == Motion::dynamic;
       if (!listed) impacts.solver_bodies[i] = solver_body(i, reference_point(bodies[i]));
     }
   }
@@ -341,22 +349,8 @@ void World::Impl::advance_all(double dt) {
   forget_lost_bodies();
 }
 
-// To the next impact, or to the end of the step. On the way to an impact what may be met goes as it
-// has been swept.
-void World::Impl::advance(double h, bool to_end) {
-  impacts.as_swept.assign(impacts.in_contact.begin(), impacts.in_contact.end());
-  if (!to_end) {
-    for (const SweptPair& p : impacts.swept_pairs) {
-      impacts.as_swept[colliders[p.pair.a].body] = impacts.as_swept[colliders[p.pair.b].body] = 1;
-    }
-  }
-  for (const std::uint32_t i : impact_bodies()) {
-    const Body& body = bodies[i];
-    if (body.is_link || is_still(body) || impacts.stopped[i]) continue;
-    advance_body(bodies[i], impacts.motions[i], h, !impacts.as_swept[i], impacts.drift[i].w);
-    if (stop_if_out_of_range(i, impacts.start_poses[i])) impacts.stopped[i] = 1;
-  }
-  advance_articulations(h);
+// Their separations, as their bodies go.
+void World::Impl::advance_discrete_contacts(double h) {
   for (solve::ContactConstraint& c : impacts.discrete_contacts) {
     const collide::Motion &a = impacts.motions[c.a], &b = impacts.motions[c.b];
     for (int i = 0; i < c.count; ++i) {
@@ -367,52 +361,14 @@ void World::Impl::advance(double h, bool to_end) {
   }
 }
 
-void World::Impl::apply_corrections() {
-  for (const std::uint32_t i : impact_bodies()) {
+void World::Impl::apply_corrections(std::span<const std::uint32_t> of) {
+  for (const std::uint32_t i : of) {
     Body& body = bodies[i];
     if (body.is_link || body.motion != Motion::dynamic) continue;
     const solve::SolverBody& s = impacts.solver_bodies[i];
     if (s.shift == Vec3{} && s.rotation == Vec3{}) continue;
     place(body, s.x + s.shift, orthonormalized(Exp(s.rotation).matrix() * body.T.rotation()));
   }
-}
-
-// The time until a continuous body meets something, or a negative number. A pair that touches
-// already counts only when it would get deeper than the slop, and deeper than it is: a ball that
-// rests, rolls or is pinched costs nothing.
-double World::Impl::next_impact(double h) {
-  double first = -1.0;
-  for (const SweptPair& swept : impacts.swept_pairs) {
-    if (swept.sensor) continue;
-    const double slop = desc.contact_slop;
-    const double target =
-        swept.separation > slop ? 0.5 * slop : std::min(-slop, swept.separation - 0.1 * slop);
-    const double t = impact_times().until(swept, target, first < 0.0 ? h : first);
-    if (t >= 0.0 && (first < 0.0 || t < first)) first = t;
-  }
-  return first;
-}
-
-// Too many impacts: whoever would still meet stands still for the rest of the step. Each round
-// holds at least one more body, so this ends.
-void World::Impl::stop_what_would_hit(double h) {
-  status.impact_limit = true;
-  status.time_lost = h;
-  for (bool again = true; again;) {
-    again = false;
-    for (const SweptPair& swept : impacts.swept_pairs) {
-      const std::uint32_t a = colliders[swept.pair.a].body, b = colliders[swept.pair.b].body;
-      if (swept.sensor || (impacts.stopped[a] && impacts.stopped[b])) continue;
-      const double slop = desc.contact_slop;
-      const double target =
-          swept.separation > slop ? 0.5 * slop : std::min(-slop, swept.separation - 0.1 * slop);
-      if (impact_times().until(swept, target, h) < 0.0) continue;
-      again = true;
-      hold(a);
-      hold(b);
-    }
-  }
-  take_back_forces(h);
 }
 
 namespace {
@@ -478,41 +434,6 @@ void World::Impl::feel_forces(double dt) {
     }
   }
   forget_lost_bodies();
-}
-
-void World::Impl::run_impacts(double dt) {
-  const auto stage = in(Stage::impacts);
-  double time = 0.0;
-  end_links(dt, sub_steps_taken);
-  refresh_displacements(dt);
-  make_remote();
-  find_discrete_pairs(dt);
-  find_swept_pairs(dt);
-  find_discrete_contacts(dt);
-  for (int solves = 0;; ++solves) {
-    const double h = dt - time;
-    solve_contacts(h, dt, solves == 0);
-    if (solves == 0) remember_impulses(impacts.contacts, 1.0);
-    report_contacts(impacts.contacts, time);
-    note_contacts(impacts.contacts);
-    refresh_displacements(h);
-    find_swept_pairs(h);
-    double t = next_impact(h);
-    if (t >= 0.0 && solves >= desc.max_impacts_per_step) {
-      stop_what_would_hit(h);
-      t = -1.0;
-    }
-    const bool last = t < 0.0;
-    if (last) t = h;
-    report_swept_sensors(t, time);
-    if (solves == 0) report_ends();
-    advance(t, last);
-    if (last) return note_open_row_joints();
-    time += t;
-    ++counters.impacts;
-    refresh_displacements(dt - time);
-    find_swept_pairs(dt - time);
-  }
 }
 
 void World::Impl::count_contacts() {
