@@ -7,8 +7,8 @@
 namespace vp {
 namespace {
 
-// An acceleration that search margins bear [m/s^2], some times that of gravity: what it adds to the
-// way of a step is found by the step after. What a stronger one adds is searched for.
+// An acceleration that the margins allow for [m/s^2], a few times that of gravity: what it adds to
+// the displacement of a step is found in the next step. Margins include what a stronger one adds.
 constexpr double kBornePull = 50.0;
 
 }  // namespace
@@ -29,7 +29,7 @@ double Approach::of(const Collider& a, const Collider& b) const {
     return body.v + cross(body.w, at - reference_point(body));
   };
   const Velocity pull_a = pull_of(body_a), pull_b = pull_of(body_b);
-  // Of what is within that radius of a point of the body.
+  // Speed from the pull within a radius of a point of the body.
   const auto pulled = [&](const Body& body, const Velocity& pull, const Vec3& at, double radius) {
     if (pull == Velocity{}) return 0.0;
     return norm(pull.v + cross(pull.w, at - reference_point(body))) + radius * norm(pull.w);
