@@ -177,7 +177,7 @@ void World::Impl::add_joint_rows(double h, double dt, RowsOf of) {
       continue;
     }
     if (art.remote) {
-      if (of != RowsOf::first_instant) continue;  // its stops keep their impulses
+      if (of != RowsOf::first_instant) continue;  // its stops remain satisfied
       follow(art);
     }
     const bool first = of == RowsOf::sub_step || (of == RowsOf::first_instant && !art.sub_stepped);

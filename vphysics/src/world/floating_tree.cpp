@@ -17,7 +17,7 @@ bool floats(const Model& model, int node) {
 std::vector<FloatingTree> FloatingTree::of(const Model& model) {
   const auto& nodes = model.tree().nodes;
   std::vector<FloatingTree> found;
-  std::vector<int> tree_of(nodes.size(), -1);  // the number in found
+  std::vector<int> tree_of(nodes.size(), -1);  // index in found
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const Node<double>& node = nodes[i];
     if (node.parent != kWorld) {
