@@ -18,7 +18,7 @@ struct Approach {
   Velocity pull_of(const Body& body) const;
   // Upper bound of the approach of the two colliders [m]: the smaller of two bounds. The first
   // holds while neither rotates far: relative velocity of the bodies where the colliders would
-  // meet. The second: relative velocity of the bounding spheres' centres, and the motion of each
+  // touch. The second: relative velocity of the bounding spheres' centres, and the motion of each
   // shape within its sphere by rotation.
   double of(const Collider& a, const Collider& b) const;
 };

@@ -69,9 +69,9 @@ struct ColliderPair {
 ColliderPair make_pair(const Colliders& colliders, std::uint32_t i, std::uint32_t j);
 bool should_collide(const Collider& a, const Collider& b);
 
-// The bounding sphere of the smaller of two colliders: where they meet if they do. World frame. The
-// approach of two colliders is always bounded from it: relative velocity at its centre, and
-// relative rotation times its radius.
+// The bounding sphere of the smaller of two colliders: where they touch, if they do. World frame.
+// All bounds of the approach of two colliders use it: relative velocity at its centre, and relative
+// rotation times its radius.
 struct Vicinity {
   Vec3 centre;
   double radius;     // 0 if the smaller is a sphere: contact is along the line through its centre

@@ -182,7 +182,7 @@ void ContactState::read_speculative(Reader& in, solve::SpeculativeList& speculat
     const std::uint32_t index = in.index(contacts_.pool.size());
     if (!in.ok()) return;
     Contact& c = contacts_.pool[index];
-    in.check(c.alive && c.count == 0 && (seen_[index] & 4u) == 0);  // so no part
+    in.check(c.alive && c.count == 0 && (seen_[index] & 4u) == 0);  // so it is no part
     seen_[index] = static_cast<std::uint8_t>(seen_[index] | 4u);
     c.parked = parked;
     c.speculative_index =
