@@ -47,7 +47,7 @@ struct ImpactStage {
   // colliders except those of remote articulations (remote.cpp).
   std::vector<std::uint32_t> body_list;
   bool bodies_are_dirty = true;  // some bodies in it have changed
-  // Bodies were added or removed: drift and forced of bodies outside the list are not 0.
+  // Bodies were added or removed: drift and forced of bodies outside the list may not be 0.
   bool scratch_is_dirty = true;
   std::vector<std::uint8_t>
       remote_bodies;  // of each body: whether it is a link of a remote articulation
