@@ -7,8 +7,8 @@
 namespace vp {
 namespace {
 
-// An acceleration that search margins bear [m/s^2], some times that of gravity: what it adds to the
-// way of a step is found by the step after. What a stronger one adds is searched for.
+// An acceleration that the margins allow for [m/s^2], a few times that of gravity: what it adds to
+// the displacement of a step is found in the next step. Margins include what a stronger one adds.
 constexpr double kBornePull = 50.0;
 
 }  // namespace

@@ -1,5 +1,5 @@
-// How far two colliders may come nearer to one another within a step: what the narrow phase and the
-// broad phase must search ahead.
+// Bounds how far two colliders may approach each other within a step: the speculative margin of the
+// narrow phase and the broad phase.
 #pragma once
 
 #include "world/collider.h"
@@ -10,15 +10,16 @@ namespace vp {
 struct Approach {
   const Bodies& bodies;
   const BodyLoads& loads;
-  const WorldDesc& desc;  // its lengths in metres
+  const WorldDesc& desc;  // lengths in metres
   double speed_unit, dt;
 
-  // What gravity and forces add to the body's velocity on the mean of the step, if that is more
-  // than margins bear; else nothing, and the next step finds it by its velocity.
+  // The mean velocity change over the step from gravity and forces, if it exceeds what the margins
+  // allow for. Otherwise zero: the next step accounts for it by the body's velocity.
   Velocity pull_of(const Body& body) const;
-  // The two close in by no more [m], as long as neither turns far: where they meet they move at the
-  // velocities that they have there. And by no more than the balls around both do, and what
-  // rotation moves within these.
+  // Upper bound of the approach of the two colliders [m]: the smaller of two bounds. The first
+  // holds while neither rotates far: relative velocity of the bodies where the colliders would
+  // touch. The second: relative velocity of the bounding spheres' centres, and the motion of each
+  // shape within its sphere by rotation.
   double of(const Collider& a, const Collider& b) const;
 };
 

@@ -1,12 +1,12 @@
-// One step of an articulation, in its joints' coordinates:
+// One step of an articulation, in joint coordinates:
 //
 //   v += (M + dt D)^-1 dt (f - h(q, v) - D v)   h: gravity, Coriolis and centrifugal; D: damping;
 //                                               f: the user's forces, on joints and through J^T
-//   v += H^T z                                  what the solver has done (impulse_factor.h)
+//   v += H^T z                                  impulses of the solver (impulse_factor.h)
 //   q  = q [+] dt v                             on the group; configuration.h
 //
-// The velocities' own forces are taken halfway, at v + dv / 2, else a spinning tree would gain
-// energy. A floating tree keeps its momentum besides (floating_tree.h).
+// Velocity-dependent forces are evaluated at the midpoint v + dv / 2; otherwise a spinning tree
+// would gain energy. A floating tree also conserves its momentum (floating_tree.h).
 #include "world/articulation.h"
 
 #include <algorithm>
@@ -22,17 +22,17 @@ namespace {
 
 using detail::NodeKind;
 
-// A joint that comes to its motor's target does so ever more slowly, and would after some seconds
-// calculate with denormal numbers, which take a hundred times as long as others. Slower than this
-// [m/s], [rad/s] it stands: in the age of the universe it would go less than an atom's size.
+// A joint approaches its motor's target ever more slowly, and after some seconds would compute with
+// denormal numbers, which take a hundred times as long as others. Below this speed [m/s], [rad/s]
+// it is set to rest: in the age of the universe it would move less than an atom's size.
 constexpr double kStanding = 1e-28;
 double standing_or(double speed) {
   return std::fabs(speed) < kStanding ? 0.0 : speed;
 }
 
-// On its parent's axis, about or along it, and balanced on it.
+// The node's joint moves about or along its parent's axis, and its mass is balanced on that axis.
 bool continues_axis(const detail::Node<double>& node) {
-  constexpr double kTolerance = 1e-12;  // of rounding in how the joints' frames were put together
+  constexpr double kTolerance = 1e-12;  // rounding in the composition of the joints' frames
   const auto along_z = [&](const Vec3& a, double scale) {
     return std::fabs(a.x) <= kTolerance * scale && std::fabs(a.y) <= kTolerance * scale;
   };
@@ -41,7 +41,7 @@ bool continues_axis(const detail::Node<double>& node) {
           (along_z(node.T_parent.rotation().cz, 1.0) && along_z(node.T_parent.position(), 1.0)));
 }
 
-// The floating tree that a link is of, or -1.
+// Index of the floating tree of a link, or -1.
 int tree_of(const Model& model, const std::vector<FloatingTree>& floating, int link) {
   int node = model.tree().frames[static_cast<std::size_t>(link)].node;
   if (node == kWorld) return -1;
@@ -133,7 +133,7 @@ void Articulation::refresh() {
   twists_ = inertias_ = false;
 }
 
-// A joint that looks the other way along its line slides and turns backwards.
+// A joint whose axis is opposite to its line slides and rotates backwards.
 void Articulation::find_lines() {
   const auto& nodes = model_.tree().nodes;
   const std::vector<double> zero(q.size(), 0.0);
@@ -185,7 +185,7 @@ void Articulation::find_responses() {
   driven_alike_.assign(v.size(), 0);
 }
 
-// So far that no stop gets a row (add_stops(), articulations.cpp).
+// All stops are so far that none gets a row (add_stops(), articulations.cpp).
 bool Articulation::stops_are_far(double h) const {
   for (const std::size_t i : stopped_) {
     const JointDof& dof = dofs[i];
@@ -204,8 +204,8 @@ void Articulation::compare_drives() {
   }
 }
 
-// p = push - gain (v + response p). Neighbours that move and are driven alike have one impulse.
-// There is a coordinate for each velocity (constant_).
+// p = constant - gain (v + response p). Neighbours with equal state and drive have equal impulses,
+// computed once. There is one coordinate for each velocity (constant_).
 bool Articulation::integrate_alone(double h) {
   if (responses_.empty() || !stops_are_far(h)) return false;
   if (!drives_are_compared_) compare_drives();
@@ -261,7 +261,7 @@ void Articulation::update_line_poses() {
     on.slide += on_line_[static_cast<std::size_t>(node.parent)].slide;
     on.rotation += on_line_[static_cast<std::size_t>(node.parent)].rotation;
   }
-  // Neighbours often turn together: one sine serves them all.
+  // Neighbours often rotate equally: compute sine and cosine once.
   const OnLine* last = nullptr;
   for (OnLine& on : on_line_) {
     if (on.rotation == 0.0) {
@@ -296,7 +296,7 @@ SE3 Articulation::T_world_link(int link) const {
   return SE3(moved.rotation(), moved.position() + T_line_link_[l].position().z * R.cz);
 }
 
-// Without damping, which forces of the step alone have time for.
+// The factor without damping. Damping belongs only to forces that act during the step.
 void Articulation::update_factor() {
   const bool damped = factored_ == Factored::for_the_step && damped_;
   if (factored_ != Factored::no && !damped) return;
@@ -325,7 +325,7 @@ void Articulation::advance(double h) {
     refresh();
     return;
   }
-  if (constant_) {  // a coordinate for each velocity; and it keeps its twists
+  if (constant_) {  // one coordinate per velocity; the twists do not change
     for (std::size_t i = 0; i < v.size(); ++i) q[i] += h * v[i];
     if (!remote) update_line_poses();
     return;
@@ -336,7 +336,7 @@ void Articulation::advance(double h) {
   refresh();
 }
 
-// Poses alone, until look_back().
+// Updates only the poses, until look_back().
 void Articulation::look_ahead(double h) {
   for (std::size_t i = 0; i < v.size(); ++i) rate_[i] = h * v[i];
   moved_q_ = q;
@@ -354,12 +354,13 @@ void Articulation::look_back() {
   forward_kinematics<double>(model_, data_, q, v);
 }
 
-// The root turns at the rate that it will have halfway, where its momentum is what it is now.
+// The root moves at the velocity that it will have at the midpoint, where its momentum equals the
+// current one.
 void Articulation::advance_floating(double h) {
   if (factored_ == Factored::no) update_factor();
   if (!twists_) factor_.twists(v);
   for (std::size_t i = 0; i < floating_.size(); ++i) {
-    composites_[i] = floating_[i].whole_of_twists(data_, factor_);
+    composites_[i] = floating_[i].composite_of_twists(data_, factor_);
   }
   for (std::size_t i = 0; i < v.size(); ++i) rate_[i] = 0.5 * h * v[i];
   integrate<double>(model_, q, rate_, moved_q_);
@@ -394,7 +395,7 @@ void Articulation::mark_moving() {
 
 void Articulation::advance_sub_step(double h) {
   for (std::size_t i = 0; i < v.size(); ++i) change_[i] = v[i] - moving_[i];
-  velocity_ = change_;  // advance() has its own use for the rest
+  velocity_ = change_;  // advance() uses the other scratch vectors
   v = moving_;
   twists_ = false;
   sub_stepped = false;
@@ -470,7 +471,7 @@ const JointReactions* Articulation::reactions() {
   if (reactions_.is_found()) return &reactions_;
   for (std::size_t i = 0; i < v.size(); ++i) {
     rate_[i] = 0.0;
-    if (sub_stepped) continue;  // those are of the last sub-step
+    if (sub_stepped) continue;  // the impulses are of the last sub-step only
     for (const double impulse : dofs[i].impulses) rate_[i] += impulse;
   }
   reactions_.find(model_, {start_q_, q, v, gravity_, rate_});

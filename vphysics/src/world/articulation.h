@@ -1,4 +1,4 @@
-// An articulation of a world: a model, its state, and what a step does to it.
+// An articulation of a world: its model, its state, and its step.
 #pragma once
 
 #include <algorithm>
@@ -16,30 +16,30 @@
 
 namespace vp {
 
-// The rows that a degree of freedom may have in the solver.
+// The solver rows that a degree of freedom may have.
 enum RowOfDof : std::uint8_t {
   kMotorRow,
-  kFrictionRow,  // or the lock, where it is infinite
+  kFrictionRow,  // a lock if the friction is infinite
   kSpringRow,
-  kLowerRow,  // limits: stops, or springs
+  kLowerRow,  // limits: stops or springs
   kUpperRow,
   kRowsOfDof
 };
 
 // One degree of freedom.
 struct JointDof {
-  int coordinate = -1;  // its place in q; -1: of a ball or a free joint, where there is none
+  int coordinate = -1;  // index in q; -1 for ball and free joints
   JointForces forces;
   double lower = -1e30, upper = 1e30;  // stops
   bool locked = false;                 // by infinite friction
-  bool passive = false;                // has a spring, friction, or limits that give way
+  bool passive = false;                // has a spring, friction, or compliant limits
   JointDrive drive;
-  // Of each of its rows in the last step, from which the next solve starts.
+  // Impulses of its rows in the last step: the warm start of the next solve.
   std::array<double, kRowsOfDof> impulses{};
 };
 
-// A motor for h. With f = k (p - q - h v) + d (v_t - v) its impulse is push - gain v, v being the
-// velocity after it, and at most `most`; without a motor both are 0.
+// The motor of a degree of freedom over h. With f = k (p - q - h v) + d (v_t - v) its impulse is
+// constant - gain v, v being the velocity after it, clamped to +-limit. Without a motor all are 0.
 struct Motor {
   double constant = 0.0, gain = 0.0, limit = 0.0;
 };
@@ -55,12 +55,12 @@ class Articulation {
  public:
   Articulation(const Model& model, const Vec3& gravity);
 
-  // --- state; refresh() follows a change of q or v from outside
+  // --- state; call refresh() after changing q or v
   std::vector<double> q, v;
-  std::vector<JointDof> dofs;         // of each velocity
-  std::vector<std::uint32_t> bodies;  // of each link
+  std::vector<JointDof> dofs;         // one per velocity
+  std::vector<std::uint32_t> bodies;  // the body of each link
   bool alive = true;
-  std::uint32_t generation = 1;  // of its slot
+  std::uint32_t generation = 1;  // of its index
 
   const Model& model() const { return model_; }
   std::uint32_t body_of(int link) const { return bodies[static_cast<std::size_t>(link)]; }
@@ -73,64 +73,66 @@ class Articulation {
   }
   std::size_t deepest() const { return factor_.deepest(); }
   bool is_fixed(int link) const { return factor_.depth(link) == 0; }
-  // As it was made, every joint moves inertia.
+  // Whether every joint moves inertia in the initial configuration.
   bool is_regular() const { return regular_; }
 
-  // Poses and velocities of the links from q and v: a link's pose, its angular velocity and that of
-  // a point of it, in the world frame.
+  // Updates poses and velocities of the links from q and v: a link's pose, its angular velocity and
+  // the velocity of one of its points, in the world frame.
   void refresh();
   SE3 T_world_link(int link) const;
-  // The line along which the link slides and about which it turns, all of its motion: a unit vector
-  // through its origin, in the world frame. Zero: it moves otherwise.
+  // Unit vector, in the world frame, of the line through the link's origin along which it slides
+  // and about which it rotates, if that is all its motion. Otherwise zero.
   Vec3 line_of(int link) const;
-  // Moving on takes nothing from its links' velocities: they are on such lines.
+  // Whether advance() leaves the links' velocities unchanged: all move along such lines.
   bool keeps_twists() const { return keeps_twists_; }
   se3 link_velocity(int link, const Vec3& point) const {
     return twists_ ? factor_.twist_at(link, point) : twist_in_data(link, point);
   }
 
-  // v after the forces of dt: gravity, those of the velocities, the joints' viscous damping; the
-  // last is integrated implicitly. False if a joint moves no inertia. changed: v is another.
+  // Integrates the forces over dt into v: gravity, velocity-dependent forces, the user's forces and
+  // viscous joint damping, the last implicitly. False if a joint moves no inertia. changed: whether
+  // v has changed.
   bool integrate_forces(double dt, bool& changed);
-  // q after h seconds at the velocities v.
+  // Advances q by h [s] at the velocities v.
   void advance(double h);
-  // f(link, T_world_link) of all links, as they would be after h at the velocities v.
+  // Calls f(link, T_world_link) for all links at the poses after h at the velocities v.
   template <class F>
   void for_poses_after(double h, const F& f) {
     look_ahead(h);
     for (int link = 0; link < static_cast<int>(bodies.size()); ++link) f(link, T_world_link(link));
     look_back();
   }
-  // The centre of mass, in the link's frame; its origin if it has no mass.
+  // Centre of mass in the link frame; the link's origin if it has no mass.
   Vec3 centre_of(int link) const {
     const Inertia& inertia = model_.link(link).inertia;
     return inertia.mass() > 0.0 ? inertia.centre_of_mass() : Vec3{};
   }
 
-  // What the solver does for an articulation that nothing touches and of which no joint feels
-  // another, at the first instant of a step: its motors, whose impulses for h are known at once.
-  // False, and nothing done, where it needs the solver.
+  // Replaces the solver at the first instant of a step for an articulation that nothing touches and
+  // whose joints are not coupled: computes its motors' impulses over h directly. False, with no
+  // change, if it needs the solver.
   bool integrate_alone(double h);
   bool settles_alone() const { return !responses_.empty(); }
-  // After a change of any dof's drive.
+  // Call after a change of any dof's drive.
   void drives_changed() { drives_are_compared_ = false; }
-  // For the solver: the response of the present configuration, and nothing pushed yet. end_solve()
-  // takes over what it did, corrections of the coordinates within the limits. whole_step: of
-  // impulses that act all along the step, which the joints' damping resists meanwhile.
+  // Prepares the solver: the response in the current configuration, with zero impulses. end_solve()
+  // applies the solver's velocity changes, and its coordinate corrections clamped to the limits.
+  // whole_step: the impulses act during the whole step, so the joints' damping resists them.
   solve::SolverArticulation begin_solve(bool whole_step);
   enum class Change { none, of_velocities, of_coordinates_too };
   Change end_solve();
-  // World frame. False, and nothing changes, if a velocity would leave the range.
+  // World frame. False, with no change, if a velocity would leave the range.
   bool apply_impulse(int link, const Vec3& impulse, const Vec3& point);
 
-  // --- forces of the user for the next step (forces.cpp)
+  // --- the user's forces for the next step (forces.cpp)
+  // On a link: about its origin, world axes.
   // On a link: about its origin, world axes.
   dse3 load(int link) const { return loads_[static_cast<std::size_t>(link)]; }
   void set_load(int link, const dse3& load) {
     loads_[static_cast<std::size_t>(link)] = load;
     loaded_ = true;
   }
-  // Of a velocity's degree of freedom.
+  // Of a degree of freedom, by velocity index.
   double joint_load(std::size_t dof) const { return joint_loads_[dof]; }
   void set_joint_load(std::size_t dof, double force) {
     joint_loads_[dof] = force;
@@ -138,38 +140,40 @@ class Articulation {
   }
   bool is_loaded() const { return loaded_; }
   void clear_loads();
-  // It is one no longer: its slot waits for another.
+  // Marks it as destroyed; its index can be reused.
   void destroy() {
     clear_loads();
     alive = can_be_remote = remote = sub_stepped = touched = false;
   }
 
-  // --- in sub-steps, when bodies that have them lie on its links (link_contacts.cpp)
+  // --- in sub-steps, while sub-stepped bodies are on its links (link_contacts.cpp)
   bool sub_stepped = false;  // in this step
-  bool touched = false;      // by a contact of this instant, in the stage of impacts
+  bool touched = false;      // by a contact of the current instant, in the impact stage
   bool wants_next = false;   // scratch of find_next_poses (link_joints.cpp)
-  // With what the solver has done so far it will move; end_solve() may change its velocities yet.
+  // Stores the velocities at which advance_sub_step() moves: v with the solver's changes so far.
+  // end_solve() may still change v.
   void mark_moving();
   void advance_sub_step(double h);
-  // Back to where the step began; advance() will take it where it was, v is that of the end. Until
-  // it is refreshed it tells what a link's mean velocity over the step has more than that.
+  // Returns to the pose at the start of the step; advance() then moves to the end pose again, and v
+  // is that of the end. Until refresh(), drift_of() returns the mean velocity of a link over the
+  // step less its velocity at the end.
   void end_sub_steps(double dt);
   se3 drift_of(int link, const Vec3& point) const { return factor_.twist_at(link, point); }
 
-  // --- where nothing can meet it (remote.cpp): q and v go on; what follows from them waits for
-  // refresh()
+  // --- remote: nothing can collide with it (remote.cpp). q and v advance; all derived data wait
+  // for refresh()
   bool can_be_remote = false, remote = false;
-  collide::Bounds remote_box;  // of all its links, with how far they may slide
+  collide::Bounds remote_box;  // of all its links, enlarged by how far they may slide
   void set_remote(const collide::Bounds& box);
-  // At most how far a link has slid since, and slides in h more [m].
+  // Upper bound of how far a link has slid since set_remote(), plus its slide in h [m].
   double slides_since_remote(double h) const;
 
   bool in_range() const;
-  // Of what the step's forces have added to the velocities, a share, as far as that made them
-  // faster.
+  // Removes a fraction of the velocity changes from the step's forces, only where they increased
+  // the speed and never past zero.
   void take_back_forces(double fraction);
 
-  // Where it was when the step began, at rest.
+  // Stores the coordinates at the start of the step, to which return_to_start() returns at rest.
   void mark_start() {
     start_q_ = q;
     reactions_.begin_step(v);
@@ -177,19 +181,19 @@ class Articulation {
   }
   void return_to_start();
 
-  // --- what its joints did in the last step (joint_reactions.h)
-  // An impulse on a link in the step that is going on, that is not of its joints; world frame, the
-  // moment about the world's origin. Whatever acts on links must be told here.
+  // --- joint reactions of the last step (joint_reactions.h)
+  // Records an impulse on a link in the current step, from outside its joints; world frame, moment
+  // about the world's origin. Everything that acts on links must be recorded here.
   void add_external_impulse(int link, const Vec3& impulse, const Vec3& moment) {
     reactions_.add_impulse(link, impulse, moment);
   }
-  // Along a degree of freedom, unless it is among its impulses of the whole step.
+  // Along a degree of freedom, except the impulses of its rows for the whole step.
   void add_effort(std::uint32_t dof, double impulse) { reactions_.add_effort(dof, impulse); }
   void end_step(double dt) {
     if (loaded_) reactions_.note_loads(loads_, joint_loads_);
     reactions_.end_step(dt);
   }
-  // Before q or v are set.
+  // Call before q or v are set.
   void keep_end_of_step() { reactions_.keep_end(q, v); }
   void forget_step() { reactions_.forget(); }
   // Null: no step is known.
@@ -221,59 +225,59 @@ class Articulation {
   Data data_;
   detail::ImpulseFactor factor_;
   std::vector<FloatingTree> floating_;
-  std::vector<int> first_dof_;        // of each link, and one more
+  std::vector<int> first_dof_;        // of each link, and the end of the last
   std::vector<std::size_t> stopped_;  // degrees of freedom with hard stops
   std::vector<double> damping_;       // of each degree of freedom
   bool damped_ = false;
-  bool has_user_joints_ = false;  // only the model's own passes know how they move
-  // All joints move along and about one line on which all masses are balanced, and none is damped,
-  // as of a table's rods: the mass matrix and the forces of gravity never change, and the
-  // velocities make none. One factor serves for ever; data_ is not used, for so few joints its
-  // passes' SIMD lanes would be almost empty.
+  bool has_user_joints_ = false;  // only the model's own passes evaluate them
+  // All joints of a tree slide along or rotate about one line on which all masses are balanced, and
+  // none is damped, as with the rods of a table. The mass matrix and the gravity forces are then
+  // constant, and there are no velocity-dependent forces. One factor serves for all steps. data_ is
+  // not used: with so few joints its passes' SIMD lanes would be almost empty.
   bool constant_ = false;
-  // Then: coordinates along which links slide, and how far for one of it.
+  // If constant_: the coordinates along which links slide, and the slide per unit of coordinate.
   struct Slider {
     std::size_t q, v;
     double slides;
   };
   std::vector<Slider> sliders_;
-  // And how far each node has slid along its line and turned about it.
+  // If constant_: how far each node has slid along its line and rotated about it.
   struct OnLine {
-    double slides, turns;  // for one of its own coordinate
+    double slides, turns;  // per unit of its own coordinate
     double slide, rotation;
-    double sine, cosine;  // of the turn
+    double sine, cosine;  // of the rotation
   };
   std::vector<OnLine> on_line_;         // of each node
-  std::vector<SE3> T_world_line_;       // of each link: its line,
-  std::vector<SE3> T_line_link_;        // and where it is on that at zero coordinates
-  std::vector<std::uint8_t> is_plain_;  // that is a way along the line, without a rotation
-  bool keeps_twists_ = false;           // all are
-  // What a unit impulse of each motor gives its own coordinate; empty: joints feel one another, or
-  // have more than motors and stops.
+  std::vector<SE3> T_world_line_;       // of each link: frame of its line,
+  std::vector<SE3> T_line_link_;        // and its pose in that frame at zero coordinates
+  std::vector<std::uint8_t> is_plain_;  // this pose only shifts along the line
+  bool keeps_twists_ = false;           // all links are plain
+  // Velocity change of each coordinate per unit impulse of its own motor. Empty: joints are
+  // coupled, or have more than motors and stops.
   std::vector<double> responses_;
-  // Then of each velocity: its drive and response are those of the one before it.
+  // Of each velocity: drive and response equal those of the previous one.
   std::vector<std::uint8_t> driven_alike_;
   bool drives_are_compared_ = false;
   enum class Factored : std::uint8_t { no, without_damping, for_the_step };
-  Factored factored_ = Factored::no;  // of this configuration
-  double factored_time_ = 0.0;        // for how long, for the step
-  bool inertias_ = false;             // the factor has them of this configuration
-  bool twists_ = false;               // it has the links' velocities, else the data
+  Factored factored_ = Factored::no;  // of the current configuration
+  double factored_time_ = 0.0;        // step length of Factored::for_the_step
+  bool inertias_ = false;             // the factor has the inertias of the current configuration
+  bool twists_ = false;  // the factor has the links' velocities, otherwise data_ has them
   bool regular_ = false;
   bool loaded_ = false;
   std::vector<dse3> loads_;          // of each link
   std::vector<double> joint_loads_;  // of each degree of freedom
-  std::vector<int> floating_of_;     // of each link: the tree that it is of, or -1
+  std::vector<int> floating_of_;     // of each link: index of its floating tree, or -1
   JointReactions reactions_;
 
   // Scratch.
-  std::vector<double> moving_, drift_;  // sub-steps: v as it moves; mean velocity less v
-  std::vector<double> forced_;          // what the forces of this step have added to v
+  std::vector<double> moving_, drift_;  // sub-steps: v while moving; mean velocity less v
+  std::vector<double> forced_;          // velocity changes from the forces of this step
   std::vector<double> start_q_, moved_q_, rate_, change_, force_, zero_, impulse_applied_,
       velocity_, shift_;
   std::vector<double> remote_q_;
   std::vector<CompositeBody> composites_;
-  std::vector<double> fall_;  // the acceleration of a constant one
+  std::vector<double> fall_;  // acceleration from gravity if constant_
 };
 
 }  // namespace vp

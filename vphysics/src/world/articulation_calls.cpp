@@ -1,4 +1,4 @@
-// Building articulations in a world, and reading and setting their state.
+// Creates articulations in a world, and reads and sets their state.
 #include <algorithm>
 
 #include "vphysics/assert.h"
@@ -26,9 +26,9 @@ bool rotates_about_a_point(const Joint& joint) {
          std::holds_alternative<UniversalJoint>(joint) || std::holds_alternative<BallJoint>(joint);
 }
 
-// Ancestors come before what hangs on them.
+// A parent comes before its children.
 void find_neighbours(const Model& model, const Articulation& art, Bodies& bodies) {
-  constexpr double kOnePoint = 1e-6;  // [m]: files have rounded numbers
+  constexpr double kOnePoint = 1e-6;  // [m]: positions in files are rounded
   std::vector<SE3> T_leader_link;
   for (int l = 0; l < model.links(); ++l) {
     const LinkSpec& link = model.link(l);
@@ -202,7 +202,8 @@ bool can_drive(const JointDof& joint, const JointDrive& drive) {
 
 }  // namespace
 
-// At every step for many joints: the texts of what is refused lie apart, else they cost registers.
+// Called at every step for many joints: error texts are built out of line, because inline they cost
+// registers.
 Expected<void> World::set_drive(ArticulationId id, int link, int dof, const JointDrive& drive) {
   Articulation* art = impl_->find(id);
   const int i = art ? art->dof_index(link, dof) : -1;

@@ -1,5 +1,5 @@
-// What the forces of a step, or of a sub-step, do to an articulation's velocities: gravity, those
-// of the velocities, the user's and the joints' viscous damping.
+// The effect of a step's or sub-step's forces on an articulation's velocities: gravity,
+// velocity-dependent forces, the user's forces and viscous joint damping.
 #include <algorithm>
 #include <cmath>
 
@@ -30,7 +30,7 @@ void Articulation::clear_loads() {
   std::fill(impulse_applied_.begin(), impulse_applied_.end(), 0.0);
 }
 
-// All of the user's, along the joints.
+// All the user's forces as joint forces.
 void Articulation::find_force_response() {
   impulse_applied_ = joint_loads_;
   for (std::size_t l = 0; l < loads_.size(); ++l) {
@@ -40,8 +40,8 @@ void Articulation::find_force_response() {
   }
 }
 
-// What they add to the momentum of trees whose roots are free: those on links, and those of the
-// root's own joint, which are in its frame.
+// Adds to the momentum of floating trees the impulse of the user's forces: those on links, and
+// those of the root joint, which are in its frame.
 void Articulation::add_loads_of_trees(double dt) {
   const auto add = [&](CompositeBody& tree, const Vec3& at, const dse3& load) {
     tree.linear += dt * load.f;
@@ -81,7 +81,7 @@ bool Articulation::add_constant_forces(double dt) {
   return falls;
 }
 
-// Of a link's load for dt, to velocity_ (impulse_factor.h).
+// Adds the impulse of a link's load over dt to velocity_ (impulse_factor.h).
 void Articulation::add_impulse(int link, double dt) {
   const dse3& load = loads_[static_cast<std::size_t>(link)];
   if (load == dse3{}) return;
@@ -108,12 +108,12 @@ bool Articulation::integrate_forces(double dt, bool& changed) {
   for (std::size_t i = 0; i < v.size(); ++i) forced_[i] -= v[i];
   const bool fine = add_forces(dt, changed);
   for (std::size_t i = 0; i < v.size(); ++i) forced_[i] += v[i];
-  if (sub_stepped) reactions_.act(dt);  // else at the start
+  if (sub_stepped) reactions_.act(dt);  // otherwise at the start
   if (damped_) add_damping_efforts(v);
   return fine;
 }
 
-// Of damping that is in the factor, with what has come to the velocities.
+// Efforts of the damping in the factor, for the velocities `gained`.
 void Articulation::add_damping_efforts(std::span<const double> gained) {
   for (std::size_t i = 0; i < v.size(); ++i) {
     reactions_.add_effort(i, -factored_time_ * damping_[i] * gained[i]);
@@ -141,7 +141,7 @@ bool Articulation::add_forces(double dt, bool& changed) {
   factored_time_ = dt;
   if (!has_user_joints_ || !floating_.empty()) factor_.twists(v);
   for (std::size_t i = 0; i < floating_.size(); ++i) {
-    composites_[i] = floating_[i].whole_of_twists(data_, factor_);
+    composites_[i] = floating_[i].composite_of_twists(data_, factor_);
   }
   if (loaded_) find_force_response();
   find_change(dt, v);
@@ -155,7 +155,7 @@ bool Articulation::add_forces(double dt, bool& changed) {
   }
   if (loaded_) add_loads_of_trees(dt);
   for (std::size_t i = 0; i < floating_.size(); ++i) {
-    const CompositeBody now = floating_[i].whole_of_twists(data_, factor_);
+    const CompositeBody now = floating_[i].composite_of_twists(data_, factor_);
     floating_[i].set_momentum(model_, data_, now, composites_[i], v);
   }
   update_twists();

@@ -1,5 +1,5 @@
-// Articulations within a world: their links' bodies follow their coordinates, and their motors and
-// stops become rows of the solver.
+// Articulations within a world: updates their links' bodies from their coordinates, and adds their
+// motors and stops as rows of the solver.
 #include <algorithm>
 #include <cmath>
 
@@ -8,10 +8,10 @@
 
 namespace vp {
 
-// Contacts at once for whose rows there is memory before they are needed.
+// Number of simultaneous contacts whose rows have memory reserved in advance.
 constexpr std::size_t kContactsReady = 32;
 
-// Links are bodies for all that collides; their pose and velocity are copies.
+// Links are bodies for collision detection; their pose and velocity are copies.
 void World::Impl::follow(Articulation& art) {
   if (art.remote) {
     art.remote = false;
@@ -31,7 +31,7 @@ void World::Impl::follow_poses(const Articulation& art) {
     body.moved();
   }
 }
-// Carrying: what changes was carried by contacts and joints (contacts.cpp).
+// carrying: contacts and joints caused the velocity change (contacts.cpp).
 void World::Impl::follow_velocities(const Articulation& art, bool carrying) {
   for (const std::uint32_t b : art.bodies) {
     Body& body = bodies[b];
@@ -49,7 +49,7 @@ void World::Impl::reserve_link_rows() {
     deepest = std::max(deepest, art.deepest());
     dofs += art.dofs.size();
   }
-  constexpr std::size_t kRowsOfCoordinate = 3;  // of a joint in rows: what drives it, and stops
+  constexpr std::size_t kRowsOfCoordinate = 3;  // of a joint in rows: drive and stops
   const std::size_t in_rows = static_cast<std::size_t>(std::count_if(
       joints.begin(), joints.end(), [](const BodyJoint& j) { return j.alive && j.in_rows; }));
   impacts.row_joints.reserve(in_rows);
@@ -65,9 +65,9 @@ void World::Impl::reserve_link_rows() {
 
 void World::Impl::integrate_articulations(double dt) {
   for (Articulation& art : articulations) {
-    if (!art.alive || art.sub_stepped) continue;  // its forces have been felt
+    if (!art.alive || art.sub_stepped) continue;  // integrated in the sub-steps
     art.mark_start();
-    if (art.remote) continue;  // balanced: no force but its motors'
+    if (art.remote) continue;  // balanced: only its motors exert forces
     bool changed = false;
     if (!art.integrate_forces(dt, changed)) {
       status.non_finite = true;
@@ -83,8 +83,8 @@ namespace {
 // a soft row: v + s f h = target with s = 1 / (h^2 k + h d), target = (h k (p - q) + h d v_t) s.
 class JointRows {
  public:
-  // With memory, rows start from what they were in the last step, and are remembered. share: of a
-  // step, for which what is remembered is, the rows have.
+  // with_memory: rows warm start from their impulses of the last step and store the new ones.
+  // fraction: length of these rows' interval, in steps, by which the last impulses are scaled.
   JointRows(std::vector<solve::JointRow>& rows, std::uint32_t articulation, std::uint32_t i,
             Articulation& art, bool with_memory, double fraction)
       : rows_(rows),
@@ -104,7 +104,7 @@ class JointRows {
     if (motor.limit <= 0.0) return;
     add(kMotorRow, motor.constant / motor.gain, -motor.limit, motor.limit, 1.0 / motor.gain);
   }
-  // Spring, dry friction, and limits that give way.
+  // Spring, dry friction, and compliant limits.
   void add_passive(double h) {
     const JointForces& f = dof_.forces;
     if (f.friction > 0.0 && !dof_.locked) {
@@ -121,8 +121,8 @@ class JointRows {
       }
     }
   }
-  // Stops let the joint just reach them by the end of the step, and bring back within a whole step
-  // what is beyond them. A locked joint stands.
+  // A stop lets the joint just reach it within h, and corrects a violation within dt. A locked
+  // joint has zero velocity.
   void add_stops(double h, double dt) {
     if (dof_.locked) add(kFrictionRow, 0.0, -kAny, kAny);
     if (dof_.coordinate < 0) return;
@@ -163,8 +163,8 @@ class JointRows {
 
 }  // namespace
 
-// Motors, springs and friction are felt once a step, or once a sub-step; impacts are over too soon
-// for them.
+// Motors, springs and friction act once a step, or once a sub-step. Impacts are too short for them
+// to act.
 void World::Impl::add_joint_rows(double h, double dt, RowsOf of) {
   const double fraction = h / dt_now;
   impacts.joint_rows.clear();
@@ -177,7 +177,7 @@ void World::Impl::add_joint_rows(double h, double dt, RowsOf of) {
       continue;
     }
     if (art.remote) {
-      if (of != RowsOf::first_instant) continue;  // its stops hold as they were solved
+      if (of != RowsOf::first_instant) continue;  // its stops remain satisfied
       follow(art);
     }
     const bool first = of == RowsOf::sub_step || (of == RowsOf::first_instant && !art.sub_stepped);
@@ -240,7 +240,7 @@ bool World::Impl::stop_if_out_of_range(Articulation& art) {
   return true;
 }
 
-// A link is held with all of its articulation.
+// A link stops together with its whole articulation.
 void World::Impl::hold(std::uint32_t index) {
   const auto stand = [&](std::uint32_t b) {
     impacts.stopped[b] = 1;

@@ -1,4 +1,4 @@
-// What a step does with bodies beside moving them: lists, rows of the solver, enlarged bounds.
+// Per-step work on bodies other than moving them: lists, solver rows, enlarged bounds.
 #include <algorithm>
 #include <cmath>
 
@@ -9,11 +9,11 @@
 namespace vp {
 namespace {
 
-// An enlarged bound's margin, in sizes of the collider; larger ones are left less often and
-// overlap more neighbours.
+// Margin of enlarged bounds, in sizes of the collider. With larger margins bounds are left less
+// often but overlap more neighbours.
 constexpr double kMargin = 0.1;
-// Half a margin of the least collider is within all enlarged bounds (update_bounds). Sums of
-// components, no less than the lengths, will do.
+// Whether the body stays within all its enlarged bounds: within half a margin of its smallest
+// collider (update_bounds). Sums of components are upper bounds of the lengths.
 bool stays_within_bounds(const Body& body, const solve::BodyRow& row, float dt) {
   const float *at = body.bounded_at, *displacement = row.displacement, *velocity = row.velocity;
   const auto gone = [&](int i) {
@@ -23,13 +23,13 @@ bool stays_within_bounds(const Body& body, const solve::BodyRow& row, float dt) 
   return static_cast<double>(linear) + body.bounding_radius * static_cast<double>(rotated) <
          0.5 * kMargin * body.min_size;
 }
-// Of all that a collider passes in a step.
+// Bounds of everything that a collider sweeps in a step.
 collide::Bounds bounds_along(const collide::Bounds& b, const Vec3& displacement, double more) {
   const collide::Bounds end{b.lower + displacement, b.upper + displacement};
   return grown(merged(b, end), more);
 }
 
-// A kinematic body's origin goes along the chord to where its twist takes it.
+// The body's origin moves along the chord to where its twist takes it.
 void prescribe_velocity(Body& body, double dt) {
   const SE3 end = body.T * Exp(dt * body.prescribed);
   body.w = body.T.rotate(body.prescribed.w);
@@ -93,8 +93,8 @@ void World::Impl::list_bodies() {
   reserve_link_rows();
 }
 
-// Contacts that have points are looked at again; of the others the clearance becomes less by what
-// has been used of it.
+// Marks contacts with points dirty. Reduces the clearance of the others by what has been used of
+// it.
 void World::Impl::restart_displacement(std::uint32_t index) {
   const auto for_speculative = [&](const auto& f) {
     contact_store.for_each_of(bodies[index], [&](std::uint32_t contact, const Contact& c) {
@@ -146,7 +146,7 @@ void World::Impl::load_rows(double dt) {
   }
 }
 
-// Gives the broad phase the bounds of what may have left its enlarged ones.
+// Passes the bounds of colliders that may have left their enlarged ones to the broad phase.
 void World::Impl::update_bounds(std::uint32_t index, double dt, bool by_rows) {
   Body& body = bodies[index];
   pose_colliders(bodies[index], colliders);
@@ -155,12 +155,12 @@ void World::Impl::update_bounds(std::uint32_t index, double dt, bool by_rows) {
   const Vec3 reference = reference_point(body);
   for (std::uint32_t c = body.first_collider; c != kNone; c = colliders[c].next) {
     const Collider& collider = colliders[c];
-    // Its centre goes along an arc, which leaves its tangent by half of the square of the turn.
+    // Its centre moves along an arc, which deviates from its tangent by half the squared angle.
     const Vec3 arm = body.T * collider.centre - reference;
     const Vec3 displacement = dt * (body.v + cross(body.w, arm));
     const double own = collider.geometry.kind == collide::Kind::sphere ? 0.0 : collider.radius;
     const double more = rotation * own + 0.5 * rotation * rotation * norm(arm) + desc.contact_slop;
-    // Half of the margin is left now, whether the enlarged bounds are new or those of before.
+    // Half of the margin remains now, whether the enlarged bounds are new or old.
     const double half = 0.5 * kMargin * collider.size;
     const Vec3 pulled = dt * (pull.v + cross(pull.w, arm));
     const collide::Bounds start = bounds_along(collider.bounds, pulled, 0.0);
@@ -179,8 +179,8 @@ Velocity World::Impl::settle(const BodyRows& rows, std::uint32_t index) {
   return more;
 }
 
-// When all have been settled by what their rows and lanes held: then no order decides who is lost,
-// and no way that is no number gets into a contact that is kept.
+// Runs after all bodies have been settled from their rows and contact slots: the set of lost bodies
+// does not depend on an order, and no NaN displacement enters a remaining contact.
 void World::Impl::forget_lost_bodies() {
   for (const std::uint32_t i : lost_bodies) {
     std::fill_n(body_rows[i + 1].displacement, 6, 0.0f);
@@ -193,7 +193,7 @@ void World::Impl::forget_lost_bodies() {
   lost_bodies.clear();
 }
 
-// What its lanes hold is no good to start from.
+// Does not keep the impulses of its contact slots for a warm start.
 void World::Impl::forget_contacts(std::uint32_t body) {
   contact_store.for_each_of(bodies[body], [&](std::uint32_t index, const Contact& c) {
     contact_store.mark_dirty(index);
@@ -208,7 +208,7 @@ void World::Impl::forget_contacts(std::uint32_t body) {
   });
 }
 
-// Put elsewhere by the user.
+// After the user changed the pose.
 void World::Impl::jumped(std::uint32_t index) {
   ready_for_queries = false;
   Body& body = bodies[index];
@@ -233,10 +233,10 @@ void World::Impl::add_proxy(std::uint32_t index) {
   proxy.bounds = collider.bounds;
   proxy.mobility =
       body.motion == Motion::fixed ? collide::Mobility::fixed : collide::Mobility::moving;
-  // Continuous bodies look for others themselves (pairs.cpp).
+  // Continuous bodies find their pairs themselves (pairs.cpp).
   proxy.category = body.continuous ? 0 : collider.filter.category;
   proxy.mask = body.continuous ? 0 : collider.filter.mask;
-  // Of links that meet one another: what moves as one.
+  // Of links that collide with each other: the group of links fixed together.
   const int leader = body.neighbours.leader;
   proxy.owner = !body.is_link      ? collider.body
                 : leader == kWorld ? 0x80000000u + body.articulation

@@ -1,7 +1,8 @@
-// Between bodies and the rows of the sub-stepped solver.
+// Transfers bodies to the rows of the sub-stepped solver and back.
 //
-// A body that no lane holds falls freely: it is moved here, in double. So that it falls as it would
-// in n sub-steps h = dt / n of semi-implicit Euler, it goes by  dt v + a dt^2 (n + 1) / (2 n).
+// A body without contact slots falls freely and is integrated here, in double precision. Its
+// displacement equals that of n sub-steps h = dt / n of semi-implicit Euler:
+//   dt v + a dt^2 (n + 1) / (2 n)
 #include "world/body_rows.h"
 
 #include <algorithm>
@@ -15,13 +16,14 @@
 namespace vp {
 namespace {
 
-// A row's way begins again at zero beyond this [length units], and so many more steps of it, so
-// that single precision tells small steps; and beyond this turn [rad], since turns are added up as
-// vectors.
+// A row's displacement restarts at zero beyond kMaxDisplacement [length units] plus kFarSteps more
+// steps of motion, so that single precision resolves small steps. It also restarts beyond
+// kMaxRotation [rad], since rotations are added as vectors.
 constexpr float kMaxDisplacement = 0.0625f, kFarSteps = 8.0f, kMaxRotation = 0.25f;
 
-// The rotation nearest to one that rounding has worn: a step of Newton's method, M (3 - M^T M) / 2,
-// which unlike Gram and Schmidt's way turns nothing.
+// The nearest rotation to a matrix with accumulated rounding errors: one step of Newton's method,
+//   M (3 - M^T M) / 2,
+// which unlike Gram-Schmidt adds no rotation.
 Mat3 straightened(const Mat3& M) {
   const Vec3 &x = M.cx, &y = M.cy, &z = M.cz;
   const double xy = 0.5 * dot(x, y), yz = 0.5 * dot(y, z), zx = 0.5 * dot(z, x);
@@ -43,14 +45,16 @@ Mat3 rotated_approximately(const Mat3& R, const Vec3& t) {
          R;
 }
 
-// Rounding adds up over thousands of steps; two of its six errors tell when it is enough.
+// Rounding errors accumulate over thousands of steps. Two of the six orthonormality errors suffice
+// to detect it.
 bool is_worn(const Mat3& R) {
   constexpr double kWorn = 1e-13;
   return std::fabs(dot(R.cx, R.cx) - 1.0) + std::fabs(dot(R.cy, R.cz)) > kWorn;
 }
 
-// What makes of its rate in dt that of a free body, as seen from the body: where it is in the
-// solver, at the start of the step, its energy stays.
+// The angular acceleration that changes w over dt as torque-free rotation does in the body frame.
+// The solver applies it at the orientation at the start of the step, so the energy is conserved
+// there.
 Vec3 gyroscopic_acceleration(const Body& body, double dt) {
   if (body.isotropic || hardly_rotates(body.w, dt)) return {};
   const Mat3& R = body.T.rotation();
@@ -68,7 +72,7 @@ Rotated rotated_freely(const Body& body, double h, const Vec3& more_w) {
   const FreeRotation rotation = free_rotation(body.central, body.inverse_central, mean, h);
   Mat3 next = R * from_quaternion(rotation.q);
   next = straightened(next);
-  // What stays to rounding is the angular momentum of the world's frame.
+  // Angular momentum in the world frame is conserved to rounding.
   return {next, next * (body.inverse_central * transposed_times(next, L))};
 }
 
@@ -79,8 +83,8 @@ Vec3 rate_at(const Body& body, const Mat3& R) {
   return more ? R * was : body.w;
 }
 
-// R after a small turn by the vector t: Rodrigues' formula with its coefficients to sixth order,
-// exact to rounding for turns of a step; larger ones take the long way.
+// R after a small rotation by the vector t: Rodrigues' formula with coefficients to sixth order,
+// exact to rounding for the rotations of a step. Larger rotations use the exponential map.
 Mat3 rotated(const Mat3& R, const Vec3& t) {
   return straightened(rotated_approximately(R, t));
 }
@@ -125,13 +129,13 @@ bool BodyRows::load(Body& body, std::uint32_t index) const {
                     kFarSteps * static_cast<float>(dt) * speed;
   const auto beyond = [displacement](int first, float limit) {
     return std::any_of(displacement + first, displacement + first + 3,
-                       [limit](float x) { return !(std::fabs(x) <= limit); });  // NaN too
+                       [limit](float x) { return !(std::fabs(x) <= limit); });  // true also for NaN
   };
   return beyond(0, far) || beyond(3, kMaxRotation);
 }
 
-// Whether nothing has changed how it turns, though lanes hold it. Then it turns freely, in double,
-// and its way becomes that.
+// Whether contacts and joints left its rotation unchanged, though it has contact slots. If so, it
+// rotates freely, in double precision, and the row's rotation is set to that.
 bool BodyRows::leave_untouched(Body& body, std::uint32_t index) const {
   solve::BodyRow& row = rows[index + 1];
   if (!body.tumbles() || body.first_joint != kNone || body.on_link) return false;

@@ -1,4 +1,4 @@
-// Between bodies and their rows of the sub-stepped solver, in one step.
+// Transfers bodies to their rows of the sub-stepped solver and back, in one step.
 #pragma once
 
 #include <array>
@@ -12,20 +12,20 @@
 namespace vp {
 
 struct BodyRows {
-  std::span<solve::BodyRow> rows;  // i + 1 is of body i
+  std::span<solve::BodyRow> rows;  // row i + 1 is of body i
   std::span<std::array<float, 6>>
-      start_displacements;  // of each body: its row's way when the step began
+      start_displacements;  // of each body: displacement of its row when the step began
   const BodyLoads& loads;
   const WorldDesc& desc;
   double dt;
   int sub_steps;
 
-  // Before the sub-steps. True if the row's way has become so long that it must begin again.
+  // Before the sub-steps. True if the row's displacement is so long that it must restart at zero.
   bool load(Body& body, std::uint32_t index) const;
-  // After them: the velocities of a dynamic body become those of the end of the step; more: what
-  // its mean velocities over the step have more. False if they are out of range: it stands.
+  // After the sub-steps: sets a dynamic body's velocities to those at the end of the step. more:
+  // mean velocities over the step less these. False if they are out of range: the body stops.
   bool settle(Body& body, std::uint32_t index, Velocity& more) const;
-  // The same, and its pose, of a dynamic body that its row leads; false if it flies out of range.
+  // The same and the pose, for a dynamic body moved by its row; false if it leaves the range.
   bool advance(Body& body, std::uint32_t index) const;
 
  private:

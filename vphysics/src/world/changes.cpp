@@ -1,9 +1,9 @@
-// Changes of what a world is made of, while it runs.
+// Changes to the properties of existing objects.
 //
-// All of these are constants of the world: they enter its digest (topology_hash.h), so that a
-// snapshot of before is not taken after them. What hangs together with a changed body is woken.
-// Contacts whose constants changed are looked at again in the next step; those that are no more
-// end, with an event of the next step.
+// All of these are constants of the world and part of its topology hash (topology_hash.h), so that
+// earlier snapshots are rejected afterwards. The island of a changed body wakes. Contacts whose
+// constants changed are tested again in the next step; contacts that no longer exist end, with an
+// event of the next step.
 #include <algorithm>
 
 #include "world/impl.h"
@@ -15,7 +15,7 @@
 namespace vp {
 namespace {
 
-// Of a body that takes its mass from its colliders, as long as none has one.
+// For a body that takes its mass from its colliders, while none has a mass.
 const Inertia kUnitInertia(1.0, Vec3{1.0, 1.0, 1.0});
 
 enum class Change : std::uint64_t {
@@ -34,7 +34,7 @@ std::uint64_t change_bits(Change change, std::uint32_t index) {
   return (static_cast<std::uint64_t>(change) << 32) | index;
 }
 
-// Its centre of mass, V being its velocity.
+// Whether the speed of the centre of mass is in range. V: the body's velocity.
 bool is_slow_enough(const se3& V, const Vec3& centre) {
   return nearly_in_range(V.v + cross(V.w, centre));
 }
@@ -57,7 +57,7 @@ std::optional<std::string> why_not(const Body& body, const Colliders& colliders,
 
 }  // namespace
 
-// Why the body, whose velocity is V, cannot have that inertia; nothing if it can.
+// Why a body with velocity V cannot have this inertia; nullopt if it can.
 std::optional<std::string> World::Impl::problem_with_mass(const Body& body, const se3& V,
                                                           const Inertia& inertia) const {
   if (auto problem = problem_with(inertia)) return problem;
@@ -68,7 +68,7 @@ std::optional<std::string> World::Impl::problem_with_mass(const Body& body, cons
   return std::nullopt;
 }
 
-// The velocity of its origin stays, and so do the forces on it.
+// Keeps the velocity of the origin and the forces on the body.
 void World::Impl::change_mass(std::uint32_t index, const Inertia& inertia) {
   Body& body = bodies[index];
   wake(index);
@@ -84,7 +84,7 @@ void World::Impl::change_mass(std::uint32_t index, const Inertia& inertia) {
   contact_store.mark_contacts_dirty(bodies[index]);
 }
 
-// Of a dynamic body that takes its mass from its colliders; they have changed.
+// For a dynamic body that takes its mass from its colliders, after they have changed.
 void World::Impl::update_mass(std::uint32_t index) {
   const Body& body = bodies[index];
   if (!body.mass_from_colliders || body.motion != Motion::dynamic) return;
@@ -128,7 +128,7 @@ Expected<void> World::set_motion(BodyId id, Motion motion) {
       return invalid(Errc::unsupported, std::string("set_motion: it is joined, and ") + kNotJoined);
     }
   }
-  std::optional<Inertia> inertia;  // none: what the body has
+  std::optional<Inertia> inertia;  // nullopt: the present one
   Vec3 centre = body->centre;
   if (motion == Motion::dynamic && body->mass_from_colliders) {
     inertia = inertia_of_colliders(*body, impl_->colliders);
@@ -150,8 +150,8 @@ Expected<void> World::set_motion(BodyId id, Motion motion) {
   return {};
 }
 
-// Its contacts end, and those that still touch begin again: their places in the solver are of the
-// motion of before.
+// Its contacts end, and those that still touch begin again: their contact slots depend on the
+// motion.
 void World::Impl::change_motion(std::uint32_t index, Motion motion,
                                 const std::optional<Inertia>& inertia, const se3& V) {
   Body& body = bodies[index];
@@ -277,7 +277,7 @@ Expected<void> World::set_filter(ColliderId id, const CollisionFilter& filter) {
   c->filter = filter;
   impl_->wake_all_about(c->body);
   if (!body.continuous) impl_->finder.set_filter(c->proxy, filter.category, filter.mask);
-  impl_->contact_store.mark_contacts_dirty(impl_->bodies[c->body]);  // some may be no more
+  impl_->contact_store.mark_contacts_dirty(impl_->bodies[c->body]);  // some may end
   body.categories = body.masks = 0;
   for (std::uint32_t i = body.first_collider; i != kNone; i = impl_->colliders[i].next) {
     body.categories |= impl_->colliders[i].filter.category;
@@ -326,7 +326,7 @@ void World::Impl::take_collider_off(std::uint32_t index) {
   lists.invalidate();
 }
 
-// What a body has of all its colliders.
+// Recomputes the body's summary of its colliders.
 void World::Impl::summarize_colliders(std::uint32_t index) {
   Body& body = bodies[index];
   const Body none;

@@ -8,7 +8,7 @@
 namespace vp {
 namespace {
 
-// As Collider::size says.
+// See Collider::size.
 double size_of(const collide::Geometry& g) {
   if (collide::is_surface(g)) return 0.0;
   if (g.kind == collide::Kind::compound) {
@@ -23,8 +23,8 @@ double size_of(const collide::Geometry& g) {
   return 0.5 * std::min({extents.x, extents.y, extents.z});
 }
 
-// Of all places to which a turn about its z takes a box, that axis being the unit vector `line` in
-// the outer frame: of a cylinder. Empty if there is no such line.
+// Bounds of a box for all its rotations about its z axis, whose direction in the outer frame is the
+// unit vector `line`: those of a cylinder. Empty if line is zero.
 collide::Bounds bounds_around(const Vec3& line, const collide::Bounds& box) {
   if (line == Vec3{}) return {};
   const double x = std::max(-box.lower.x, box.upper.x), y = std::max(-box.lower.y, box.upper.y);
@@ -48,7 +48,7 @@ const collide::Bounds& bounds_at_pose(Body& body, Colliders& colliders) {
   body.bounds =
       collide::empty(body.local) ? collide::Bounds{} : collide::transformed(body.T, body.local);
   if (body.unbounded) {
-    // The bounds of a plane's body enclose those of its colliders, planes included.
+    // The bounds of a body with a plane enclose those of all its colliders, planes included.
     pose_colliders(body, colliders);
     for (std::uint32_t c = body.first_collider; c != kNone; c = colliders[c].next) {
       body.bounds = merged(body.bounds, colliders[c].bounds);

@@ -1,4 +1,4 @@
-// A collider, as the world keeps it, and pairs of colliders.
+// A collider as the world stores it, and pairs of colliders.
 #pragma once
 
 #include <cstdint>
@@ -11,27 +11,27 @@
 
 namespace vp {
 
-inline constexpr double kEndless = 1e30;  // a radius [m]
+inline constexpr double kEndless = 1e30;  // the bounding radius of a half-space [m]
 
-// What is read of a collider whenever one of its contacts is looked at comes first.
+// Data that every narrow-phase test of its contacts reads come first.
 struct alignas(64) Collider {
   std::uint32_t body = kNone;
   std::uint32_t proxy = kNone;  // in the broad phase
   bool alive = false;
   bool sensor = false;
-  bool stray = false;          // out of its proxy's bounds: find_strays()
-  std::uint32_t next = kNone;  // of the same body
-  // Half of its least extent [m], of a compound that of its smallest part; 0: what has none, as
-  // half-spaces, meshes and height fields.
+  bool stray = false;          // outside its proxy's bounds: find_strays()
+  std::uint32_t next = kNone;  // collider of the same body
+  // Half of its smallest extent [m], for a compound that of its smallest part. 0 for half-spaces,
+  // meshes and height fields.
   double size = 0.0;
-  // A ball around it, body frame; of a half-space without end.
+  // Bounding sphere, body frame; kEndless for a half-space.
   double radius = kEndless;
   Vec3 centre;
   std::uint32_t generation = 0;
   std::uint32_t serial = 0;  // order of creation
 
   collide::Geometry geometry;
-  // Follows from the body's pose, the one of that number; refreshed by the step (Body::posed).
+  // T and bounds are valid for this pose_number of the body; the step refreshes them (Body::posed).
   std::uint64_t posed_for = 0;
   SE3 T;
   Material material;
@@ -40,26 +40,26 @@ struct alignas(64) Collider {
   SE3 T_body_shape;
   CollisionFilter filter;
   double density = 0.0;  // [kg/m^3]
-  // Of a link that moves along and about a line alone, as Body::around_line.
+  // As Body::around_line.
   collide::Bounds around_line;
   std::uint64_t user_data = 0;
-  Shape shape = HalfSpace{};  // owns what geometry points to
+  Shape shape = HalfSpace{};  // owns the data that geometry points to
 };
 
 using Colliders = Slots<Collider, ColliderId>;
 
-// The poses and bounds of a body's colliders, where it is.
+// Computes the poses and bounds of a body's colliders at its pose.
 void pose_collider(const Body& body, Collider& collider);
 void pose_colliders(Body& body, Colliders& colliders);
 const collide::Bounds& bounds_at_pose(Body& body, Colliders& colliders);
-// Adds a collider to what its body has of all its colliders. line: of a link that moves along and
-// about a line alone, that line; else zero.
+// Adds a collider to the body's summary of its colliders. line: the line that a link only slides
+// along and rotates about; otherwise zero.
 void note_collider(Body& body, Collider& collider, const Vec3& line);
-// Of a body's solid colliders, but one.
+// Sum over a body's solid colliders, except one.
 Inertia inertia_of_colliders(const Body& body, const Colliders& colliders,
                              std::uint32_t without = kNone);
 
-// In order of creation.
+// a and b in order of creation.
 struct ColliderPair {
   std::uint64_t key;
   std::uint32_t a, b;
@@ -69,18 +69,18 @@ struct ColliderPair {
 ColliderPair make_pair(const Colliders& colliders, std::uint32_t i, std::uint32_t j);
 bool should_collide(const Collider& a, const Collider& b);
 
-// The ball around the smaller of two colliders, where they meet if they do. World frame. The one
-// rule of how near they come: relative velocity at its centre, and relative rotation times its
-// radius.
+// The bounding sphere of the smaller of two colliders: where they touch, if they do. World frame.
+// All bounds of the approach of two colliders use it: relative velocity at its centre, and relative
+// rotation times its radius.
 struct Vicinity {
   Vec3 centre;
-  double radius;  // 0 if the smaller is a ball itself: it is met along the line through its centre
+  double radius;     // 0 if the smaller is a sphere: contact is along the line through its centre
   bool of_compound;  // the smaller is one
 };
 
 Vicinity vicinity_of(const Bodies& bodies, const Collider& a, const Collider& b);
 
-// Half of the least extent of the smaller one; 0 if neither has one.
+// Half of the smallest extent of the smaller one; 0 if neither has one.
 double smaller_size(const Collider& a, const Collider& b);
 
 }  // namespace vp

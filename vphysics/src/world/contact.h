@@ -1,12 +1,12 @@
-// A pair of colliders that are near one another, for as long as their enlarged bounds overlap.
+// A contact: a pair of colliders whose enlarged bounds overlap, for as long as they do.
 //
-// The narrow phase looks at it only when the two may have moved by more than a little against each
-// other since it last did (find_contacts.cpp). What it finds lives in a lane of the solver's
-// blocks.
+// The narrow phase tests it again only when the two may have moved relative to each other by more
+// than a small amount since the last test (find_contacts.cpp). The resulting manifold is in a
+// contact slot of the solver's blocks.
 //
-// Of a pair in which a mesh, a height field or a compound takes part, a contact stands for the
-// whole: it is always among those without points. For each manifold it has another contact, a part,
-// which is in a lane (part_contacts.cpp).
+// A pair with a mesh, a height field or a compound has an aggregate contact, which never has points
+// of its own. Each manifold of the pair has a contact too, a part, in a contact slot
+// (part_contacts.cpp).
 #pragma once
 
 #include <cstdint>
@@ -21,31 +21,31 @@ struct Contact {
 
   std::uint64_t key = 0;       // serials of both
   std::uint32_t a = 0, b = 0;  // colliders, in order of creation
-  // Neighbours in the lists of their bodies: side 0 in that of a's, 1 in that of b's. An edge is
-  // 2 * contact + side.
+  // Links of the bodies' lists of contacts: side 0 in the list of a's body, 1 in that of b's. An
+  // edge is 2 * contact + side.
   std::uint32_t next[2] = {}, previous[2] = {};
   bool alive = false;
   bool sensor = false;
-  bool of_link = false;  // one of the two is of a link: never in a lane (link_contacts.cpp)
+  bool of_link = false;  // one of the two is of a link: never in a contact slot (link_contacts.cpp)
   bool touching = false;
-  bool parked = false;  // of bodies that are asleep
-  bool dirty = true;    // must be looked at in the next step, wherever the two are
+  bool parked = false;  // of sleeping bodies
+  bool dirty = true;    // the next step must test it, however little the two have moved
   solve::ContactSlot slot;
   collide::PairCache cache;  // of the narrow phase
 
-  bool has_parts = false;                 // it is the whole
-  std::uint32_t first_part = kNoContact;  // of them, in the order of the narrow phase
-  // Of a part: the whole, the next one, and which parts of the shapes touch.
+  bool has_parts = false;                 // it is an aggregate contact
+  std::uint32_t first_part = kNoContact;  // of its parts, in the order of the narrow phase
+  // Of a part: its aggregate, the next part, and the indices of the shapes' parts.
   std::uint32_t aggregate = kNoContact, next_part = kNoContact;
   std::uint32_t sub_a = 0, sub_b = 0;
   bool is_part() const { return aggregate != kNoContact; }
 
-  // Points, if it has any.
+  // Its contact points.
   std::uint8_t count = 0;
   std::uint32_t feature[collide::kMaxPoints] = {};
-  Vec3 position[collide::kMaxPoints] = {};  // world frame, when they were found
+  Vec3 position[collide::kMaxPoints] = {};  // world frame, when the narrow phase found them
 
-  std::uint32_t speculative_index = 0;  // if it has none: its lane in the near list
+  std::uint32_t speculative_index = 0;  // without points: its index in the speculative list
 };
 
 }  // namespace vp

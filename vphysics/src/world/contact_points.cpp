@@ -1,7 +1,8 @@
-// What a body's contacts did to it in the last step.
+// The contacts of a body in the last step.
 //
-// Contacts of lanes tell the sum of their normal impulses over the sub-steps, and how the last one
-// divided it among the points; their friction is that of the last sub-step, scaled alike.
+// A contact slot stores the sum of the contact's normal impulses over the sub-steps, and the normal
+// impulse of each point in the last sub-step. The sum is divided among the points in these
+// proportions. Friction is that of the last sub-step, scaled alike.
 #include "vphysics/assert.h"
 #include "world/impl.h"
 #include "world/lane_fields.h"
@@ -35,7 +36,7 @@ void add_points_of(const Contact& c, const solve::ContactBlock<P>& block, bool o
 
 }  // namespace
 
-// Of the impulses that solve() has left.
+// Records the impulses of the last solve().
 void World::Impl::note_contacts(std::span<const solve::ContactConstraint> solved) {
   for (const solve::ContactConstraint& c : solved) {
     for (int i = 0; i < c.count; ++i) {

@@ -85,7 +85,7 @@ void ContactState::read_pool(Reader& in) {
   check_parts(in);
 }
 
-// Each part is in the chain of its whole, once.
+// Each part is in the chain of its aggregate, exactly once.
 void ContactState::check_parts(Reader& in) {
   for (std::uint32_t i = 0; i < contacts_.pool.size() && in.ok(); ++i) {
     const Contact& aggregate = contacts_.pool[i];
@@ -154,7 +154,7 @@ void ContactState::read_contact(Reader& in, Contact& c, bool is_part) {
   }
 }
 
-// In their order, each contact's sides once.
+// In list order; each side of a contact once.
 void ContactState::read_edges(Reader& in, std::uint32_t body) {
   const std::size_t count = in.count(1);
   std::uint32_t previous = kNone;
@@ -165,8 +165,7 @@ void ContactState::read_edges(Reader& in, std::uint32_t body) {
     const auto side = static_cast<std::uint8_t>(1u << (e % 2));
     const bool own = c.alive && world_.colliders[e % 2 == 0 ? c.a : c.b].body == body;
     in.check(own && (seen_[e / 2] & side) == 0);
-    in.check(!c.is_part() ||
-             (seen_[c.aggregate] & side) == 0);  // behind a whole come no parts of it
+    in.check(!c.is_part() || (seen_[c.aggregate] & side) == 0);  // no part follows its aggregate
     if (!in.ok()) return;
     seen_[e / 2] = static_cast<std::uint8_t>(seen_[e / 2] | side);
     c.previous[e % 2] = previous;
@@ -183,7 +182,7 @@ void ContactState::read_speculative(Reader& in, solve::SpeculativeList& speculat
     const std::uint32_t index = in.index(contacts_.pool.size());
     if (!in.ok()) return;
     Contact& c = contacts_.pool[index];
-    in.check(c.alive && c.count == 0 && (seen_[index] & 4u) == 0);  // so no part
+    in.check(c.alive && c.count == 0 && (seen_[index] & 4u) == 0);  // so it is no part
     seen_[index] = static_cast<std::uint8_t>(seen_[index] | 4u);
     c.parked = parked;
     c.speculative_index =

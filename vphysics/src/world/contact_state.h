@@ -1,17 +1,19 @@
-// All that a world remembers of contacts from step to step, as words.
+// The complete contact state of a world between steps, as 64-bit words.
 //
-//   broad phase     pair_finder.h
-//   of each body    rested, by impacts, asleep; for how long it has been at rest; its row's way and
-//   where its bounds were set; its contacts, in order, as
-//                   edges (2 contact + side)
-//   pool            of each slot its flags, and if it is alive the contact, with the chain of its
-//                   parts; free slots, in order
-//   near contacts   in order, then those parked: each contact and all its fields
-//   regions         how many; how long ago divided; the axis of each halving; of each body its own
-//   lanes           of each region and colour, then of those parked, and each kind: how many, and
-//   of each its contact and all its fields
+// broad phase     pair_finder.h
+// bodies          of each: flags (rested, asleep); how long at rest; displacement of its row and
+//                 displacement at its last bounds
+// pool            of each entry its flags, and if it is alive the contact, with the chain of its
+//                 parts
+// body contacts   of each body: its contacts, in order, as edges (2 contact + side)
+// free entries    of the pool, in order
+// speculative     the list in order, then the parked one: each contact and all its fields
+// regions         how many; time since the last division; the axis of each split; of each body
+//                 its region
+// contact slots   of each region and colour, then of the parked ones, and each kind: how many,
+//                 and of each its contact and all its fields
 //
-// What follows from these is not written: neighbours in lists, rows of lanes, colours taken.
+// Derived data are not written: list neighbours, rows of the contact slots, colours in use.
 #pragma once
 
 #include <vector>
@@ -26,7 +28,7 @@
 
 namespace vp {
 
-// What is written and read.
+// The data that are written and read.
 struct ContactData {
   Bodies& bodies;
   Colliders& colliders;
@@ -37,7 +39,8 @@ struct ContactData {
   BodyLists& lists;
 };
 
-// Read from bytes, checked, and not yet the world's. Kept for its memory: adopt() swaps.
+// State read from bytes and checked before the world adopts it. Reused for its memory: adopt()
+// swaps.
 class ContactState {
  public:
   explicit ContactState(const ContactData& world) : world_(world) {}
@@ -69,8 +72,8 @@ class ContactState {
   const ContactData world_;
   std::vector<OfBody> bodies_;
   ContactStore contacts_;
-  // Of each contact what was found: 1, 2: its sides; 4: near or in a lane; 8: free; 16: of the
-  // parts of its whole.
+  // Of each contact what was found, as flags. 1, 2: its sides; 4: in a speculative list or a
+  // contact slot; 8: free; 16: in its aggregate's chain of parts.
   std::vector<std::uint8_t> seen_;
   Regions::State regions_;
 };

@@ -9,8 +9,8 @@
 namespace vp {
 namespace {
 
-// What one of the two has gone by: at the centre of the ball in which they meet, and how far that
-// may be off.
+// Motion of one body of a pair: displacement at the centre of the vicinity sphere, rotation, and
+// the error bound of that displacement.
 struct Gone {
   Vec3 displacement, rotation;
   double bow;
@@ -20,7 +20,7 @@ struct Gone {
 
 void ContactStore::reserve(std::size_t contacts) {
   pool.reserve(contacts);
-  // Parts have contacts of their own.
+  // Parts are contacts of their own.
   for (auto* list : {&free, &dirty}) list->reserve(std::max(contacts, pool.capacity()));
   speculative.reserve(contacts);
 }
@@ -35,7 +35,6 @@ void ContactStore::clear() {
   points = 0;
 }
 
-// In a slot of the pool and in its bodies' lists.
 std::uint32_t ContactStore::add(const Contact& contact, const BodySet& on) {
   const std::uint32_t index = take_slot(pool, free);
   Contact& c = pool[index];
@@ -164,7 +163,7 @@ double ContactStore::clearance(const Contact& c) const {
   return static_cast<double>(speculative.pair(c.speculative_index).clearance);
 }
 
-// As find_closer counts it.
+// The same bound as find_closer.
 void ContactStore::use_clearance(const Contact& c, const BodySet& on) {
   solve::NearPair& pair = speculative.pair(c.speculative_index);
   const auto gone = [&](std::uint32_t row, const float* x, const float* rotation,
@@ -181,8 +180,9 @@ void ContactStore::use_clearance(const Contact& c, const BodySet& on) {
       static_cast<float>(norm(b.displacement - a.displacement) + rotated + a.bow + b.bow);
 }
 
-// Unless something awake may change it: a near pair of which one is awake or kinematic. A kinematic
-// body that touches one asleep rests; who sets it in motion wakes the other.
+// Does nothing if something awake may change the contact: a speculative pair with one body awake or
+// kinematic. A kinematic body that touches a sleeping one is at rest; setting it in motion wakes
+// the other.
 void ContactStore::park(std::uint32_t index, const BodySet& on) {
   Contact& c = pool[index];
   const std::uint32_t a = on.colliders[c.a].body, b = on.colliders[c.b].body;
@@ -236,14 +236,14 @@ void ContactStore::mark_dirty_slots(const solve::IndexField& contacts, std::uint
   }
 }
 
-void ContactStore::mark_stale_pairs(const solve::SpeculativeBlock& block, std::uint32_t bits) {
+void ContactStore::mark_dirty_pairs(const solve::SpeculativeBlock& block, std::uint32_t bits) {
   for (; bits != 0; bits &= bits - 1) {
     const std::uint32_t contact = block.pairs[std::countr_zero(bits)].contact;
     if (contact != solve::kNoContact) mark_dirty(contact);
   }
 }
 
-// By a bit for each of the pool.
+// Sorts by a bit set over the pool.
 void ContactStore::take_dirty(std::vector<std::uint32_t>& ascending) {
   dirty_bits_.resize(pool.capacity() / 64 + 1);
   for (const std::uint32_t i : dirty) dirty_bits_[i / 64] |= std::uint64_t{1} << (i % 64);

@@ -1,6 +1,6 @@
-// The contacts of a world: a pool of them, a list for each body, and where each is kept for the
-// solver: in a lane of the contact graph if it has points, else in a near list, which tells when
-// the two have come so close that the narrow phase must look again.
+// The contacts of a world: a pool, a list for each body, and their storage for the solver. A
+// contact with points has a slot in the contact graph. A contact without points is in a speculative
+// list, which detects when the two have come so close that the narrow phase must test them again.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@
 
 namespace vp {
 
-// What contacts are between; rows: 0 is of the world, i + 1 of body i.
+// The objects that contacts refer to. Row 0 is the world, row i + 1 is of body i.
 struct BodySet {
   Bodies& bodies;
   Colliders& colliders;
@@ -27,19 +27,19 @@ class ContactStore {
   // --- state
   std::vector<Contact> pool;
   std::vector<std::uint32_t> free;
-  solve::ContactGraph graph;                  // of those that have points
-  solve::SpeculativeList speculative;         // of those that have none
-  solve::SpeculativeList parked_speculative;  // and of those of them that are of bodies asleep
-  // Those marked as stale, in no order, and with others that are not any more.
+  solve::ContactGraph graph;                  // contacts with points
+  solve::SpeculativeList speculative;         // contacts without points
+  solve::SpeculativeList parked_speculative;  // the same, of sleeping bodies
+  // Dirty contacts, in no order; may include some that are no longer dirty.
   std::vector<std::uint32_t> dirty;
-  std::uint32_t points = 0;  // in lanes that are not parked
+  std::uint32_t points = 0;  // in contact slots that are not parked
 
   Contact& operator[](std::uint32_t contact) { return pool[contact]; }
   const Contact& operator[](std::uint32_t contact) const { return pool[contact]; }
   void reserve(std::size_t contacts);
-  void clear();  // memory stays
+  void clear();  // keeps the memory
 
-  // f(number, contact) of all contacts of a body. It may remove that one.
+  // Calls f(index, contact) for each contact of a body. f may remove that contact.
   template <class F>
   void for_each_of(const Body& body, const F& f) {
     for (std::uint32_t e = body.first_edge, next = kNone; e != kNone; e = next) {
@@ -49,39 +49,44 @@ class ContactStore {
   }
   bool touches_in_parts(const Contact& aggregate) const;
 
-  // A new one, in no lane and in no near list.
+  // A new contact, in no slot and no speculative list.
   std::uint32_t add(const Contact& contact, const BodySet& on);
   // With its parts.
   void remove(std::uint32_t contact, const BodySet& on);
   void remove_parts(std::uint32_t aggregate, const BodySet& on);
-  // One of several: the whole has to be looked at again.
+  // Removes one of several parts and marks the aggregate dirty.
   void forget_part(std::uint32_t part, const BodySet& on);
 
-  // --- lanes. An empty one for so many points: it leaves its near list.
+  // --- contact slots
+  // Assigns a slot for up to max_points points; the contact leaves its speculative list.
   void assign_slot(std::uint32_t contact, int max_points, const BodySet& on);
   void release_slot(std::uint32_t contact, const BodySet& on);
-  // To the regions that the body's contacts are in now.
+  // Moves the body's contacts to the regions that they are in now.
   void follow_region(const Body& body, const BodySet& on);
 
-  // --- near lists. It is free of contact for so far [m] from where its bodies are now.
+  // --- speculative lists
+  // The pair cannot touch before its bodies have moved by clearance [m] relative to each other.
   void set_speculative(std::uint32_t contact, double clearance, const BodySet& on);
   void set_clearance(const Contact& contact, double clearance, const BodySet& on);
   double clearance(const Contact& contact) const;
-  // To be looked at; of a link, elsewhere.
+  // Sets the clearance to zero, so that it is tested; of links, which are tested elsewhere, to
+  // never.
   void reset_speculative(const Contact& contact, const BodySet& on);
-  // Takes from the clearance how far the two have gone against each other since it was set.
+  // Subtracts from the clearance how far the two have moved relative to each other since it was
+  // set.
   void use_clearance(const Contact& contact, const BodySet& on);
 
   // --- sleep
   void park(std::uint32_t contact, const BodySet& on);
   void unpark(std::uint32_t contact, const BodySet& on);
 
-  // --- the narrow phase must look at it again; of a part, at the whole.
+  // --- dirty contacts
+  // The narrow phase must test the contact again; of a part, its aggregate.
   void mark_dirty(std::uint32_t contact);
   void mark_contacts_dirty(const Body& body);
   void mark_dirty_slots(const solve::IndexField& contacts, std::uint32_t bits);
-  void mark_stale_pairs(const solve::SpeculativeBlock& speculative, std::uint32_t bits);
-  // The stale ones, ascending, each once; then none is.
+  void mark_dirty_pairs(const solve::SpeculativeBlock& block, std::uint32_t bits);
+  // Returns the dirty ones, ascending, each once, and clears the list.
   void take_dirty(std::vector<std::uint32_t>& ascending);
 
  private:
@@ -90,6 +95,6 @@ class ContactStore {
   std::vector<std::uint64_t> dirty_bits_;  // scratch
 };
 
-inline constexpr double kNeverTouches = 1e30;  // a clearance [m]
+inline constexpr double kNeverTouches = 1e30;  // clearance of a pair that cannot touch [m]
 
 }  // namespace vp

@@ -1,4 +1,4 @@
-// From pairs to constraints, and from solved constraints to events and what is remembered.
+// Impact stage: from pairs to constraints, and from solved constraints to events and warm starts.
 #include <algorithm>
 #include <cmath>
 #include <span>
@@ -9,7 +9,7 @@
 namespace vp {
 namespace {
 
-// Of all manifolds of the pair.
+// The records of all manifolds of the pair.
 std::span<const PairRecord> records_of(const std::vector<PairRecord>& sorted, std::uint64_t key) {
   const auto it = std::lower_bound(sorted.begin(), sorted.end(), key,
                                    [](const PairRecord& r, std::uint64_t k) { return r.key < k; });
@@ -21,8 +21,8 @@ bool touches(std::span<const PairRecord> of_pair) {
   return !of_pair.empty() && of_pair[0].touching;
 }
 
-// The old point of the same features; or, since features change names when edges pass over one
-// another, the nearest old point within reach.
+// The old point with the same feature id; otherwise, since feature ids change when edges pass over
+// each other, the nearest old point within range.
 const PairPoint* point_of(std::span<const PairRecord> of_pair, const collide::ManifoldPoint& p,
                           double range) {
   const PairPoint* nearest = nullptr;
@@ -39,7 +39,7 @@ const PairPoint* point_of(std::span<const PairRecord> of_pair, const collide::Ma
   }
   return nearest;
 }
-// A ball's, of the manifold of the same number.
+// Rolling impulse of a sphere, of the manifold with the same index.
 Vec3 rolling_of(std::span<const PairRecord> of_pair, std::uint32_t part) {
   for (const PairRecord& record : of_pair) {
     if (record.part == part) return record.rolling;
@@ -51,24 +51,25 @@ bool of_one_pair(const solve::ContactConstraint& a, const solve::ContactConstrai
   return a.collider_a == b.collider_a && a.collider_b == b.collider_b;
 }
 
-// By as much as a contact in lanes (solve::kTooDeep).
+// The same limit as for contact slots (solve::kTooDeep).
 bool is_too_deep(const Collider& a, const Collider& b, double separation) {
   const double size = smaller_size(a, b);
   return size > 0.0 && separation < -0.5 * size;
 }
 
-// A load that is carried is no approach in the impacts that follow.
+// Removes what contacts and joints have already supported of the velocity change from the forces:
+// it is no approach speed in later impacts.
 void remove_carried(Vec3& forced, const Vec3& change) {
   const double against = -dot(forced, change), size = dot(change, change);
   if (against > 0.0) forced += std::min(1.0, against / size) * change;
 }
 
-// How far a contact point may have moved in a step to be the same [contact slops].
+// Maximum displacement of a contact point in a step to count as the same one [contact slops].
 constexpr double kSamePoint = 20.0;
 
 }  // namespace
 
-// This step's record of the pair's manifold of that number.
+// This step's record of the pair's manifold with index part.
 PairRecord& World::Impl::record_of(const ColliderPair& pair, std::uint32_t part) {
   auto it = std::lower_bound(impacts.next_records.begin(), impacts.next_records.end(), pair.key,
                              [part](const PairRecord& r, std::uint64_t k) {
@@ -155,7 +156,7 @@ void World::Impl::find_swept_contacts(bool warm) {
   }
 }
 
-// Takes out of what the forces added what the solve took from it.
+// Removes from the forces' velocity changes what the solve has cancelled.
 void World::Impl::carry(std::uint32_t body, const Vec3& change_w, const Vec3& change_v) {
   remove_carried(impacts.forced[body].w, change_w);
   remove_carried(impacts.forced[body].v, change_v);
@@ -174,7 +175,7 @@ void World::Impl::note_touched_articulations() {
 // At the start of a step all; then what an impact concerns.
 void World::Impl::solve_contacts(double h, double dt, bool first) {
   if (!first) {
-    // An impact: contacts found at the start of the step take part with fresh impulses.
+    // An impact: contacts from the start of the step take part, with zero impulses.
     for (solve::ContactConstraint& c : impacts.discrete_contacts) {
       c.rolling_impulse = {};
       for (int i = 0; i < c.count; ++i) {
@@ -183,7 +184,7 @@ void World::Impl::solve_contacts(double h, double dt, bool first) {
       }
     }
   }
-  if (first && impacts.swept_body_pairs.empty()) {  // no impact will follow that wants them again
+  if (first && impacts.swept_body_pairs.empty()) {  // no impact can follow that would need them
     impacts.contacts.swap(impacts.discrete_contacts);
     impacts.discrete_contacts.clear();
   } else {
@@ -223,7 +224,7 @@ void World::Impl::solve_contacts(double h, double dt, bool first) {
   }
 }
 
-// A pair's manifolds follow one another; together they make its events, at the deepest point.
+// A pair's manifolds are adjacent; they share its events, which are at the deepest point.
 void World::Impl::report_contacts(std::span<const solve::ContactConstraint> solved, double time) {
   for (std::size_t first = 0, end = 0; first < solved.size(); first = end) {
     double impulse = 0.0, approach = 0.0, nearest = collide::kFar;
@@ -264,7 +265,7 @@ void World::Impl::report_sensor(const ColliderPair& pair, const Vec3& point, con
     events.emit(colliders, ContactEvent::Kind::begin, pair, point, normal, 0.0, 0.0, time);
 }
 
-// What carries a resting load at the start of the step is the best guess for the next one.
+// The impulses that support a load at the start of the step are the best warm start of the next.
 void World::Impl::remember_impulses(std::span<const solve::ContactConstraint> solved,
                                     double scale) {
   std::uint32_t part = 0;
@@ -273,13 +274,13 @@ void World::Impl::remember_impulses(std::span<const solve::ContactConstraint> so
     part = k > 0 && of_one_pair(solved[k - 1], c) ? part + 1 : 0;
     PairRecord& record = record_of(make_pair(colliders, c.collider_a, c.collider_b), part);
     record.count = static_cast<std::uint32_t>(c.count);
-    // Beyond the range of numbers a guess is dropped, so that every snapshot can be restored.
+    // Drops impulses outside the range of numbers, so that every snapshot can be restored.
     const Vec3 rolling = c.consistent ? scale * c.rolling_impulse : Vec3{};
     record.rolling = in_range(rolling) ? rolling : Vec3{};
     for (int i = 0; i < c.count; ++i) {
       const solve::ContactPoint& p = c.points[i];
       record.points[i] = {p.feature, 0.0, {}, in_range(p.position) ? p.position : Vec3{}};
-      if (p.bounces || !c.consistent) continue;  // a bounce carries nothing on
+      if (p.bounces || !c.consistent) continue;  // a bounce is no warm start
       record.points[i].normal_impulse = scale * p.normal_impulse;
       record.points[i].friction =
           scale * (p.tangent_impulse[0] * c.tangent[0] + p.tangent_impulse[1] * c.tangent[1]);
@@ -292,7 +293,7 @@ void World::Impl::remember_impulses(std::span<const solve::ContactConstraint> so
   }
 }
 
-// What touched in the last step and does no more. It may meet again later in this one.
+// Ends the pairs that touched in the last step and no longer do. They may begin again in this step.
 void World::Impl::report_ends() {
   for (PairRecord& last : impacts.records) {
     if (!last.touching) continue;

@@ -1,4 +1,4 @@
-// What a picture is told of a world.
+// Passes a world's geometry and state to a DebugDraw.
 #include "vphysics/debug_draw.h"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ DebugCategory category_of(const Body& body, const Collider& collider) {
                                           : DebugCategory::dynamic_shape;
 }
 
-// The axes that a joint turns about or slides along, in its frame.
+// The axes that a joint rotates about or slides along, in its frame.
 struct JointAxes {
   std::array<Vec3, 2> axes{};
   int count = 0;
@@ -37,7 +37,7 @@ struct JointAxes {
     add(j.first);
     add(j.second);
   }
-  void operator()(const auto&) {}  // the others have none, or any
+  void operator()(const auto&) {}  // the others have no fixed axis
 
  private:
   void add(const Vec3& axis) {
@@ -143,7 +143,7 @@ class World::Impl::Drawing {
     }
   }
 
-  // What is between the two frames is a spring, a rod, or a gap.
+  // Draws a line between the two frames: a spring, a rod, or a joint error.
   void draw_joint(const BodyJoint& joint) const {
     const Body &a = world_.bodies[joint.a], &b = world_.bodies[joint.b];
     const bool user = joint.spec.form == JointSpec::Form::user;  // has no frames
@@ -172,9 +172,9 @@ class World::Impl::Drawing {
       draw_.line(at, at + options_.impulse_scale * friction, DebugCategory::friction);
   }
 
-  // The points were found some steps ago: since then they have gone with the body that is not
-  // fixed. The last sub-step's impulses stand for all; bounces and friction are the contact's, and
-  // are shared out evenly.
+  // The points are from some steps ago and are moved with the body that is not fixed. The impulses
+  // of the last sub-step stand for all sub-steps. Restitution impulses and friction are per contact
+  // and are divided evenly.
   template <int P>
   void draw_contact(const Contact& c, const solve::ContactBlock<P>& block) const {
     const int lane = solve::ContactGraph::lane(c.slot);
@@ -203,7 +203,7 @@ class World::Impl::Drawing {
     }
   }
 
-  // Of the stage of impacts; it does not keep normals.
+  // Of the impact stage, which does not store normals.
   void draw_record(const PairRecord& record) const {
     const Collider &a = world_.colliders[record.a], &b = world_.colliders[record.b];
     if (!record.touching || !a.alive || !b.alive || a.sensor || b.sensor) return;

@@ -17,7 +17,7 @@ void Events::touch(const Colliders& colliders, Contact& c, bool touching) {
        0.0, 0.0, 0.0);
 }
 
-// In order of time: only sensors swept between two impacts are found out of it.
+// Keeps the events sorted by time. Only swept sensors between two impacts arrive out of order.
 void Events::add(const ContactEvent& event) {
   auto place = events_.end();
   while (place != events_.begin() && std::prev(place)->time > event.time) --place;

@@ -1,4 +1,4 @@
-// Contact events: who begins or ends to touch, or was hit, in a step.
+// Contact events of a step: begin, end and hit.
 #pragma once
 
 #include <span>
@@ -9,14 +9,14 @@
 
 namespace vp {
 
-// A pair that touched when one of the two was destroyed; the next step reports its end. user_data
-// is not kept: it is the user's and no snapshot carries it.
+// A pair that touched when one of the two was destroyed; the next step reports its end. It does not
+// store user_data, which belongs to the user and is in no snapshot.
 struct DestroyedPair {
   ColliderId a, b;
   bool sensor = false;
 };
 
-// Of a part's contact, at the end of a step: it begins or ends to touch, or was hit.
+// Begin, end or hit of a part's contact at the end of a step.
 struct PartEvent {
   std::uint32_t aggregate, part;
   double approach_speed, impulse;
@@ -25,7 +25,7 @@ struct PartEvent {
 
 class Events {
  public:
-  std::vector<PartEvent> part_events;  // of this step: one event for each whole (touches.cpp)
+  std::vector<PartEvent> part_events;  // of this step: one event for each aggregate (touches.cpp)
   // Pairs that touched when one of the two was destroyed; the next step reports their ends.
   std::vector<DestroyedPair> destroyed;
 
@@ -34,7 +34,7 @@ class Events {
   void reserve(std::size_t count) { events_.reserve(count); }
   void emit(const Colliders& colliders, ContactEvent::Kind kind, const ColliderPair& pair,
             const Vec3& point, const Vec3& normal, double approach, double impulse, double time);
-  // A contact of the sub-stepped solver begins or ends to touch.
+  // A contact of the sub-stepped solver begins or ends.
   void touch(const Colliders& colliders, Contact& contact, bool touching);
   void report_destroyed(const Colliders& colliders);
 

@@ -1,10 +1,10 @@
-// Which contacts there are, and their geometry.
+// Finds the contacts and updates their manifolds.
 //
-//   broad phase    new pairs become contacts
-//   stale ones     those that may have moved by more than a little since they were looked at; of
-//                  these, such as have parted by their enlarged bounds are dropped
-//   narrow phase   for these alone; the rest keep their lanes, whose separations follow the bodies'
-//                  ways (contact_block.h)
+//   broad phase     new pairs become contacts
+//   dirty contacts  those that may have moved by more than a small amount since the last test; the
+//                   ones whose enlarged bounds have separated are removed
+//   narrow phase    tests only these; the others keep their slots, whose separations follow the
+//                   bodies' displacements (contact_block.h)
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -18,21 +18,21 @@
 namespace vp {
 namespace {
 
-// How far two may slide on one another before their contact is computed again, in half extents of
-// the smaller; and how far they may turn [rad]. The separation of a point at an arm r is then off
-// by r turn^2 / 2: a thirtieth of a millimetre for a box of a metre.
+// Limits beyond which a contact is computed again: how far the two may slide on each other, in half
+// extents of the smaller one, and how far they may rotate [rad]. The separation of a point at an
+// arm r then has an error of r angle^2 / 2: a thirtieth of a millimetre for a box of a metre.
 constexpr double kSlide = 0.01;
 constexpr double kRevolution = 0.01;
 constexpr std::size_t kLookGrain = 16;  // contacts: some microseconds
 
-// A ball touches anything convex at one point.
+// A sphere touches a convex shape at one point.
 int points_of(const Contact& c, const Collider& a, const Collider& b) {
   const bool ball = kind_of_part(a.geometry, c.sub_a) == collide::Kind::sphere ||
                     kind_of_part(b.geometry, c.sub_b) == collide::Kind::sphere;
   return ball ? 1 : collide::kMaxPoints;
 }
 
-// The impulses that a contact's lane holds.
+// The impulses in a contact slot.
 struct SlotImpulses {
   std::array<float, collide::kMaxPoints> normal{};
   Vec3 friction, moment;
@@ -51,8 +51,8 @@ SlotImpulses impulses_in(const solve::ContactBlock<P>& block, int lane) {
   return impulses;
 }
 
-// The impulse of the old point of the same features; or, since features change names when edges
-// pass over one another, of the nearest old one within reach.
+// The impulse of the old point with the same feature id; otherwise, since feature ids change when
+// edges pass over each other, of the nearest old point within range.
 float impulse_of(const Contact& contact, const SlotImpulses& impulses,
                  const collide::ManifoldPoint& p, double range) {
   float nearest = 0.0f;
@@ -75,13 +75,14 @@ struct NarrowPhaseInput {
   double slop;
 };
 
-// The narrow phase, for one. What has parts is looked at when it is taken over.
+// The narrow phase of one contact. Contacts with parts are tested in take_over().
 void find_manifold_of(Contact& c, NarrowPhaseResult& found, const NarrowPhaseInput& in) {
   const Collider &a = in.colliders[c.a], &b = in.colliders[c.b];
   const double leeway = kSlide * smaller_size(a, b);
   found.margin_at_rest = c.sensor ? 0.0 : in.slop + leeway;
   found.margin = c.sensor ? 0.0 : found.margin_at_rest + in.approach.of(a, b);
-  // The slower parts of a compound that is the smaller one are looked for within less.
+  // If the smaller one is a compound, its parts are tested within a smaller margin where they are
+  // slower.
   found.by_part = c.has_parts && vicinity_of(in.bodies, a, b).of_compound &&
                   in.approach.pull_of(in.bodies[a.body]) == Velocity{} &&
                   in.approach.pull_of(in.bodies[b.body]) == Velocity{};
@@ -99,8 +100,8 @@ void find_manifold_of(Contact& c, NarrowPhaseResult& found, const NarrowPhaseInp
 
 }  // namespace
 
-// Swept bodies and links meet in the stage of impacts alone. What sleeps is met by what was made or
-// put elsewhere since the last step, and by links.
+// Swept bodies and links collide only in the impact stage. A sleeping body collides with bodies
+// that were created or moved by the user since the last step, and with links.
 bool World::Impl::has_contacts_to_find() const {
   return lists.some_sub_stepped ||
          (lists.some_sleep &&
@@ -134,8 +135,8 @@ void World::Impl::drop_contact(std::uint32_t index) {
   remove_contact(index);
 }
 
-// Contacts of links are looked at elsewhere; all others are dropped when they are looked at and
-// their enlarged bounds have parted, so that until then nothing is gone through for it.
+// Contacts of links are tested elsewhere. All other contacts are removed when they are tested and
+// their enlarged bounds have separated, so this needs no pass over them.
 void World::Impl::drop_separated_link_contacts() {
   if (lists.links.empty()) return;
   for (const std::uint32_t proxy : finder.moved()) {
@@ -167,7 +168,7 @@ void World::Impl::add_contact_pair(std::uint32_t i, std::uint32_t j) {
   contact_store.reset_speculative(contact_store[index], body_set);
 }
 
-// An end is reported; the finder's pair stays.
+// Reports an end; the finder's pair stays.
 void World::Impl::remove_contact(std::uint32_t index) {
   Contact& c = contact_store[index];
   if (c.touching && !c.is_part()) events.touch(colliders, c, false);
@@ -194,11 +195,10 @@ void World::Impl::find_dirty_contacts(double dt) {
                                                     body_rows.data(), step, found.data() + begin);
                       });
   for (std::size_t b = 0; b < blocks.size(); ++b)
-    contact_store.mark_stale_pairs(blocks[b], found[b]);
+    contact_store.mark_dirty_pairs(blocks[b], found[b]);
 }
 
-// In the order of their slots; then those that these have woken. Some at a time, so that what is
-// read of colliders and bodies to find manifolds is in the cache when these are taken over.
+// Tests dirty contacts in the order of their indices, then those of bodies that these have woken.
 void World::Impl::update_dirty_contacts(double dt) {
   narrow.look_again.clear();
   for (bool first = true; first || !contact_store.dirty.empty(); first = false) {
@@ -228,7 +228,7 @@ void World::Impl::list_stale_contacts(double dt, bool first) {
   for (const std::uint32_t index : narrow.dirty) {
     const Contact& c = contact_store[index];
     if (!c.alive || !c.dirty || c.parked) continue;
-    if (c.of_link) continue;  // link_contacts.cpp looks at it
+    if (c.of_link) continue;  // tested in link_contacts.cpp
     if (has_separated(c)) {
       drop_contact(index);
       continue;
@@ -295,7 +295,7 @@ void World::Impl::take_over(const NarrowPhaseResult& found) {
       contact_store.set_clearance(c, found.clearance, body_set);
     }
   }
-  contact_store.park(index, body_set);  // has no points: if nothing awake may change it
+  contact_store.park(index, body_set);  // it has no points: parks it if nothing awake may change it
   if (c.sensor && !c.parked) narrow.look_again.push_back(index);  // in the next step
 }
 
@@ -317,7 +317,7 @@ void World::Impl::assign_slot(std::uint32_t index, const collide::Manifold& m) {
   }
   solve::NewContact n{};
   n.normal = m.normal;
-  // What is fixed has its centre where it makes the arms short.
+  // The world row's centre is put where it makes the arms short.
   n.x_a = reference_point(bodies[a.body]);
   n.x_b = reference_point(bodies[b.body]);
   if (end_a.row == solve::kWorldRow) n.x_a = n.x_b;

@@ -17,7 +17,7 @@ bool floats(const Model& model, int node) {
 std::vector<FloatingTree> FloatingTree::of(const Model& model) {
   const auto& nodes = model.tree().nodes;
   std::vector<FloatingTree> found;
-  std::vector<int> tree_of(nodes.size(), -1);  // the number in found
+  std::vector<int> tree_of(nodes.size(), -1);  // index in found
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const Node<double>& node = nodes[i];
     if (node.parent != kWorld) {
@@ -38,7 +38,7 @@ CompositeBody FloatingTree::composite(const Data& data, const detail::ImpulseFac
   return composite(data, sum.inertia, sum.momentum);
 }
 
-CompositeBody FloatingTree::whole_of_twists(const Data& data,
+CompositeBody FloatingTree::composite_of_twists(const Data& data,
                                             const detail::ImpulseFactor& factor) const {
   const auto sum = factor.momentum_of_twists(nodes_, data);
   return composite(data, sum.inertia, sum.momentum);

@@ -1,11 +1,11 @@
-// What a tree whose root is free does as a whole.
+// Momentum and centre of mass of a tree with a free root.
 //
-// Nothing but gravity and contacts change its momentum, and its centre of mass moves evenly between
-// them. A step of its coordinates keeps both only to the order of the integrator; these put the
-// root right, so that they are kept to rounding: with P the momentum wanted, L that about the
-// centre of mass c, and P', L' those of the velocities at hand,
-//   root's twist += (I_c^-1 (L - L'), (P - P') / m at c),   I_c, m: of the tree with its joints
-//   held
+// Only gravity and contacts change its momentum; between them its centre of mass moves uniformly.
+// The integration of the coordinates conserves both only to its order. Corrections of the root
+// conserve them to rounding. With P the target momentum, L the target angular momentum about the
+// centre of mass c, and P', L' those of the current velocities:
+//   root's twist += (I_c^-1 (L - L'), (P - P') / m at c)
+// I_c, m: inertia and mass of the tree as one rigid body, its joints locked.
 #pragma once
 
 #include <span>
@@ -18,30 +18,30 @@ namespace vp {
 
 struct CompositeBody {
   double mass = 0.0;
-  Vec3 centre;           // of mass, world frame
+  Vec3 centre;           // centre of mass, world frame
   Sym3 central;          // rotational inertia about it, world axes
-  Vec3 linear, angular;  // momentum, the angular one about the centre
-  Vec3 root;             // the root's origin, world frame
+  Vec3 linear, angular;  // momentum; the angular one about the centre
+  Vec3 root;             // the root joint's origin, world frame
 };
 
-// Whether a node of a model is the root of one: its freedom has neither damping nor armature.
+// Whether the node is the root of a floating tree: a free joint without damping and armature.
 bool floats(const Model& model, int node);
 
 class FloatingTree {
  public:
-  // Those of a model.
+  // All floating trees of a model.
   static std::vector<FloatingTree> of(const Model& model);
 
-  // Of the configuration that forward_kinematics() and factor.find_inertias() were given last, and
-  // of the former's velocities, or those that factor.twists() was given last.
+  // For the configuration of the last forward_kinematics() and factor.find_inertias(), with the
+  // velocities of the former, or with those of the last factor.twists().
   CompositeBody composite(const Data& data, const detail::ImpulseFactor& factor) const;
-  CompositeBody whole_of_twists(const Data& data, const detail::ImpulseFactor& factor) const;
-  // Changes the root's velocities in v, of which the tree is as it is now, to those with the
-  // momentum wanted.
+  CompositeBody composite_of_twists(const Data& data, const detail::ImpulseFactor& factor) const;
+  // Changes the root's velocities in v so that the tree has the target momentum. now: the tree at
+  // v.
   void set_momentum(const Model& model, const Data& data, const CompositeBody& now,
                     const CompositeBody& target, std::span<double> v) const;
   void shift(const Model& model, const Vec3& by, std::span<double> q) const;
-  int root() const { return root_; }  // the number of its node
+  int root() const { return root_; }  // index of its node
 
  private:
   CompositeBody composite(const Data& data, const Inertia& J, const dse3& momentum) const;

@@ -1,11 +1,11 @@
-// Forces and torques that a user puts on bodies and joints for the next step.
+// The user's forces and torques on bodies and joints for the next step.
 //
 //   v' = s g + F / m,   w' = I^-1 M      s: the body's gravity_scale
 //
-// F and M, about the centre of mass, are constant in the world frame while the step lasts. They are
-// spread over its sub-steps as gravity is, so that contacts and joints meet them as a load; then
-// they are forgotten. Of a link they are about its origin, and its articulation feels them through
-// its joints (articulation.cpp).
+// F and M, about the centre of mass, are constant in the world frame during the step. Like gravity
+// they are distributed over its sub-steps, so that contacts and joints respond to them as a load.
+// They are cleared at the end of the step. The load of a link is about its origin and acts on its
+// articulation through the joints (articulation_forces.cpp).
 #include <algorithm>
 #include <string>
 
@@ -76,7 +76,7 @@ void World::Impl::clear_loads() {
   for (Articulation& art : articulations) art.clear_loads();
 }
 
-// torque: about the centre of mass, of a link about its origin.
+// torque: about the centre of mass; for a link about its origin.
 Expected<void> World::Impl::add_load(const char* call, BodyId id, const Vec3& force,
                                      const Vec3& torque) {
   Body& body = *find(id);

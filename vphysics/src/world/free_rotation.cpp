@@ -6,17 +6,18 @@
 namespace vp {
 namespace {
 
-// A part turns by no more [rad]: two or three steps of Newton's method, and a nutation within 2%.
+// Maximum rotation of a part [rad]: two or three steps of Newton's method, and a nutation within
+// 2%.
 constexpr double kPart = 0.5;
-// Beyond so many parts, 128 rad in a step, where the body points means nothing any more.
+// Maximum number of parts: beyond 128 rad in a step the orientation is meaningless.
 constexpr int kMaxParts = 256;
 
-// tan(x) / x for |x| <= kPart / 2, by its continued fraction to x^9: to rounding.
+// tan(x) / x for |x| <= kPart / 2: continued fraction to x^9, exact to rounding.
 double half_tangent_ratio(double xx) {
   return (945.0 - xx * (105.0 - xx)) / (945.0 - xx * (420.0 - 15.0 * xx));
 }
 
-// m of  I (m - w) + b m x I m = 0.
+// Solves  I (m - w) + b m x I m = 0  for m.
 Vec3 midpoint(const Sym3& I, const Vec3& w, double b) {
   constexpr double kEnough = 1e-12;  // relative to w
   constexpr int kMax = 8;
@@ -33,14 +34,14 @@ Vec3 midpoint(const Sym3& I, const Vec3& w, double b) {
     const Vec3 step{scale * dot(f, cross(J.cy, J.cz)), scale * dot(J.cx, cross(f, J.cz)),
                     scale * dot(J.cx, cross(J.cy, f))};
     m += step;
-    // What is left is  b step x I step.
+    // The residual is  b step x I step.
     const double left = b * dot(step, step);
     if (left * left <= enough) break;
   }
   return m;
 }
 
-// v seen from a frame that has turned by Cayley's map of c.
+// v in a frame that has rotated by Cayley's map of c.
 Vec3 rotated_back(const Vec3& c, const Vec3& v) {
   const Vec3 u = cross(v, c);
   return v + (2.0 / (1.0 + dot(c, c))) * (u + cross(u, c));
@@ -63,7 +64,7 @@ FreeRotation free_rotation(const Sym3& I, const Sym3& inverse, const Vec3& start
       return out;
     }
     if (!(ww > 0.0)) break;
-    // An inertia that no matter has may let w change faster than it turns.
+    // With an inertia that no matter can have, w may change faster than the body rotates.
     const Vec3 change = inverse * cross(L, w);
     const double fastest = std::sqrt(std::max(ww, dot(change, change) / ww));
     const double s = left * fastest > kPart ? kPart / fastest : left;
@@ -85,7 +86,7 @@ Vec3 mean_rotation(const FreeRotation& rotation) {
   const Vec3 shorter = Log(rotation.q);
   const double angle = norm(shorter), rotation_sum = norm(rotation.rotation_sum);
   if (rotation_sum <= kPi) return shorter;
-  // With as many whole turns, either way about, as bring it nearest to the way.
+  // Adds the number of whole revolutions, of either sign, that comes closest to the rotation sum.
   const Vec3 axis =
       angle > 1e-9 ? (1.0 / angle) * shorter : (1.0 / rotation_sum) * rotation.rotation_sum;
   const double revolutions =

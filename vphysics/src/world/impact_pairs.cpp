@@ -6,11 +6,12 @@
 namespace vp {
 namespace {
 
-// How much larger than what a body may reach its kept bounds are: contact slops, for who is pushed
-// a little, and ways of a step, so that they hold for some steps. Each candidate costs a comparison
-// in every round.
+// Margin of the cached bounds beyond a body's swept bounds, so that they hold for some steps:
+// contact slops, for bodies that move a little, and displacements of a step. Each candidate costs a
+// comparison in every iteration.
 constexpr double kCandidateSlops = 10.0, kCandidateSteps = 2.0;
-// So many look for others one by one, each among all bodies; more, and all are sorted.
+// Up to this many, plus a fraction of all bodies, each searches among all bodies on its own. If
+// more bodies have left their bounds, one broad phase over all bodies finds all pairs.
 constexpr std::size_t kFewLeavers = 6;
 
 bool collides_discretely(const Body& body) {
@@ -110,7 +111,8 @@ void SweptBodyPairs::find_of(const Bodies& bodies, std::uint32_t index) {
   }
 }
 
-// Who has left its kept bounds looks for others again, alone or, if many have, with all.
+// Bodies that left their cached bounds search again: one by one, or, if they are many, all
+// together.
 std::span<const collide::IndexPair> SweptBodyPairs::find(const BodyMotions& all,
                                                          std::span<const std::uint32_t> moving,
                                                          double slop, double h) {
@@ -146,7 +148,7 @@ void DiscreteBodyPairs::reserve(std::size_t bodies, std::size_t pairs) {
   movable_.resize(bodies);
 }
 
-// Bounds of what may be in a pair, the others' empty; false if there are no two.
+// Bounds of bodies that may be in a pair, empty for the others; false if there are fewer than two.
 bool DiscreteBodyPairs::find_bounds(const BodyMotions& all) {
   if ((categories_ & masks_) == 0) return false;
   const Bodies& bodies = all.bodies;

@@ -1,5 +1,5 @@
-// Which bodies may meet in the stage of impacts: pairs of which one is swept, and the others. When
-// the colliders of swept pairs meet.
+// Broad phase of the impact stage: pairs of which one is swept, and discrete pairs. Times of impact
+// of the colliders in swept pairs.
 #pragma once
 
 #include <cstdint>
@@ -14,30 +14,32 @@
 
 namespace vp {
 
-// No point of the body moves farther than this within h.
+// Upper bound of the displacement of any point of the body within h.
 double travel(const Body& body, const collide::Motion& motion, double h);
-// The same of the body's own bounds: where they hold however it turns, turning does not count.
+// The same for the body's bounds. If they hold for all its rotations (around_line), rotation does
+// not count.
 double travel_of_bounds(const Body& body, const collide::Motion& motion, double h);
 
-// Of each body its motion for the rest of the step, and bounds of all that it passes.
+// Of each body: its motion for the rest of the step, and its swept bounds for it.
 struct BodyMotions {
   const Bodies& bodies;
   std::span<const collide::Motion> motions;
   std::span<const collide::Bounds> bounds;
 };
 
-// Pairs of bodies, one of them continuous, that may meet within the step as long as the bounds of
-// both are within the kept ones; what never meets by its filters is left out. They outlast steps,
-// but decide nothing: what is near enough is found among them again in every round.
+// Pairs of bodies, one of them continuous, that may collide within the step while the bounds of
+// both stay within their cached bounds. Pairs that filters exclude are left out. The pairs are kept
+// from step to step but do not affect results: each iteration tests them again for those close
+// enough.
 class SweptBodyPairs {
  public:
-  // Bodies or colliders have come or gone, or what is fixed has been put elsewhere: bounds of what
-  // is fixed are as old.
+  // Bodies or colliders were added or removed, or a fixed body was moved: cached bounds of fixed
+  // bodies are not updated otherwise.
   void invalidate() { dirty_ = true; }
   bool dirty() const { return dirty_; }
   void reserve(std::size_t bodies, std::size_t pairs);
 
-  // moving: all whose bounds may have changed.
+  // moving: all bodies whose bounds may have changed, ascending.
   std::span<const collide::IndexPair> find(const BodyMotions& all,
                                            std::span<const std::uint32_t> moving, double slop,
                                            double h);
@@ -69,15 +71,15 @@ class SweptBodyPairs {
   std::vector<Edge> edges_;
   std::vector<std::uint32_t> first_edges_;  // of each body
   std::vector<collide::Bounds> cached_bounds_;
-  std::vector<std::uint8_t> sweeps_;  // of each body: it is continuous
+  std::vector<std::uint8_t> sweeps_;  // of each body: whether it is continuous
   collide::BroadPhase broad_phase_;
-  std::vector<std::uint32_t> leavers_;  // of their kept bounds; scratch
+  std::vector<std::uint32_t> leavers_;  // bodies that left their cached bounds; scratch
 };
 
-// Pairs in which one is a link, or carries a sensor and is continuous.
+// Pairs with a link, or with a continuous body that has a sensor.
 class DiscreteBodyPairs {
  public:
-  // Bodies or colliders have come or gone.
+  // Bodies or colliders were added or removed.
   void list_filters(const Bodies& bodies);
   void reserve(std::size_t bodies, std::size_t pairs);
   std::span<const collide::IndexPair> find(const BodyMotions& all);
@@ -85,14 +87,14 @@ class DiscreteBodyPairs {
  private:
   bool find_bounds(const BodyMotions& all);
 
-  std::uint32_t categories_ = 0, masks_ = 0;  // union over all that may be in a pair
+  std::uint32_t categories_ = 0, masks_ = 0;  // union over all bodies that may be in a pair
   collide::BroadPhase broad_phase_;
   std::vector<collide::Bounds> bounds_;
   std::vector<std::uint8_t> movable_;
   std::vector<collide::IndexPair> pairs_;
 };
 
-// A pair in which the one is swept against the other; separation is that of now.
+// A pair in which one collider is swept against the other. separation: the current one.
 struct SweptPair {
   ColliderPair pair;
   bool swept_is_a;
@@ -108,10 +110,9 @@ struct ImpactTimes {
   collide::PartsScratch& parts;
 
   double tolerance() const { return 0.05 * slop; }
-  // Until the separation comes down to target; negative: not within h.
+  // Time until the separation decreases to target; negative: not within h.
   double until(const SweptPair& pair, double target, double h) const;
-  // Of shapes with parts it is known only as far as they touch: what is farther apart is as far as
-  // the margin.
+  // Shapes with parts: exact only up to the contact slop; larger separations return margin.
   double separation(const Collider& moving, const Collider& other, double margin,
                     collide::ManifoldScratch& scratch,
                     std::vector<collide::SubManifold>& manifolds) const;

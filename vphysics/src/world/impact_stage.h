@@ -1,5 +1,5 @@
-// What the stage of impacts works on: continuous bodies and links, in the order of time (step.cpp,
-// contacts.cpp), and links in the sub-steps (link_contacts.cpp).
+// Data of the impact stage, which handles continuous bodies and links in the order of time
+// (step.cpp, contacts.cpp), and of links in the sub-steps (link_contacts.cpp).
 #pragma once
 
 #include <cstdint>
@@ -19,18 +19,18 @@ struct PairPoint {
   Vec3 position;  // world frame
 };
 
-// What is remembered of a pair of colliders from step to step.
+// State of a pair of colliders that is kept from step to step.
 struct PairRecord {
   std::uint64_t key = 0;  // serials of both
   std::uint32_t a = 0, b = 0;
-  std::uint32_t part = 0;  // number of the manifold, of pairs with several
+  std::uint32_t part = 0;  // index of the manifold, for pairs with several
   std::uint32_t count = 0;
-  bool touching = false;  // the pair: only of part 0
+  bool touching = false;  // the pair touches; only of part 0
   Vec3 rolling;
   PairPoint points[collide::kMaxPoints]{};
 };
 
-// A point of the impacts of a step, or of a link in its sub-steps.
+// A contact point of an impact of the step, or of a link in its sub-steps.
 struct StepContact {
   ColliderId a, b;
   Vec3 point, normal;  // from a to b
@@ -42,32 +42,34 @@ struct StepContact {
 enum class Concern : std::uint8_t { none, listed, searched };
 
 struct ImpactStage {
-  // State, sorted by key and part; next: of the step that is going on.
+  // State, sorted by key and part; next_records: of the current step.
   std::vector<PairRecord> records, next_records;
-  // State: of which step the impulses of records and of articulations' joints are, 0: none yet [s].
+  // State: length of the step that the impulses of records and of articulations' joints are from
+  // [s]; 0: none yet.
   double step = 0.0;
-  // What the stage goes through, ascending: all bodies that are not fixed, and links with
-  // colliders, but those of remote articulations (remote.cpp).
+  // The bodies that the stage processes, ascending: all bodies that are not fixed, and links with
+  // colliders except those of remote articulations (remote.cpp).
   std::vector<std::uint32_t> body_list;
-  bool bodies_are_dirty = true;  // some of these have changed
-  // Bodies have come or gone: what drift and forced have of others than those is not 0.
+  bool bodies_are_dirty = true;  // some bodies in it have changed
+  // Bodies were added or removed: drift and forced of bodies outside the list may not be 0.
   bool scratch_is_dirty = true;
-  std::vector<std::uint8_t> remote_bodies;  // of each body: a link of a remote articulation
+  std::vector<std::uint8_t>
+      remote_bodies;  // of each body: whether it is a link of a remote articulation
   SweptBodyPairs swept_body_pairs;
   DiscreteBodyPairs discrete_body_pairs;
 
   // --- of each body
   std::vector<SE3> start_poses;
   std::vector<collide::Motion> motions;  // for the rest of the step
-  std::vector<collide::Bounds> bounds;   // of all that it passes
+  std::vector<collide::Bounds> bounds;   // swept bounds for the rest of the step
   std::vector<Velocity> drift;           // mean velocity over the step less that at its end
-  std::vector<Velocity> forced;          // what the step's forces added
-  std::vector<std::uint8_t> stopped;     // stands for the rest of the step
-  std::vector<std::uint8_t> in_contact;  // of the last solve
-  std::vector<std::uint8_t> as_swept;    // goes to its next impact at the twist it is swept at
-  // Of a free body: when in the step it is where its pose says. Links are at the last impact.
+  std::vector<Velocity> forced;          // velocity change from the step's forces
+  std::vector<std::uint8_t> stopped;     // at rest for the rest of the step
+  std::vector<std::uint8_t> in_contact;  // in a swept contact of the last solve
+  std::vector<std::uint8_t> as_swept;    // moves to its next impact at the twist of its sweep
+  // Of a free body: the time within the step of its pose. Links are at the last impact.
   std::vector<double> times;
-  std::vector<std::uint8_t> brought;  // has gone some way at its motion
+  std::vector<std::uint8_t> brought;  // has advanced within the step
   std::vector<Concern> concerns;
   std::vector<double> first_impacts;  // of the pairs that are being queued [s]
   std::vector<solve::SolverBody> solver_bodies;
@@ -86,8 +88,8 @@ struct ImpactStage {
 
   // --- of a step
   ImpactQueue queue;
-  std::vector<std::uint32_t> row_joints;  // that are alive (row_joints.h)
-  std::vector<SE3> next_poses;            // of each body: of links that they join
+  std::vector<std::uint32_t> row_joints;  // alive joints in rows (row_joints.h)
+  std::vector<SE3> next_poses;            // of each body: next pose, of links in these joints
 
   // --- of the sub-steps
   std::vector<solve::ContactConstraint> link_contacts;

@@ -1,7 +1,7 @@
 // What a world owns: stores, the parts that work on them, and the order of the step (step.cpp).
 //
 // A part gets the data that it works on with each call and does not know the world. The methods
-// here are what joins the parts: waking, which touches most of them, and the public calls' helpers.
+// here connect the parts, such as waking, which touches most of them, and help the public calls.
 #pragma once
 
 #include <array>
@@ -45,21 +45,22 @@ struct RecordedCall;
 struct ContactData;  // contact_state.h
 struct Query;
 struct QueryScratch {
-  std::vector<std::uint32_t> strays;  // colliders out of their proxies' bounds
+  std::vector<std::uint32_t> strays;  // colliders outside their proxies' bounds
   collide::CastScratch cast;
 };
 
-// What sub-steps remember from step to step.
+// State of the sub-steps that is kept from step to step.
 struct SubStepState {
-  double length = 0.0;            // of that whose impulses are in lanes and joints, 0: none yet [s]
-  double last_step_length = 0.0;  // that the push is made for [s]
-  bool position_error = false;    // the last step ended with one, of contacts or of joints
+  double length = 0.0;  // of the sub-step that the impulses in contact slots and joints are from,
+                        // 0: none yet [s]
+  double last_step_length = 0.0;  // sub-step length that scales the bias velocity [s]
+  bool position_error = false;    // the last step ended with one, of contacts or joints
 };
 
 struct World::Impl {
   WorldDesc given_desc;
-  WorldDesc desc;           // the same, its lengths and speeds in metres
-  double speed_unit = 1.0;  // what a speed of things of a metre counts
+  WorldDesc desc;           // the same, in metres and metres per second
+  double speed_unit = 1.0;  // factor of speeds, sqrt(length_unit)
   Workers workers;
   std::shared_ptr<StageObserver> observer;  // or null
   std::shared_ptr<Recorder> recorder;       // or null
@@ -73,9 +74,8 @@ struct World::Impl {
   solve::LargeVector<solve::BodyRow> body_rows;  // 0: the world; i + 1: body i
   const BodySet body_set{bodies, colliders, body_rows};
   ContactStore contact_store;
-  std::uint32_t next_serial = 1;  // of colliders
-  std::uint64_t topology_hash =
-      0;  // digest of all that was created and destroyed (topology_hash.h)
+  std::uint32_t next_serial = 1;    // of colliders
+  std::uint64_t topology_hash = 0;  // digest of all creations and destructions (topology_hash.h)
 
   // --- parts
   BodyLoads loads;
@@ -88,22 +88,22 @@ struct World::Impl {
   bool ready_for_queries = false;  // nothing has moved since find_strays()
   QueryScratch queries;
   struct Incoming;
-  std::shared_ptr<Incoming> incoming;  // of restore(); none before the first
+  std::shared_ptr<Incoming> incoming;  // of restore(); null before the first
 
   // --- of the last step
   Events events;
   StepStatus status;
   StepCounters counters;
   int sub_steps_taken = 0;
-  std::vector<StepContact> step_contacts;  // but those of lanes
+  std::vector<StepContact> step_contacts;  // except those in contact slots
 
-  // --- of the step that is going on
-  double dt_now = 0.0;  // 0: none is
+  // --- of the current step
+  double dt_now = 0.0;  // 0: no step is running
   bool finds_contacts = false;
   bool position_error_now = false;  // of contacts or joints, so far
   NarrowPhaseScratch narrow;
   SubStepScratch sub_step;
-  std::vector<std::uint32_t> lost_bodies;  // that have left the range of numbers in the sub-steps
+  std::vector<std::uint32_t> lost_bodies;  // bodies that left the range of numbers in the sub-steps
 
   // recorder.cpp; precondition: there is a recorder.
   void log(const RecordedCall& call);
@@ -117,7 +117,7 @@ struct World::Impl {
   BodyJoint* find(JointId id) { return joints.find(id); }
   Articulation* find(ArticulationId id);
   const Articulation* find(ArticulationId id) const;
-  // Of a link, too; of what is not dynamic its origin.
+  // Links too; the origin of a body that is not dynamic.
   Vec3 centre_of_mass(const Body& body);
   void note_collider(std::uint32_t index);
   void drop_contacts(std::uint32_t collider);
@@ -146,7 +146,7 @@ struct World::Impl {
 
   // articulations.cpp
   void reserve_link_rows();
-  void follow(Articulation& articulation);  // remote no longer
+  void follow(Articulation& articulation);  // ends its remote state
   void follow_poses(const Articulation& articulation);
   void follow_velocities(const Articulation& articulation, bool carrying);
   void integrate_articulations(double dt);

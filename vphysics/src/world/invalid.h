@@ -1,4 +1,4 @@
-// What refused calls return.
+// Errors that rejected calls return.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@ inline tl::unexpected<Error> invalid(Errc code, std::string message) {
 inline tl::unexpected<Error> invalid(std::string message) {
   return invalid(Errc::invalid_argument, std::move(message));
 }
-// By the call, and what of its arguments it is: "the body", "body a".
+// call: the public call; what: the argument, such as "the body" or "body a".
 inline tl::unexpected<Error> unknown_id(const char* call, const char* what) {
   return invalid(std::string(call) + ": " + what +
                  " does not exist (any more); keep the id that its creation returned");
