@@ -27,8 +27,8 @@ struct QueryHit {
   ColliderId collider;
   BodyId body;
   std::uint64_t user_data;
-  std::uint32_t
-      part;  // index of a compound's part, or of a triangle of a mesh or a height field; else 0
+  // Index of a compound's part, or of a triangle of a mesh or a height field; else 0.
+  std::uint32_t part;
 };
 
 struct RayHit : QueryHit {
