@@ -104,10 +104,11 @@ struct SixDof {
   AxisDesc axes[6];
 };
 
-// Couples the rotations of both bodies about their z axes, or their translations along them: q_b =
-// ratio q_a + constant. The bearings must not rotate: both z axes are assumed to be fixed in the
-// world. Meshing wheels have ratio -r_a / r_b. A rack on a pinion of radius r has ratio +-r
-// [m/rad]. Its coordinate is q_b - ratio q_a, initially 0.
+// Couples the rotations of both bodies about their z axes, or their translations along them:
+//   q_b = ratio q_a + constant.
+// The bearings must not rotate: both z axes are assumed to be fixed in the world. Meshing wheels
+// have ratio -r_a / r_b. A rack on a pinion of radius r has ratio +-r [m/rad]. Its coordinate is
+// q_b - ratio q_a, initially 0.
 struct Gear {
   double ratio = -1.0;
   bool slides_a = false, slides_b = false;

@@ -80,8 +80,8 @@ double gear_side(const BodyJoint& joint, const SE3& now, int side) {
   return counted_on(joint.rotated[side], gear_angle(joint.start[side], now, T));
 }
 
-// The angle to the cone, as a row that increases inwards: (1 - f) / |grad f| with f^2 = (x /
-// cone_x)^2 + (y / cone_y)^2.
+// The angle to the cone, as a row that increases inwards:
+//   (1 - f) / |grad f|  with  f^2 = (x / cone_x)^2 + (y / cone_y)^2.
 double angle_to_cone(const JointSpec& spec, const Swing& swing, Vec3& axis) {
   const double ix = 1.0 / spec.swing_x, iy = 1.0 / spec.swing_y;
   const double sx = swing.x * ix, sy = swing.y * iy;

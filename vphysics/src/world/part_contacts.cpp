@@ -21,7 +21,7 @@ void put_deepest_first(collide::Manifold& m) {
   std::swap(m.points[0], *std::min_element(m.points, m.points + m.count, deeper));
 }
 
-// Claims one of the remaining old parts, the most similar one: by the sub-shapes, the number of
+// Claims the most similar of the remaining old parts: by the sub-shapes, the number of
 // common features and the normal. kNone if there is none.
 std::uint32_t claim_part(const ContactStore& contacts, const Colliders& colliders,
                          std::vector<std::uint32_t>& old_parts, const collide::SubManifold& found) {

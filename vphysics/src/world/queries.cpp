@@ -182,7 +182,7 @@ struct Query {
     return {colliders.id(index), bodies.id(c.body), c.user_data, part};
   }
 
-  // Whether a hit at x comes before another at y. Of equal ones the older collider comes first.
+  // Whether a hit at x comes before another at y. Ties: the older collider first.
   bool comes_before(double x, const QueryHit& hit, double y, const QueryHit& other) const {
     return x < y || (x == y && colliders[hit.collider.index - 1].serial <
                                    colliders[other.collider.index - 1].serial);

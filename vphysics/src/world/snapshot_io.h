@@ -1,4 +1,4 @@
-// Snapshots as 64-bit words: writing, and reading with a check of every value.
+// Snapshots as a sequence of u64: writing, and reading with a check of every value.
 #pragma once
 
 #include <bit>
@@ -34,7 +34,7 @@ void put_two(Sink& sink, float high, float low) {
   put_two(sink, std::bit_cast<std::uint32_t>(high), std::bit_cast<std::uint32_t>(low));
 }
 
-// Reads words and digests them. Fails permanently if the bytes end or a value is out of range.
+// Reads u64 and digests them. Fails permanently if the bytes end or a value is out of range.
 class Reader {
  public:
   explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
@@ -96,7 +96,7 @@ class Reader {
     check(w < limit);
     return ok_ ? static_cast<std::uint32_t>(w) : 0;
   }
-  // Number of the items that follow, of at least u64s_each words each: no more than the bytes hold.
+  // Number of the items that follow, of at least u64s_each u64 each: no more than the bytes hold.
   std::size_t count(std::size_t u64s_each) {
     const std::uint64_t n = u64();
     check(n <= bytes_.size() / (u64s_each * sizeof(std::uint64_t)));
@@ -105,7 +105,7 @@ class Reader {
   void check(bool condition) { ok_ = ok_ && condition; }
   bool ok() const { return ok_; }
   bool at_end() const { return bytes_.empty(); }
-  // Digest of all words so far, as in a snapshot's last word.
+  // Digest of all u64 so far, as in a snapshot's last u64.
   std::uint64_t digest() const { return digest_; }
 
  private:
