@@ -22,8 +22,8 @@ class Compound {
  public:
   // Valid parts: spheres, boxes, capsules, cylinders, cones, convex hulls, and compounds, which are
   // replaced by their parts. Errors: no parts; more than 2^16 parts, those of compounds included;
-  // half-spaces, meshes and height fields, which cannot move (give each its own collider); sizes
-  // and poses that are invalid for a collider.
+  // half-spaces, meshes and height fields (give each its own collider); sizes and poses that are
+  // invalid for a collider.
   [[nodiscard]] static Expected<Compound> of(std::span<const CompoundPart> parts);
 
   // Precondition of all functions below: not moved from. The parts in the order given, with

@@ -33,7 +33,7 @@ class ConvexHull {
  public:
   struct Face {
     Vec3 normal;    // unit, outward
-    double offset;  // max of all vertices along the normal [m]
+    double offset;  // no vertex is farther along the normal [m]
     // Vertex indices, counter-clockwise seen from outside, starting with the lowest. The vertices
     // lie in the face's plane to within the tolerance.
     std::span<const std::uint16_t> vertices;

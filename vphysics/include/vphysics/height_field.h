@@ -25,8 +25,9 @@ struct HeightGrid {
 
 // Sample (i, j) is at (i spacing_x, j spacing_y, height). Each cell has two triangles, split by the
 // diagonal from (i, j) to (i + 1, j + 1). The field is solid below, as a one-sided mesh
-// (triangle_mesh.h). Only for colliders of fixed bodies. A handle: copies share the same constant
-// data. Any number of colliders, worlds and threads may use it, each with its own scale.
+// (triangle_mesh.h). Only for colliders of fixed and kinematic bodies. A handle: copies share the
+// same constant data. Any number of colliders, worlds and threads may use it, each with its own
+// scale.
 class HeightField {
  public:
   // Errors: fewer than 2 or more than 2^15 columns or rows; a number of heights or holes that does

@@ -46,7 +46,7 @@ struct Cone {
 
 // ConvexHull: vphysics/convex_hull.h. Compound, several shapes as one: vphysics/compound.h.
 // TriangleMesh, vphysics/triangle_mesh.h, and HeightField, vphysics/height_field.h, are only for
-// colliders of fixed bodies, like the half-space.
+// colliders of fixed and kinematic bodies.
 using Shape = std::variant<Sphere, Box, Capsule, HalfSpace, Cylinder, Cone, ConvexHull,
                            TriangleMesh, HeightField, Compound>;
 

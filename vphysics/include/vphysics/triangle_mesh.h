@@ -1,4 +1,4 @@
-// Triangle meshes, for colliders of fixed bodies. Lengths in metres.
+// Triangle meshes, for colliders of fixed and kinematic bodies. Lengths in metres.
 #pragma once
 
 #include <array>

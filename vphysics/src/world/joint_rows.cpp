@@ -43,7 +43,7 @@ struct Swing {
     const double ratio = sine > 1e-9 ? angle / sine : 1.0;
     x = -ratio * z_b.y;
     y = ratio * z_b.x;
-    // (1 - s cot(s)) / s^2
+    // (1 - angle cot(angle)) / angle^2
     const double curve = angle < kSeries ? 1.0 / 3.0 + s * (1.0 / 45.0 + s * (2.0 / 945.0))
                                          : (1.0 - ratio * z_b.z) / s;
     const Vec3 perpendicular{y, -x, 0.0};
