@@ -1,14 +1,14 @@
-// VP_ASSERT(condition): a caller's mistake, caught where it is made. On unless NDEBUG is defined
-// and VP_ASSERTIONS is not (Debug and RelWithDebInfo of this project's build). What happens then
-// can be replaced: a test counts, an editor shows; the default aborts.
+// VP_ASSERT(condition) checks a precondition at the call that breaks it. It is on if VP_ASSERTIONS
+// is defined or NDEBUG is not: in Debug and RelWithDebInfo of this project's build. The handler can
+// be replaced, for instance by one that counts failures in a test. The default handler aborts.
 #pragma once
 
 namespace vp {
 
 using AssertHandler = void (*)(const char* condition, const char* file, int line);
 
-// Replaces the handler and returns the one before; null restores the default. Not thread safe: set
-// it before the first world is made. A handler that returns lets the call go on.
+// Replaces the handler and returns the previous one. Null restores the default. Not thread safe:
+// set it before the first world is created. If the handler returns, the call continues.
 AssertHandler set_assert_handler(AssertHandler handler);
 
 namespace detail {

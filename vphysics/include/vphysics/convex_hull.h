@@ -15,44 +15,45 @@ struct HullData;
 }
 
 struct HullOptions {
-  // At most this many corners are kept, 4 to 256: of more, those that stick out the farthest. What
-  // is cut off is less than the next one would stick out. A contact's cost grows with the corners.
+  // Maximum number of vertices, 4 to 256. If there are more, the hull keeps those that protrude the
+  // farthest. What it cuts off is thinner than the next vertex would protrude. The cost of a
+  // contact grows with the number of vertices.
   int max_vertices = 64;
-  // What is flatter than this is smoothed away: a corner or an edge that sticks out less becomes
-  // part of one face. Share of the points' largest extent, in [0, 0.01]; never more than a
-  // hundredth of the hull's thickness.
+  // A vertex or an edge that protrudes by less than this becomes part of one face. Fraction of the
+  // points' largest extent, in [0, 0.01]. The engine limits it to a hundredth of the hull's
+  // thickness.
   double tolerance = 1e-5;
 };
 
-// The smallest convex body that holds a set of points. A handle: copies share the same constant
-// data, which may be used by any number of colliders, worlds and threads.
+// The convex hull of a set of points. A handle: copies share the same constant data. Any number of
+// colliders, worlds and threads may use it.
 //
-// The same points and options give the same hull bit for bit, whatever the points' order.
+// The same points and options give the same hull bit for bit, in any order of the points.
 class ConvexHull {
  public:
   struct Face {
     Vec3 normal;    // unit, outward
-    double offset;  // no vertex of the hull lies farther along the normal [m]
-    // Corners, counter-clockwise seen from outside, beginning with the lowest index. They lie in
-    // the face's plane to within the tolerance.
+    double offset;  // no vertex is farther along the normal [m]
+    // Vertex indices, counter-clockwise seen from outside, starting with the lowest. The vertices
+    // lie in the face's plane to within the tolerance.
     std::span<const std::uint16_t> vertices;
   };
 
-  // Any points do: inside, duplicate, coplanar, collinear or nearly so ones are sorted out
-  // exactly, in integers. Refused: points that are not finite or beyond 1e9 m, an extent below 1e-6
-  // m, and what has no volume: fewer than four different points, points on a line, points in a
-  // plane, or a body thinner than a millionth of its extent.
+  // Interior, duplicate, coplanar, collinear and nearly degenerate points are valid: exact integer
+  // arithmetic handles them. Errors: points that are not finite or beyond 1e9 m; an extent below
+  // 1e-6 m; a set without volume: fewer than four distinct points, collinear points, coplanar
+  // points, or a body thinner than a millionth of its extent.
   [[nodiscard]] static Expected<ConvexHull> of(std::span<const Vec3> points,
                                                const HullOptions& options = {});
 
-  // Precondition of all below: not moved from.
-  std::span<const Vec3> vertices() const;  // among the points given, in lexicographic order
+  // Precondition of all functions below: not moved from.
+  std::span<const Vec3> vertices() const;  // a subset of the given points, in lexicographic order
   std::span<const Face> faces() const;
   double volume() const;                  // [m^3], > 0
   Vec3 centre_of_mass() const;            // of uniform density
   Inertia inertia(double density) const;  // [kg/m^3]; about the origin of the points' frame
 
-  // For the engine; null if moved from.
+  // For the engine. Null if moved from.
   const std::shared_ptr<const collide::HullData>& data() const { return data_; }
 
  private:

@@ -1,4 +1,5 @@
-// What a refused call returns. The engine throws nothing, prints nothing, exits never.
+// The error type that a failed call returns. The engine throws nothing, prints nothing, exits
+// never.
 #pragma once
 
 #include <cstdint>
@@ -9,10 +10,10 @@ namespace vp {
 
 enum class Errc : std::uint8_t {
   invalid_argument,  // NaN, infinity, negative size, an id that no longer exists
-  unsupported,       // well formed, but not within what this version can simulate
-  singular,          // the equations have no unique solution, as of a joint that moves no mass
-  not_converged,     // an iteration or a step's control reached no answer within its limits
-  bad_data,          // bytes handed to restore() are not a snapshot of this world's version
+  unsupported,       // well formed, but this version cannot simulate it
+  singular,       // the equations have no unique solution, for instance a joint that moves no mass
+  not_converged,  // an iteration or a step size control did not converge within its limits
+  bad_data,       // bytes passed to restore() are not a snapshot of this world's version
 };
 
 struct Error {

@@ -1,4 +1,4 @@
-// Ground given by its height over a grid. Lengths in metres.
+// Terrain: heights over a regular grid. Lengths in metres.
 #pragma once
 
 #include <cstdint>
@@ -15,39 +15,40 @@ struct HeightData;
 }
 
 struct HeightGrid {
-  std::uint32_t columns = 0, rows = 0;  // of samples along x and along y, each >= 2
+  std::uint32_t columns = 0, rows = 0;  // number of samples along x and along y, each >= 2
   double spacing_x = 1.0, spacing_y = 1.0;
-  std::span<const double> heights;  // of sample (i, j) at [j * columns + i], in metres
-  // Of the cell between the samples (i, j) and (i + 1, j + 1) at [j * (columns - 1) + i]: other
-  // than 0, there is a hole. Empty: no holes.
+  std::span<const double> heights;  // height of sample (i, j) at [j * columns + i], in metres
+  // The cell between samples (i, j) and (i + 1, j + 1) is at [j * (columns - 1) + i]. A value other
+  // than 0 is a hole. Empty: no holes.
   std::span<const std::uint8_t> holes;
 };
 
-// Sample (i, j) lies at (i spacing_x, j spacing_y, height). Each cell is two triangles, parted by
-// the diagonal from (i, j) to (i + 1, j + 1). Solid below, as a one-sided mesh (triangle_mesh.h),
-// and for what does not move. A handle: copies share the same constant data, which may be used by
-// any number of colliders, worlds and threads, each with its own scale.
+// Sample (i, j) is at (i spacing_x, j spacing_y, height). Each cell has two triangles, split by the
+// diagonal from (i, j) to (i + 1, j + 1). The field is solid below, as a one-sided mesh
+// (triangle_mesh.h). Only for colliders of fixed and kinematic bodies. A handle: copies share the
+// same constant data. Any number of colliders, worlds and threads may use it, each with its own
+// scale.
 class HeightField {
  public:
-  // Refused: fewer than 2 or more than 2^15 columns or rows, another number of heights or holes
-  // than the grid has, spacings that are not in [1e-6, 1e6] m, heights that are not finite or
-  // beyond 1e9 m.
+  // Errors: fewer than 2 or more than 2^15 columns or rows; a number of heights or holes that does
+  // not match the grid; spacings outside [1e-6, 1e6] m; heights that are not finite or beyond 1e9
+  // m.
   [[nodiscard]] static Expected<HeightField> of(const HeightGrid& grid);
 
-  // The same data, stretched along the axes of the field's frame; factors multiply those that it
-  // has already. Refused: factors, or products of them, that are not in [1e-6, 1e6].
+  // The same data, scaled along the axes of the field's frame. The factors multiply the present
+  // scale. Errors: factors, or products of them, outside [1e-6, 1e6].
   [[nodiscard]] Expected<HeightField> scaled(const Vec3& factors) const;
 
-  // Precondition of all below: not moved from.
+  // Precondition of all functions below: not moved from.
   const Vec3& scale() const { return scale_; }
   std::uint32_t columns() const;
   std::uint32_t rows() const;
   Vec3 sample(std::uint32_t i, std::uint32_t j) const;   // scaled; i < columns, j < rows
-  bool is_hole(std::uint32_t i, std::uint32_t j) const;  // of a cell
-  // A contact's sub-shape is 2 (j (columns - 1) + i) of the triangle of cell (i, j) below the
-  // diagonal, one more of that above it.
+  bool is_hole(std::uint32_t i, std::uint32_t j) const;  // cell (i, j)
+  // A contact's sub-shape is 2 (j (columns - 1) + i) for the triangle of cell (i, j) below the
+  // diagonal, and one more for the triangle above it.
 
-  // For the engine; null if moved from.
+  // For the engine. Null if moved from.
   const std::shared_ptr<const collide::HeightData>& data() const { return data_; }
 
  private:

@@ -1,8 +1,9 @@
-// Handles to what a world owns: index and generation; zero is null. A handle to something destroyed
-// is recognised as stale and never aliases what took its place.
+// Handles of the objects that a world owns: index and generation. Zero is null. The id of a
+// destroyed object is recognised as invalid; it never aliases the object that reuses its slot.
 //
-// An id is of the world that gave it, and names the same in worlds made by the same sequence of
-// calls. That it is of this world is not checked: in another it names what has its numbers there.
+// An id belongs to the world that returned it. Worlds made by the same sequence of calls have the
+// same ids. The world does not check that an id is its own: in another world the same numbers name
+// another object.
 #pragma once
 
 #include <compare>
@@ -13,7 +14,7 @@ namespace vp {
 template <class Tag>
 struct Id {
   std::uint32_t index = 0;       // 1-based; 0 is null
-  std::uint32_t generation = 0;  // bumped each time the slot is reused
+  std::uint32_t generation = 0;  // incremented each time the slot is reused
 
   constexpr explicit operator bool() const { return index != 0; }
   constexpr auto operator<=>(const Id&) const = default;  // NOLINT(modernize-use-nullptr)

@@ -8,8 +8,8 @@
 //   Inertia  a generalized inertia of a rigid body: 10 scalars
 //   AInertia an articulated inertia: 21 scalars
 //
-// Everything is a template on the scalar with the suffix T; the short names are in double. Other
-// scalars: float, DualT (lie/dual.h), PackT (lie/pack.h), Count (lie/count.h).
+// Each type is a template on the scalar, with the suffix T. The names without it are in double.
+// Other scalars: float, DualT (lie/dual.h), PackT (lie/pack.h), Count (lie/count.h).
 #pragma once
 
 #include "vphysics/lie/ainertia.h"

@@ -1,9 +1,9 @@
-// Recording and replay: what was done to a world, so that it can be done again and compared.
+// Recording and replay of the calls that change a world.
 //
-// A Recorder notes each call that changes a world, and at steps a hash of the whole state. A Replay
-// does the calls again, with any compiler and on any machine, and says at which step the state
-// first is another. So a recording is a bug that can be sent, a referee for a change of the engine,
-// and a demonstration.
+// A Recorder writes each call that changes a world and, after steps, a hash of the complete state.
+// A Replay repeats the calls, with any compiler and on any machine, and reports the first step
+// after which the state differs. Use recordings to reproduce bugs, to compare two versions of the
+// engine, and for demonstrations.
 //
 //   auto recorder = std::make_shared<vp::Recorder>();
 //   (void)world.record(recorder);               // best before anything is created
@@ -14,12 +14,12 @@
 //   auto replay = vp::Replay::open(load());
 //   while (replay && replay->step() == vp::ReplayState::same) draw(replay->world());
 //
-// A recording that began with an empty world makes its world itself. One that began later carries a
-// snapshot, and wants a world made by the same calls, as World::restore does.
+// A recording that began with an empty world creates its world itself. One that began later
+// contains a snapshot. Its replay requires a world made by the same calls, as World::restore does.
 //
-// Calls that were refused changed nothing and are left out; queries are none. user_data is
-// recorded. Recordings are of one version of the engine: after a change of results they differ,
-// which is what they are for. Format and reasons: docs/decisions/0024.
+// Failed calls change nothing and are not recorded, nor are queries. user_data is recorded. A
+// recording belongs to one version of the engine: after a change of results the replay reports a
+// difference. Format and reasons: docs/decisions/0024.
 #pragma once
 
 #include <cstddef>
@@ -36,26 +36,26 @@ namespace vp {
 
 struct RecordedCall;
 
-// What a recording names by number and does not carry: shapes that are built of points or parts,
-// and objects of the user's classes. Each is a list in the order of its use; a replay is handed the
-// same again, as the program that was recorded makes them.
+// Objects that a recording refers to by index and does not contain: shapes that are built from
+// points or parts, and objects of the user's classes. Each list is in the order of use. A replay
+// requires the same objects, made by the same code as in the recorded program.
 struct RecordedParts {
   std::vector<Shape> shapes;  // convex hulls, meshes, height fields, compounds
   std::vector<std::shared_ptr<const UserJoint>> joints;
   std::vector<std::shared_ptr<const PairConstraint>> constraints;
 };
 
-// Records one world, once: World::record. Not to be touched by another thread meanwhile.
+// Records one world, once: World::record. Other threads must not access it during the recording.
 class Recorder {
  public:
-  // A hash of the state after every n-th step; 0: none. The first difference is then known within n
-  // steps. A hash reads all that a snapshot would hold.
+  // Takes a hash of the state after every n-th step; 0: none. The first difference is then known to
+  // within n steps. A hash reads all the state that a snapshot contains.
   explicit Recorder(std::uint32_t hash_every = 1) : hash_every_(hash_every) {}
 
-  // All that is recorded and not taken yet. It ends after a step, or with the recording.
+  // All recorded bytes that have not been taken. They end after a step, or with the recording.
   std::span<const std::byte> bytes() const { return bytes_; }
-  // Moves it out, to be appended to a file as the world goes on. What a crash leaves of such a file
-  // can be replayed up to its last whole step.
+  // Moves the bytes out, to append them to a file while the world goes on. If the program crashes,
+  // such a file can be replayed up to its last complete step.
   std::vector<std::byte> take();
   const RecordedParts& parts() const { return parts_; }
   std::uint64_t steps() const { return steps_; }
@@ -78,32 +78,32 @@ class Recorder {
 };
 
 enum class ReplayState : std::uint8_t {
-  same,       // a step was made, and no state was found to be another so far
-  differs,    // a step was made, and at it or before the state was another than that recorded
-  end,        // the recording is over
-  cut_short,  // its bytes stop after a whole step, but not with the recording's end
+  same,       // made a step; no difference so far
+  differs,    // made a step; the state differs, since this step or an earlier one
+  end,        // the recording has ended
+  cut_short,  // the bytes end after a complete step, but without the recording's end
 };
 
 class Replay {
  public:
-  // Of a recording that began with an empty world. Refused with Errc::bad_data: bytes that do not
-  // begin as a recording of this version; with Errc::invalid_argument: one that began later.
+  // For a recording that began with an empty world. Errc::bad_data: the bytes do not begin as a
+  // recording of this version. Errc::invalid_argument: the recording began later.
   [[nodiscard]] static Expected<Replay> open(std::vector<std::byte> bytes,
                                              RecordedParts parts = {});
-  // Of one that began later, with a world made by the same calls. Refused alike.
+  // For a recording that began later, with a world made by the same calls. The same errors.
   [[nodiscard]] static Expected<Replay> open(std::vector<std::byte> bytes, RecordedParts parts,
                                              World built);
 
-  // The calls up to the next step, and that step. It may go on after a difference. Refused with
-  // Errc::bad_data, and from then on for good: damaged bytes, of which nothing is done; a call that
-  // the world refuses; parts that are not those recorded.
+  // Makes the calls up to the next step, and that step. A replay may continue after a difference.
+  // Errc::bad_data, also for all later calls: damaged bytes, of which no call is made; a call that
+  // the world rejects; parts that differ from those recorded.
   [[nodiscard]] Expected<ReplayState> step();
 
-  // To look at; whoever changes it makes the steps that follow differ.
+  // For inspection. If the caller changes this world, later steps differ.
   World& world() { return world_; }
   const World& world() const { return world_; }
   std::uint64_t steps() const { return steps_; }  // made so far
-  // The step, counted from 1, after which a hash was first found to be another.
+  // The step, counted from 1, after which a hash first differed.
   std::optional<std::uint64_t> first_difference() const { return first_difference_; }
 
  private:

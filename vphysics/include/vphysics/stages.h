@@ -1,5 +1,4 @@
-// The stages of a step, for whoever wants to know how long each takes. The engine reads no clock:
-// who watches does.
+// The stages of a step, for profiling. The engine reads no clock: the observer does.
 #pragma once
 
 #include <array>
@@ -7,29 +6,39 @@
 
 namespace vp {
 
-// In the order of a step. A world without a need of one leaves it out.
+// In the order of a step. A world skips the stages that it does not need.
 enum class Stage : std::uint8_t {
-  prepare,       // lists of what is awake, its rows of the solver, its enlarged bounds
-  broad_phase,   // pairs of bounds that have come to meet, and those that have parted
-  narrow_phase,  // manifolds of those pairs that have moved by more than a little
-  lanes,         // these manifolds into the lanes and colours of the solver, or out of them
-  sub_steps,     // forces, bounces, joints and contacts of the solver of sub-steps
-  report,        // its contact events
-  forces,        // what is moved by the stage of impacts, articulations too, feels forces
-  impacts,       // continuous bodies and links, in the order of time: bounds, pairs, contacts,
-                 // solves with the articulations' joints, impacts, poses; and their events
-  advance,       // poses, where there is no stage of impacts
-  sleep,         // who rests, and who falls asleep with it
+  // Lists of awake bodies, their state in the solver, their enlarged AABBs.
+  prepare,
+  // Pairs of AABBs that have begun to overlap, and those that have separated.
+  broad_phase,
+  // Manifolds of those pairs that have moved by more than a small distance.
+  narrow_phase,
+  // Adds these manifolds to the contact slots and colours of the solver, or removes them.
+  lanes,
+  // Forces, restitution, joints and contacts of the sub-stepped solver.
+  sub_steps,
+  // Contact events of the sub-steps.
+  report,
+  // Forces on what the stage of impacts moves: continuous bodies and articulations.
+  forces,
+  // Continuous bodies and links, in the order of time: AABBs, pairs, contacts, solves together with
+  // the joints of articulations, impacts, poses; and their events.
+  impacts,
+  // Poses, in worlds without the stage of impacts.
+  advance,
+  // Finds islands at rest and puts them to sleep.
+  sleep,
 };
 inline constexpr std::array kStages{
     Stage::prepare, Stage::broad_phase, Stage::narrow_phase, Stage::lanes,   Stage::sub_steps,
     Stage::report,  Stage::forces,      Stage::impacts,      Stage::advance, Stage::sleep};
 const char* name_of(Stage stage);  // "broad phase"
 
-// Told of each stage on the thread that calls step(), outside of all jobs. Stages do not overlap,
-// and come once a step, in order; but narrow_phase and lanes alternate where many contacts are
-// looked at, some hundred at a time, and once more for each round of sleepers that what they have
-// found wakes. Must not change the world (a step within the step is refused), nor throw.
+// Called for each stage on the thread that calls step(), outside of all tasks. Stages do not overlap
+// and come once a step, in order, with one exception: narrow_phase and contact_slots alternate, some
+// hundred contacts at a time, and once more each time that contacts wake sleeping bodies. The
+// observer must not change the world (a step within the step fails), nor throw.
 class StageObserver {
  public:
   virtual ~StageObserver() = default;
@@ -37,7 +46,7 @@ class StageObserver {
   virtual void end(Stage stage) = 0;
 };
 
-// Adds up how long each stage takes.
+// Accumulates the time of each stage.
 class StageClock final : public StageObserver {
  public:
   using Now = std::int64_t (*)();  // [ns], of any clock
@@ -45,7 +54,7 @@ class StageClock final : public StageObserver {
 
   void begin(Stage stage) override;
   void end(Stage stage) override;
-  // Since it was made or cleared [ns].
+  // Since construction or clear() [ns].
   std::int64_t total(Stage stage) const { return total_[static_cast<std::size_t>(stage)]; }
   void clear() { total_ = {}; }
 

@@ -1,4 +1,4 @@
-// What a step tells of itself: where it had to degrade, and what it had to do.
+// Results of a step: its degradations and its statistics.
 #pragma once
 
 #include <array>
@@ -6,8 +6,8 @@
 
 namespace vp {
 
-// Set when a step had to degrade; the step is finished all the same. Nothing is left out of a step
-// without one of these.
+// Flags of a step that had to degrade. The step finishes all the same. A step omits nothing without
+// setting one of them.
 struct StepStatus {
   bool impact_limit = false;    // Limit::impacts
   bool non_finite = false;      // Limit::range
@@ -18,52 +18,59 @@ struct StepStatus {
   bool position_error = false;  // Limit::positions
   double time_lost = 0.0;       // the part of dt lost to impact_limit [s]
 
-  StepStatus& operator|=(const StepStatus& other);  // what either has met; times add up
+  StepStatus& operator|=(const StepStatus& other);  // combines the flags and adds the times
 };
 
 enum class Limit : std::uint8_t {
-  impacts,  // a continuous body met more impacts than max_impacts_per_step: it and what it touches
-            // were held for the rest of the step
-  range,    // a body or an articulation left the range of numbers, or a joint moved no inertia,
-            // and it was stopped where it was
-  bounces,  // bounces still ran through bodies that touch when a sub-step's 64 rounds were over:
-            // what closes then is stopped, as if its restitution were 0
-  manifolds,  // something convex touched a mesh or a height field at more than 12 slopes at once:
-              // those past the twelfth count as that of the twelve which is most like them
-  distances,  // shapes overlap, and how deep they do is known to no more than a thousandth of the
-              // smaller one's size when the rounds of the search are over: the best is taken
-  colours,    // a body has more contacts than there are colours for, 40 with what moves and 23 with
-              // what does not: the rest are solved one after the other, with nothing lost but time
-  positions,  // this step and the one before ended with shapes that overlap by more than half
-              // of the smaller one's least half extent, or with a hard joint that is open by more
-              // than half of the smaller body's radius or by 0.2 rad: loads, masses or joints ask
-              // for more than a step can do. Links and what is continuous as they were when the
-              // step began; not of gears and users' constraints
+  // A continuous body had more impacts than max_impacts_per_step. It and the bodies that it touches
+  // stopped for the rest of the step.
+  impacts,
+  // A body or an articulation left the range of numbers, or a joint moved no inertia. It was
+  // stopped in place.
+  range,
+  // Restitution still propagated through touching bodies after the 64 iterations of a sub-step. The
+  // remaining approach speeds were stopped, as if the restitution were 0.
+  bounces,
+  // A convex shape touched a mesh or a height field with more than 12 different normals. Each one
+  // past the twelfth was merged into the most similar of the twelve.
+  manifolds,
+  // Shapes overlap, and the search for their penetration depth reached its iteration limit with an
+  // error above a thousandth of the smaller one's size. The step used the best result.
+  distances,
+  // A body has more contacts than there are colours: 40 with moving bodies and 23 with others. The
+  // rest were solved sequentially, which costs time only.
+  colours,
+  // This step and the one before ended with shapes that overlap by more than half of the smaller
+  // one's min half extent, or with a hard joint that is open by more than half of the smaller
+  // body's radius or by 0.2 rad. Loads, masses or joints demand more than a step can do. For links
+  // and continuous bodies: as they were at the start of the step. Gears and user constraints are
+  // not checked.
+  positions,
 };
 inline constexpr std::array kLimits{Limit::impacts,   Limit::range,     Limit::bounces,
                                     Limit::manifolds, Limit::distances, Limit::colours,
                                     Limit::positions};
 
 bool reached(const StepStatus& status, Limit limit);
-// For whoever watches: what happened, and what helps.
+// A message for the user: what happened, and what helps.
 const char* sentence(Limit limit);
 
 struct StepCounters {
-  std::uint32_t pairs = 0;  // of colliders, or of parts of them, that are near one another
-  std::uint32_t narrow_phase_pairs = 0;  // of them, given to the narrow phase; the others have not
-                                         // moved by enough against one another
-  std::uint32_t triangles = 0;  // of meshes and height fields, that it looked at
-  std::uint32_t manifolds = 0;  // contacts in the solver of sub-steps, with one normal each
-  std::uint32_t recycled = 0;   // of them, those of the last step, as they were
+  // Pairs of colliders, or of parts of them, that are close to each other.
+  std::uint32_t pairs = 0;
+  // Pairs that the narrow phase processed. The others have not moved enough relative to each other.
+  std::uint32_t narrow_phase_pairs = 0;
+  std::uint32_t triangles = 0;  // of meshes and height fields, tested by the narrow phase
+  std::uint32_t manifolds = 0;  // contacts in the sub-stepped solver, with one normal each
+  std::uint32_t recycled = 0;   // manifolds reused unchanged from the last step
   std::uint32_t contacts = 0;   // contact points solved, summed over the solves of the step
   std::uint32_t colours = 0;    // sets of contacts that share no body
-  std::uint32_t regions = 0;    // that a large world is solved in; 0: in one piece
-  std::uint32_t sub_steps = 0;  // 0: nothing takes part in them
-  std::uint32_t restitution_iterations =
-      0;                      // in which something bounced, summed over the sub-steps
-  std::uint32_t impacts = 0;  // times of impact found
-  std::uint32_t awake = 0;    // bodies that move, those asleep left out; links are not counted
-  std::uint32_t events = 0;   // contact_events()
+  std::uint32_t regions = 0;    // groups of bodies in a large world; 0: not divided
+  std::uint32_t sub_steps = 0;  // 0: nothing takes part in sub-steps
+  std::uint32_t restitution_iterations = 0;  // with a bounce, summed over the sub-steps
+  std::uint32_t impacts = 0;                 // times of impact found
+  std::uint32_t awake = 0;                   // moving bodies that are awake, without links
+  std::uint32_t events = 0;                  // contact_events()
 };
 
 }  // namespace vp

@@ -1,4 +1,4 @@
-// A world's work by oneTBB: library vphysics_tbb (CMake VirtualPhysics::vphysics_tbb).
+// A TaskScheduler on oneTBB: library vphysics_tbb (CMake VirtualPhysics::vphysics_tbb).
 #pragma once
 
 #include <memory>
@@ -7,8 +7,8 @@
 
 namespace vp {
 
-// workers: how many threads at most take part, the caller's included; 0: as many as the machine
-// has. The object may serve any number of worlds, one after another.
+// workers: maximum number of threads, the caller's included; 0: the number of hardware threads. The
+// object may serve any number of worlds, one after another.
 std::shared_ptr<TaskScheduler> make_tbb_task_scheduler(int workers = 0);
 
 }  // namespace vp

@@ -206,9 +206,9 @@ void World::Impl::update_dirty_contacts(double dt) {
     do {
       {
         const auto stage = in(Stage::narrow_phase);
-        if (done == 0) list_stale_contacts(dt, first);
+        if (done == 0) list_dirty_contacts(dt, first);
         const std::span<const std::uint32_t> left = std::span(narrow.dirty).subspan(done);
-        find_manifolds_of(left.first(std::min(left.size(), kLookedAtOnce)), dt);
+        find_manifolds_of(left.first(std::min(left.size(), kNarrowPhaseBatch)), dt);
       }
       const auto stage = in(Stage::lanes);
       for (const NarrowPhaseResult& found : narrow.results) take_over(found);
@@ -219,7 +219,7 @@ void World::Impl::update_dirty_contacts(double dt) {
 }
 
 // Those that have to be looked at; what has parted is dropped.
-void World::Impl::list_stale_contacts(double dt, bool first) {
+void World::Impl::list_dirty_contacts(double dt, bool first) {
   if (first) find_dirty_contacts(dt);
   contact_store.take_dirty(narrow.dirty);
   std::vector<std::uint32_t>& to_pose = narrow.to_pose;

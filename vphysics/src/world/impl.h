@@ -259,7 +259,7 @@ struct World::Impl {
   void assign_slot(std::uint32_t contact, const collide::Manifold& manifold);
   Approach approach_in(double dt) const { return {bodies, loads, desc, speed_unit, dt}; }
   void update_dirty_contacts(double dt);
-  void list_stale_contacts(double dt, bool first);
+  void list_dirty_contacts(double dt, bool first);
   void find_manifolds_of(std::span<const std::uint32_t> contacts, double dt);
   void note_limits(const collide::Manifold& manifold);
 

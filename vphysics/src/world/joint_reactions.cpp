@@ -1,19 +1,20 @@
-// Newton and Euler over a whole step, for a link and all that hangs on it:
+// Newton-Euler equations over a whole step, for a link and its subtree:
 //
 //   dt F = P1 - P0 - dt m g - sum p
 //   dt M = L1 - L0 - dt h x g - sum (x - o) x p
 //
-//   F, M   of the link's joint on the link, mean over the step; M about o, the link's origin
-//   P, L   linear momentum, and angular momentum about o in a frame that moves as o does on the
-//          average, at u = (o1 - o0) / dt: L = sum of I w + m (c - o) x (v - u);  h = sum m (c - o)
-//   p, x   impulses from outside (contacts, the user's forces), and where they act: o is that of
-//          their time
+//   F, M   mean force and moment of the link's joint on the link over the step; M about o, the
+//          link's origin
+//   P, L   linear momentum, and angular momentum about o in a frame that moves at the mean velocity
+//          of o, u = (o1 - o0) / dt: L = sum of I w + m (c - o) x (v - u);  h = sum m (c - o)
+//   p, x   external impulses (contacts, the user's forces) and their points; o at the time of the
+//          impulse
 //
-// So F is that of the velocities which the world shows, to rounding, and M has no part of how fast
-// the whole moves or where it is; it takes the joint's origin to go straight within the step. In
-// flight the sums of a floating tree keep its momentum as the step does (floating_tree.h), and
-// nothing is left for its root. Gravity acts where the step has it act, at the poses of its start,
-// or of the starts of its sub-steps.
+// So F agrees to rounding with the velocities that the world reports. M does not depend on the
+// overall velocity or position of the system. The joint's origin is assumed to move on a straight
+// line within the step. In free flight the sums of a floating tree conserve its momentum as the
+// step does (floating_tree.h), so the reaction of its root is zero. Gravity acts where the step
+// applies it: at the poses of its start, or of the starts of its sub-steps.
 #include "world/joint_reactions.h"
 
 #include <algorithm>
@@ -87,7 +88,7 @@ void JointReactions::find_poses(const Model& model, std::span<const double> q,
   }
 }
 
-// What the link itself is and feels; about a point of the world.
+// Adds the link's own mass, momenta and external impulses, about a point of the world.
 void JointReactions::add_self(const Model& model, int link, const Vec3& about, Sum& sum) const {
   const auto l = static_cast<std::size_t>(link);
   const Inertia& J = model.link(link).inertia;
@@ -118,7 +119,7 @@ void JointReactions::add_self(const Model& model, int link, const Vec3& about, S
   }
 }
 
-// The link's origin goes from one point to another.
+// from, to: the link's origin at the start and the end of the step.
 JointForce JointReactions::reaction(const Sum& sum, const Vec3& from, const Vec3& to,
                                     const Vec3& gravity) const {
   const Vec3 u = (1.0 / step_) * (to - from);
@@ -133,7 +134,7 @@ JointForce JointReactions::reaction(const Sum& sum, const Vec3& from, const Vec3
   return {(1.0 / step_) * impulse, (1.0 / step_) * moment};
 }
 
-// It holds nothing. What acts along it acts in the link's frame, that of the start of the step.
+// The root joint has no constraint. Its efforts act in the link's frame at the start of the step.
 JointForce JointReactions::of_floating_root(const Model& model, int link) const {
   const double* f = work_->efforts.data() + model.first_velocity(link);
   const SE3& T = work_->poses[0][static_cast<std::size_t>(link)].T;
@@ -182,7 +183,7 @@ Vec3 JointReactions::acceleration(int link, const Vec3& point) const {
   return (1.0 / step_) * (velocity(work_->poses[1][l]) - velocity(work_->poses[0][l]));
 }
 
-// What contacts have done to links in a solve: their points are where the solver had them.
+// Records the impulses of contacts on links in a solve, at the contact points of the solver.
 void World::Impl::note_link_impulses(std::span<const solve::ContactConstraint> solved) {
   for (const solve::ContactConstraint& c : solved) {
     const Body &a = bodies[c.a], &b = bodies[c.b];

@@ -1,7 +1,7 @@
-// What the joints of an articulation did to their links in the last step.
+// Joint reactions: the forces of an articulation's joints on their links in the last step.
 //
-// The step notes what cannot be found afterwards: the velocities at its start, impulses from
-// outside, forces along the joints. Reactions are found when somebody asks.
+// A step records what cannot be computed afterwards: the velocities at its start, external
+// impulses, impulses along the joints. Reactions are computed on request.
 #pragma once
 
 #include <memory>
@@ -21,58 +21,59 @@ class JointReactions {
   void begin_step(std::span<const double> v) {
     step_ = time_ = acting_ = 0.0;
     spoiled_ = found_ = end_is_cached_ = has_loads_ = false;
-    for (std::size_t i = 0; i < v.size(); ++i) start_v_[i] = v[i];  // of a rod two: no call
+    for (std::size_t i = 0; i < v.size(); ++i) start_v_[i] = v[i];  // few entries: no call
     if (has_external_ || has_efforts_) forget_impulses();
   }
-  // From now on impulses are of h later.
+  // Advances the time of the impulses that follow by h.
   void pass(double h) { time_ += h; }
   void back_to_start() { time_ = 0.0; }
-  // Gravity and the user's forces act for h, at the poses of now.
+  // Gravity and the user's forces act for h, at the present poses.
   void act(double h) { acting_ += h * time_; }
-  // On a link, in the world frame; the moment is about the world's origin.
+  // On a link, in the world frame. The moment is about the world's origin.
   void add_impulse(int link, const Vec3& impulse, const Vec3& moment);
-  // Along a degree of freedom, but what the joint's impulses of the whole step are.
+  // Along a degree of freedom, besides the joint's impulses in Step::dof_impulses.
   void add_effort(std::size_t dof, double impulse) {
     efforts_[dof] += impulse;
     has_efforts_ = true;
   }
   void note_loads(std::span<const dse3> of_links, std::span<const double> of_joints);
-  // The step's velocities are no longer those that its forces have made.
+  // The velocities of this step do not follow from its forces any more.
   void spoil() { spoiled_ = true; }
   void end_step(double dt) { step_ = spoiled_ ? 0.0 : dt; }
 
   // --- between steps
-  // No step is known, and everything zero.
+  // Forgets the last step: all results become zero.
   void forget() { step_ = 0.0; }
-  // Before q or v are changed from outside.
+  // Call it before q or v change from outside a step.
   void keep_end(std::span<const double> q, std::span<const double> v);
 
-  // The step as it went, besides what was noted.
+  // Data of the step that are not recorded here.
   struct Step {
-    std::span<const double> start_q, q, v;  // q and v: of now
+    std::span<const double> start_q, q, v;  // q and v: present values
     Vec3 gravity;
     std::span<const double> dof_impulses;  // of the whole step
   };
   bool knows_step() const { return step_ > 0.0; }
   bool is_found() const { return found_; }
   void find(const Model& model, const Step& step);
-  // Precondition of those below: is_found() and knows_step().
+  // Precondition of the functions below: is_found() and knows_step().
   const JointForce& of(int link) const { return work_->reactions[static_cast<std::size_t>(link)]; }
   double effort(std::size_t dof) const { return work_->efforts[dof]; }
-  Vec3 acceleration(int link, const Vec3& point) const;  // of a point in the link's frame
+  Vec3 acceleration(int link, const Vec3& point) const;  // point in the link's frame
 
  private:
   void forget_impulses();
 
-  // From outside, but gravity. delay: the sum of impulses, each times its time within the step.
+  // External impulses, without gravity. delay: the sum of each impulse times its time within the
+  // step.
   struct External {
     Vec3 impulse, moment, delay;
   };
   struct Pose {
     SE3 T;
-    Vec3 w, v;  // world frame; of the link's origin
+    Vec3 w, v;  // world frame; velocity of the link's origin
   };
-  // Of a link and all that hangs on it, about one point; [0] at the start of the step, [1] at its
+  // Sums over a link and its subtree, about one point: [0] at the start of the step, [1] at its
   // end.
   struct Sum {
     double mass = 0.0;
@@ -94,7 +95,7 @@ class JointReactions {
   JointForce reaction(const Sum& sum, const Vec3& from, const Vec3& to, const Vec3& gravity) const;
   JointForce of_floating_root(const Model& model, int link) const;
 
-  double step_ = 0.0;    // length of the last one; 0: none is known
+  double step_ = 0.0;    // length of the last step; 0: no step is known
   double time_ = 0.0;    // within the step
   double acting_ = 0.0;  // integral of the time at which gravity acts
   bool spoiled_ = false, found_ = false, end_is_cached_ = false;
@@ -104,7 +105,7 @@ class JointReactions {
   std::vector<double> efforts_;      // impulses of each degree of freedom
   std::vector<dse3> loads_;          // of each link
   std::vector<double> joint_loads_;  // of each degree of freedom
-  std::unique_ptr<Work> work_;       // none before the first question
+  std::unique_ptr<Work> work_;       // null before the first request
 };
 
 }  // namespace vp

@@ -1,6 +1,6 @@
-// Coordinates of a joint, for who reads them, and rows that are not found in lanes: those of joints
-// in rows (row_joints.h), of distances, gears and users' constraints. What swing and twist are, and
-// how fast all coordinates change, is in solve/joint_angles.h.
+// Coordinates of a joint, and Jacobians of rows that the SIMD passes do not evaluate: those of
+// joints in rows (row_joints.h), and of distances, gears and user constraints. solve/joint_angles.h
+// defines swing and twist, and the derivatives of all coordinates.
 #include <algorithm>
 #include <cmath>
 
@@ -30,7 +30,7 @@ const Vec3& column(const Mat3& R, int i) {
   return i == 0 ? R.cx : i == 1 ? R.cy : R.cz;
 }
 
-// The swing's vector and its derivatives, in a's frame.
+// The swing vector and its derivatives, in a's frame.
 struct Swing {
   double x, y;
   Vec3 by_x, by_y;
@@ -43,7 +43,7 @@ struct Swing {
     const double ratio = sine > 1e-9 ? angle / sine : 1.0;
     x = -ratio * z_b.y;
     y = ratio * z_b.x;
-    // (1 - s cot(s)) / s^2
+    // (1 - angle cot(angle)) / angle^2
     const double curve = angle < kSeries ? 1.0 / 3.0 + s * (1.0 / 45.0 + s * (2.0 / 945.0))
                                          : (1.0 - ratio * z_b.z) / s;
     const Vec3 perpendicular{y, -x, 0.0};
@@ -56,8 +56,8 @@ double twist_of(const Ends& e) {
   const Vec3 x = transposed_times(e.R_a, e.R_b.cx), y = transposed_times(e.R_a, e.R_b.cy);
   return arc_tangent(x.y - y.x, x.x + y.y);
 }
-// The angle that is the same but for whole turns, and nearest to the last. The last one stays where
-// bodies have left the range within a step: the step's end puts them back.
+// The angle modulo 2 pi that is nearest to the last one. Keeps the last one if bodies have left the
+// range of numbers within a step: the end of the step restores them.
 double counted_on(double last, double angle) {
   const double counted = angle + 2.0 * kPi * std::floor((last - angle) / (2.0 * kPi) + 0.5);
   return in_range(counted) ? counted : last;
@@ -80,8 +80,8 @@ double gear_side(const BodyJoint& joint, const SE3& now, int side) {
   return counted_on(joint.rotated[side], gear_angle(joint.start[side], now, T));
 }
 
-// The way to the cone, as a row that grows inwards: (1 - f) / |grad f| with
-// f^2 = (x / cone_x)^2 + (y / cone_y)^2.
+// The angle to the cone, as a row that increases inwards:
+//   (1 - f) / |grad f|  with  f^2 = (x / cone_x)^2 + (y / cone_y)^2.
 double angle_to_cone(const JointSpec& spec, const Swing& swing, Vec3& axis) {
   const double ix = 1.0 / spec.swing_x, iy = 1.0 / spec.swing_y;
   const double sx = swing.x * ix, sy = swing.y * iy;
@@ -172,7 +172,8 @@ void evaluate_gear(BodyJoint& joint, const BodyPose& a, const BodyPose& b, Joint
   out.residual[0] = q_b - ratio * q_a;
 }
 
-// From a body's frame, about its origin, to world axes about its centre of mass.
+// Transforms a wrench from a body's frame, about its origin, to world axes, about its centre of
+// mass.
 void carry_over(const BodyPose& body, const dse3& F, Vec3& linear, Vec3& angular) {
   linear = body.T.rotate(F.f);
   angular = body.T.rotate(F.m) - cross(body.centre - body.T.position(), linear);

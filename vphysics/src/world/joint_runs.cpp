@@ -12,8 +12,8 @@ void JointRuns::clear(std::size_t rows) {
   taken_.assign(rows, 0);
 }
 
-// The lowest that both have free. A body with more joints than there are colours puts the rest into
-// the last one, whose blocks are solved one after the other.
+// The lowest colour that is free for both. If a body has more joints than there are colours, the
+// rest go to the last colour, whose blocks are solved sequentially.
 int JointRuns::colour_for(std::uint32_t row_a, bool moves_a, std::uint32_t row_b, bool moves_b) {
   const std::uint64_t taken = (moves_a ? taken_[row_a] : 0) | (moves_b ? taken_[row_b] : 0);
   const int colour = std::min(std::countr_one(taken), kLastColour);
@@ -49,7 +49,7 @@ JointRuns::Lane<BLOCK> JointRuns::add(const solve::JointForm& form, std::uint32_
   }
   JointRun<BLOCK>& run = kind.runs[found->index];
   const int at = run.alone ? 0 : static_cast<int>(run.lanes % solve::kLanes);
-  if (at == 0) run.blocks.emplace_back();  // its lanes are the world's
+  if (at == 0) run.blocks.emplace_back();  // its lanes refer to the world's row
   ++run.lanes;
   BLOCK& block = run.blocks.back();
   block.a.lane[at] = row_a;

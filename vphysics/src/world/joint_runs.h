@@ -1,6 +1,6 @@
-// The joints of a step in blocks of lanes: sorted by colour, so that no two of a colour share a
-// body that moves, and within a colour by form. Which joints take part and in what order they come
-// decides all, so the order of solving follows from the state alone.
+// The joints of a step in blocks of SIMD lanes, sorted by colour, and within a colour by form. No
+// two joints of a colour share a body that moves. The blocks depend only on which joints take part
+// and on their order, so the order of solving is a function of the state.
 #pragma once
 
 #include <array>
@@ -17,11 +17,11 @@ template <class BLOCK>
 struct JointRun {
   solve::JointForm form;
   std::uint32_t lanes = 0;           // used
-  bool alone = false;                // each lane has a block to itself: of the last colour
-  solve::LargeVector<BLOCK> blocks;  // its capacity outlasts steps
+  bool alone = false;                // one joint in each block: of the last colour
+  solve::LargeVector<BLOCK> blocks;  // keeps its capacity between steps
 };
 
-// Of one kind of block, whatever the colour.
+// Runs of one kind of block, of all colours.
 template <class BLOCK>
 struct JointRunsOf {
   std::vector<JointRun<BLOCK>> runs;
@@ -37,14 +37,14 @@ class JointRuns {
     int at;
   };
 
-  // No joints; of so many rows of bodies.
+  // Removes all joints. rows: number of body rows.
   void clear(std::size_t rows);
-  // An empty lane for a joint of two rows, of which those that move are in no other lane of the
-  // block. Precondition: one of them moves.
+  // Returns an empty lane for a joint of two body rows. A row that moves is in no other lane of the
+  // block. Precondition: at least one of the two moves.
   template <class BLOCK>
   Lane<BLOCK> add(const solve::JointForm& form, std::uint32_t joint, std::uint32_t row_a,
                   bool moves_a, std::uint32_t row_b, bool moves_b);
-  // f(run) of all, in the order of solving.
+  // Calls f(run) for all runs, in the order of solving.
   template <class F>
   void for_each(const F& f) {
     for (const auto& colour : by_colour_) {
@@ -68,7 +68,7 @@ class JointRuns {
              JointRunsOf<solve::FrameBlock>, JointRunsOf<solve::RowsBlock>>
       kinds_;
   std::array<std::vector<Ref>, kColours> by_colour_;
-  std::vector<std::uint64_t> taken_;  // by a row's joints: a bit for each colour
+  std::vector<std::uint64_t> taken_;  // of each row: the colours of its joints, as bits
 };
 
 }  // namespace vp

@@ -1,4 +1,4 @@
-// What kinds of joints are made of.
+// The rows of each kind of joint, and the checks of their descriptions.
 #include <cmath>
 #include <type_traits>
 
@@ -8,10 +8,10 @@
 namespace vp {
 namespace {
 
-// Of what is hard: the share of an error that a sub-step takes out, and G as a share of K.
+// Of hard rows: the fraction of an error that a sub-step corrects, and G as a fraction of K.
 constexpr double kJointBias = 0.2;
 constexpr double kJointLoss = 0.05;
-// Of what is as good as free; times K it is a number in single precision.
+// For rows that are almost free; times K it stays finite in single precision.
 constexpr double kMaxLoss = 1e9;
 
 AxisDesc axis(AxisMotion motion, double lower = 0.0, double upper = 0.0, JointDrive drive = {}) {
@@ -72,7 +72,8 @@ void fill(JointSpec& spec, const UserConstraint& user) {
   for (int i = 0; i < spec.user_rows; ++i) spec.user_row_descs[i] = user.constraint->row_desc(i);
 }
 
-// Rate and loss of a spring of frequency f against K alone, integrated implicitly.
+// Rate and loss of a spring of frequency f against the mass of the row alone (K), integrated
+// implicitly.
 void soften(BodyJointRow& row, double frequency, double damping_ratio, double h) {
   if (frequency == 0.0) {
     row.rate = kJointBias / h;

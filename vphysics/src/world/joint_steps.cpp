@@ -17,7 +17,7 @@ using solve::kLanes;
 
 constexpr std::size_t kBlockGrain = 16;  // blocks: some microseconds
 
-// Whole turns of the angle, nearest.
+// The nearest multiple of 2 pi.
 double revolutions_of(double angle) {
   return 2.0 * kPi * std::floor(angle / (2.0 * kPi) + 0.5);
 }
@@ -36,7 +36,7 @@ solve::JointForm form_of(const BodyJoint& joint) {
   return form;
 }
 
-// turned: whole turns that a coordinate of a twist is counted from.
+// rotated: full revolutions [rad] that are subtracted from the coordinate of a twist.
 template <class BLOCK>
 void fill_rows(BLOCK& block, int lane, const BodyJoint& joint, double rotated) {
   constexpr int kPoint = BLOCK::kPointRows;
@@ -121,13 +121,14 @@ const auto& passes_for(const JointRun<solve::RowsBlock>&) {
 
 }  // namespace
 
-// Of those in lanes. What is asleep keeps its impulses.
+// Whether the joint is in a block. Joints of sleeping bodies are not, and keep their impulses.
 bool JointSteps::is_active(const BodyJoint& joint) const {
   const Body &a = context_.bodies[joint.a], &b = context_.bodies[joint.b];
   return joint.alive && !joint.in_rows && !(is_still(a) && is_still(b));
 }
 
-// f(passes, run of blocks): of a colour side by side, but for blocks that share bodies.
+// Calls f(passes, run of blocks). The blocks of a colour run in parallel, except those that share
+// bodies.
 template <class F>
 void JointSteps::for_runs(const F& f) {
   scratch_.runs.for_each([&](auto& run) {
@@ -220,7 +221,7 @@ BodyPose JointSteps::pose_within_step(std::uint32_t body) const {
                               context_.start_displacements[body]);
 }
 
-// Of rows that are not found in lanes.
+// For rows that the SIMD passes do not evaluate.
 void JointSteps::evaluate_rows(solve::RowsBlock& block) {
   JointMeasure found;
   for (int lane = 0; lane < kLanes; ++lane) {
@@ -273,9 +274,9 @@ void JointSteps::relax() {
   for_runs([&](const auto& passes, const auto& run) { passes.relax(run, static_cast<float>(h_)); });
 }
 
-// Whether it is open by more than kOpen of the smaller body's radius or by kRotationError, of what
-// it holds hard. Only errors too large to be taken out at once are looked at; those of a gear and
-// of a user's constraint have no size to be compared with.
+// Whether a hard constraint of the joint is open by more than kOpen times the smaller body's
+// radius, or by more than kRotationError. Tests only errors whose bias velocity has reached its
+// limit. A gear and a user constraint have no size to compare with.
 template <class BLOCK>
 bool JointSteps::is_far_open(const BodyJoint& joint, const BLOCK& block, int lane) const {
   constexpr float kAtLimit = 0.999f;
@@ -330,7 +331,7 @@ bool JointSteps::end(double dt) {
       if (!in_range(joint.force) || !in_range(joint.torque)) joint.force = joint.torque = {};
       if constexpr (std::is_same_v<decltype(block.axes), solve::AxesPart>) {
         const double rotated = revolutions_of(joint.rotated[0]) + get(block.axes.twist, lane);
-        if (in_range(rotated)) joint.rotated[0] = rotated;  // else the bodies are put back
+        if (in_range(rotated)) joint.rotated[0] = rotated;  // else the bodies are restored
       }
     }
   });

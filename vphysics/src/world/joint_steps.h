@@ -1,5 +1,5 @@
-// Joints between bodies: their part of the sub-steps of a step. Impulses go into lanes when these
-// begin, and come back when they have ended.
+// Joints between bodies: their part of the sub-steps of a step. The constructor copies impulses
+// into the blocks; end() copies them back.
 #pragma once
 
 #include <array>
@@ -30,21 +30,22 @@ struct JointContext {
 struct JointScratch {
   JointRuns runs;
   std::vector<std::uint32_t> active, joined_bodies;
-  solve::LargeVector<solve::Gone> displacements;  // by row: of what is joined
+  solve::LargeVector<solve::Gone> displacements;  // by row, for bodies with joints
 };
 
-// Of the sub-steps of a step; kept for its capacity.
+// Of the sub-steps of a step. Kept for its capacity.
 struct SubStepScratch {
   BlockBits blocks;
   solve::LargeVector<solve::VelocityChange>
       velocity_changes;  // of each body, by the contacts of a sub-step
   std::vector<std::array<float, 6>>
-      start_displacements;                       // of each body: its row's way when the step began
-  std::vector<std::uint8_t> awake_body_changed;  // of each mover: it needs more than its own row
+      start_displacements;  // of each body: displacement of its row at the start of the step
+  // Of each awake body; 1: its row alone does not advance it.
+  std::vector<std::uint8_t> awake_body_changed;
   JointScratch joints;
 };
 
-// Where a body's row has taken it since the step began.
+// The body's pose, advanced by its row's displacement since the start of the step.
 BodyPose pose_within_step(const Body& body, const solve::BodyRow& row,
                           const std::array<float, 6>& start_displacement);
 
@@ -56,7 +57,7 @@ class JointSteps {
   void warm_start();
   void solve(int iteration);
   void relax();
-  // Takes the impulses back. Returns whether one is far open.
+  // Copies the impulses back. Returns whether any joint is far open.
   bool end(double dt);
 
  private:

@@ -1,4 +1,4 @@
-// Joints between bodies: who is joined, and their part of a step.
+// Joints between bodies: creation, destruction, coordinates and drives.
 #include "vphysics/assert.h"
 #include "world/impl.h"
 #include "world/invalid.h"

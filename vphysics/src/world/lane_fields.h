@@ -1,4 +1,4 @@
-// Reading and writing one lane of the solver's fields.
+// Access to one lane of the solver's fields.
 #pragma once
 
 #include "solve/field.h"

@@ -1,12 +1,14 @@
-// Links and bodies that lie on one another, in the sub-steps.
+// Contacts between links and sub-stepped bodies, in the sub-steps.
 //
-// An articulation on which a body lies takes part in the sub-steps with all that it touches: in
-// each, its forces are felt, its joints' rows and its contacts are solved in rounds with the lanes
-// and the joints of bodies, and it moves. It answers through its own joints (solve/link_side.h), so
-// none comes apart under a load. Then it is put back to where the step began: the stage of impacts
-// takes it, with all else, along its mean velocities, so that what is swept meets it on its way.
+// An articulation that supports a body takes part in the sub-steps, together with all that it
+// touches. In each sub-step its forces are integrated; its joint rows and contacts are solved in
+// iterations, alternating with the contact blocks and the joints of bodies; and it moves. It
+// responds to impulses through its own joints (solve/link_side.h), so no joint separates under a
+// load. Afterwards it returns to its pose at the start of the step. The stage of impacts then moves
+// it, with everything else, along its mean velocities, so that swept bodies collide with it on its
+// path.
 //
-// An articulation that no such body is near is left to the stage of impacts, with its contacts.
+// An articulation without such a body nearby is left to the stage of impacts, with its contacts.
 #include <algorithm>
 
 #include "solve/row_vector.h"
@@ -15,7 +17,8 @@
 
 namespace vp {
 
-// Which bodies are near a link, and which articulations take part: those, and what these touch.
+// Finds the bodies near links, and the articulations that take part: those near a body, and those
+// that touch them.
 void World::Impl::find_bodies_on_links() {
   if (articulations.empty()) return;
   const auto articulation_of = [this](const Body& body) {
@@ -58,7 +61,7 @@ void World::Impl::put_on_link(std::uint32_t index, Articulation& art) {
   impacts.bodies_on_links.push_back(index);
 }
 
-// Whether their contact is solved there.
+// Whether their contact is solved in the sub-steps.
 bool World::Impl::in_sub_steps(const Body& a, const Body& b) const {
   return (a.is_link && articulations[a.articulation].sub_stepped) ||
          (b.is_link && articulations[b.articulation].sub_stepped);
@@ -87,7 +90,7 @@ void World::Impl::find_link_contacts(double dt, int sub_steps) {
       add_contact(pair, found.manifold, part++, false, true, impacts.link_contacts);
     }
   }
-  // What is remembered is of a whole step.
+  // The remembered impulses are those of a whole step.
   const double fraction = 1.0 / sub_steps;
   for (solve::ContactConstraint& c : impacts.link_contacts) {
     c.rolling_impulse *= fraction;
@@ -118,7 +121,7 @@ solve::StepContext World::Impl::link_context(double h) {
           kFastestShift * speed_unit};
 }
 
-// Their velocities as the lanes and joints have left them.
+// Loads the velocities that the contact blocks and joints have computed.
 void World::Impl::load_bodies_on_links() {
   for (const std::uint32_t i : impacts.bodies_on_links) {
     impacts.solver_bodies[i].v = vector_of(body_rows[i + 1].velocity);
@@ -132,7 +135,7 @@ void World::Impl::store_bodies_on_links() {
   }
 }
 
-// The forces of the sub-step, and everything as the solver wants it.
+// Integrates the forces of the sub-step and prepares the solver's data.
 void World::Impl::begin_links(double h) {
   for (std::size_t a = 0; a < articulations.size(); ++a) {
     Articulation& art = articulations[a];
@@ -175,8 +178,8 @@ bool has_block_joints(const Body& body, const Joints& joints) {
 
 }  // namespace
 
-// Where it is in this sub-step. A fixed link, too, has its articulation's joints solved with what
-// touches it.
+// The body at its pose in this sub-step. A fixed link is also solved with its articulation's
+// joints.
 solve::SolverBody World::Impl::solver_body_in_sub_step(std::uint32_t index, double h) const {
   const Body& body = bodies[index];
   const bool stands = body.is_link || body.motion == Motion::fixed;
@@ -206,7 +209,7 @@ void World::Impl::solve_links(double h) {
   store_bodies_on_links();
 }
 
-// The contacts go as what they join does; the articulations have yet to be relaxed.
+// Advances the contacts' separations with their bodies. The articulations are not relaxed yet.
 void World::Impl::move_links(double h) {
   load_bodies_on_links();
   for (Articulation& art : articulations) {
@@ -239,7 +242,7 @@ void World::Impl::relax_links(double h) {
   }
 }
 
-// Events, what the next step starts from, and how the articulations have gone.
+// Events, impulses for the next step's warm start, and the articulations' mean motion.
 void World::Impl::end_links(double dt, int sub_steps) {
   if (impacts.bodies_on_links.empty()) return;
   remember_impulses(impacts.link_contacts, sub_steps);

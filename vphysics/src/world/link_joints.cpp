@@ -1,4 +1,4 @@
-// Joints in rows (row_joints.h) within a step: where each is solved, and with what.
+// Joints in rows (row_joints.h) within a step: which solve each one belongs to.
 #include <algorithm>
 #include <utility>
 
@@ -18,7 +18,8 @@ void World::Impl::list_row_joints() {
   }
 }
 
-// As their contacts would (find_bodies_on_links).
+// Marks the bodies that are joined to links as bodies on links. Contacts do the same
+// (find_bodies_on_links).
 void World::Impl::find_bodies_joined_to_links() {
   for (const std::uint32_t i : impacts.row_joints) {
     const BodyJoint& joint = joints[i];
@@ -36,7 +37,7 @@ bool World::Impl::is_in_sub_steps(const BodyJoint& joint) const {
   return in_sub_steps(a, b) && !a.continuous && !b.continuous;
 }
 
-// Of an instant: whom joints in rows keep from going its own way.
+// At an instant: marks the bodies of joints in rows, which do not move freely.
 void World::Impl::note_joined_bodies() {
   for (const std::uint32_t i : impacts.row_joints) {
     const BodyJoint& joint = joints[i];
@@ -48,7 +49,7 @@ void World::Impl::note_joined_bodies() {
   }
 }
 
-// Of links that joints in rows hold, at the velocities of now.
+// The poses after h, at the present velocities, of links with joints in rows.
 void World::Impl::find_next_poses(double h) {
   if (impacts.row_joints.empty()) return;
   impacts.next_poses.resize(bodies.size());
@@ -113,7 +114,7 @@ void World::Impl::take_back_row_joints(const RowJointStep& step) {
   }
 }
 
-// At the end of a step.
+// Checks the joints in rows at the end of a step.
 void World::Impl::note_open_row_joints() {
   for (const std::uint32_t i : impacts.row_joints) {
     const BodyJoint& joint = joints[i];

@@ -1,4 +1,4 @@
-// Masses of bodies.
+// Mass properties of bodies.
 #include <algorithm>
 #include <cmath>
 

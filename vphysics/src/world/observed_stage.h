@@ -1,4 +1,4 @@
-// Tells an observer, if there is one, when a stage of the step begins and ends.
+// Notifies an observer, if there is one, of the begin and the end of a stage.
 #pragma once
 
 #include "vphysics/stages.h"

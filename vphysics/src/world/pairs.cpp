@@ -1,4 +1,4 @@
-// Which colliders may meet within the rest of the step.
+// Pairs of colliders that may collide within the rest of the step.
 #include <algorithm>
 
 #include "world/impl.h"
@@ -10,8 +10,8 @@ bool pushable_or_sensed(const Body& a, const Body& b, const Collider& ca, const 
   return a.motion == Motion::dynamic || b.motion == Motion::dynamic || ca.sensor || cb.sensor;
 }
 
-// What a continuous body carries is swept, but for sensors that are no spheres: they look where
-// they are at the start of a step.
+// The colliders of a continuous body are swept, except sensors that are not spheres: these are
+// tested at their pose at the start of a step.
 bool is_swept(const Body& body, const Collider& c) {
   return body.continuous && (!c.sensor || c.geometry.kind == collide::Kind::sphere);
 }
@@ -45,13 +45,13 @@ double World::Impl::discrete_margin(const ColliderPair& pair, double h) const {
          travel(bodies[b], impacts.motions[b], h);
 }
 
-// Pairs in which nothing is swept.
+// Pairs without a swept collider.
 void World::Impl::find_discrete_pairs(double h) {
   impacts.discrete_pairs.clear();
   for (const collide::IndexPair& pair : impacts.discrete_body_pairs.find(body_motions())) {
     const Body &a = bodies[pair.a], &b = bodies[pair.b];
     const bool continuous = a.continuous || b.continuous;
-    if (!continuous && !a.is_link && !b.is_link) continue;  // of the sub-stepped solver
+    if (!continuous && !a.is_link && !b.is_link) continue;  // belongs to the sub-stepped solver
     const bool sensors_only = in_sub_steps(a, b);
     const bool carries_sensor = (a.continuous && a.has_sensor) || (b.continuous && b.has_sensor);
     if ((continuous && !carries_sensor) || !may_overlap(a, b)) continue;
@@ -94,7 +94,7 @@ collide::SweepQuery ImpactTimes::sweep_query(const SweptPair& p, double h) const
           tolerance()};
 }
 
-// A sphere has closed forms, which the general way would only find more slowly.
+// A sphere has closed forms, which are faster than the general search.
 double ImpactTimes::until(const SweptPair& p, double target, double h) const {
   const Collider &c = colliders[p.swept_is_a ? p.pair.a : p.pair.b],
                  &other = colliders[p.swept_is_a ? p.pair.b : p.pair.a];
@@ -103,8 +103,8 @@ double ImpactTimes::until(const SweptPair& p, double target, double h) const {
                                    {&other.geometry, other.T, motions[other.body]},
                                    h,
                                    tolerance()};
-  // What of a surface has come near but is no contact (inner edges, backs) would hold the body
-  // where it is: the solver has nothing that pushes it away.
+  // Parts of a surface that are close but make no contact (inactive edges, back faces) must not
+  // stop the body: the solver has no constraint that would separate it from them.
   const auto near =
       is_surface(other.geometry) ? collide::NearParts::passed : collide::NearParts::met;
   collide::PartsImpact found{};
@@ -137,7 +137,8 @@ double ImpactTimes::separation(const Collider& moving, const Collider& other, do
 
 namespace {
 
-// To the farthest point of what turns with the collider, or of a sphere to its centre.
+// The distance from x to the farthest point that rotates with the collider, or to a sphere's
+// centre.
 double radius_from(const Vec3& x, const Collider& c) {
   if (c.geometry.kind == collide::Kind::sphere) return norm(c.T.position() - x);
   if (c.geometry.kind != collide::Kind::compound) {
@@ -149,7 +150,8 @@ double radius_from(const Vec3& x, const Collider& c) {
 
 }  // namespace
 
-// Pairs of a continuous body's colliders with those of another body that can meet within h.
+// Adds the pairs of a continuous body's colliders with those of another body that can collide
+// within h.
 void World::Impl::add_swept_pairs(std::uint32_t index, std::uint32_t other, double h) {
   wake(other);
   const Body &a = bodies[index], &b = bodies[other];
@@ -207,6 +209,8 @@ void World::Impl::find_touching_pairs(double h) {
 // That can meet within h: of all bodies, which are at one time.
 void World::Impl::find_swept_pairs(double h) {
   impacts.swept_pairs.clear();
+  // Two continuous bodies are paired once, in the order of their slots. Exception: a sensor that is
+  // not swept is paired with the swept colliders of the other body.
   for (const collide::IndexPair& p :
        impacts.swept_body_pairs.find(body_motions(), impact_bodies(), desc.contact_slop, h)) {
     if (overlap(impacts.bounds[p.a], impacts.bounds[p.b])) add_swept_pairs_of(p, h);

@@ -1,5 +1,5 @@
-// Loops that several workers may share: each part writes its own alone, so who does it does not
-// matter.
+// Loops that several workers may share. Each part writes only its own data, so the results do not
+// depend on the worker.
 #pragma once
 
 #include <cstddef>
@@ -12,9 +12,9 @@ namespace vp {
 inline constexpr std::size_t kBodyGrain = 256;  // bodies: some microseconds
 
 struct Workers {
-  std::shared_ptr<TaskScheduler> scheduler;  // none: all is done by who calls step()
+  std::shared_ptr<TaskScheduler> scheduler;  // null: the thread that calls step() does all the work
 
-  // f(begin, end) of parts of [0, count).
+  // Calls f(begin, end) for parts of [0, count).
   template <class F>
   void in_parallel(std::size_t count, std::size_t grain, const F& f) const {
     if (!scheduler || count < 2 * grain) {

@@ -1,9 +1,8 @@
-// Contacts of pairs that touch in several places: where one is a mesh, a height field or a
-// compound.
+// Contacts with several manifolds: where one of the shapes is a mesh, a height field or a compound.
 //
-// The narrow phase looks at such a pair as a whole, when any part of it or the bodies themselves
-// have moved by more than a little. Each manifold it finds goes on in the lane of that old part to
-// which it is most like, so that impulses are kept and colours do not change.
+// The narrow phase processes the aggregate contact of such a pair when any part of it, or the
+// bodies themselves, have moved by more than a small distance. Each new manifold takes over the
+// contact slot of the most similar old part. So impulses persist, and colours do not change.
 #include <algorithm>
 #include <utility>
 
@@ -13,17 +12,17 @@
 namespace vp {
 namespace {
 
-// The normal of a manifold may have turned so far (cosine) to be the same as the last time.
+// Min cosine between the normals of a manifold and of its predecessor.
 constexpr double kSameNormal = 0.9;
 
-// The deepest point first: it is the one that a lane for a single point takes.
+// Puts the deepest point first: a contact slot for a single point takes this one.
 void put_deepest_first(collide::Manifold& m) {
   const auto deeper = [](const auto& p, const auto& q) { return p.separation < q.separation; };
   std::swap(m.points[0], *std::min_element(m.points, m.points + m.count, deeper));
 }
 
-// Of the old parts that are left and have nearly the normal: that of the same triangle, or else
-// with the most features of it, or else the normal most alike; or none.
+// Claims the most similar of the remaining old parts: by the sub-shapes, the number of
+// common features and the normal. kNone if there is none.
 std::uint32_t claim_part(const ContactStore& contacts, const Colliders& colliders,
                          std::vector<std::uint32_t>& old_parts, const collide::SubManifold& found) {
   std::uint32_t* best = nullptr;

@@ -1,12 +1,13 @@
-// Rays, casts, overlaps and the nearest, through the broad phase's trees.
+// Ray casts, shape casts, overlap tests and nearest colliders, through the trees of the broad
+// phase.
 //
-// Between steps a collider may have left the bounds that its proxy has there, which only a step may
-// change since they are state. Such strays are looked through one by one: few are, since a step
-// gives what moves bounds that hold for the next.
+// Between steps a collider may have left the enlarged AABB of its proxy. Only a step may change
+// that AABB, since it is state. Queries test such strays one by one. There are few, since a step
+// gives moving bodies AABBs that hold for the next step.
 //
-// Of each collider the answer is found exactly and depends on nothing else; the trees only leave
-// out what cannot be part of it. So it is the same whatever shape the trees have, as after
-// restore().
+// The result for each collider is exact and depends on nothing else. The trees only exclude
+// colliders that cannot be part of the result. So the result does not depend on the shape of the
+// trees, for instance after restore().
 #include <algorithm>
 #include <cmath>
 
@@ -18,7 +19,7 @@
 namespace vp {
 namespace {
 
-// As near as this a cast shape touches [m, and share of the sizes].
+// A cast shape touches at this distance [m, and fraction of the sizes].
 constexpr double kTouch = 1e-9, kTouchFraction = 1e-12;
 constexpr double kFullRevolution = 6.2832;
 
@@ -70,7 +71,7 @@ collide::MovingShape moving(const collide::Geometry& shape, const SE3& T, const 
   return {&shape, T, {T.position(), m.translation, m.rotation}};
 }
 
-// Of all that a shape passes within the time 1.
+// The AABB sweep that contains the shape's motion over the time 1.
 collide::Sweep sweep_of(const collide::MovingShape& m) {
   const collide::Bounds start = bounds_of(*m.shape, m.T);
   const Vec3 far{std::max(start.upper.x - m.motion.x.x, m.motion.x.x - start.lower.x),
@@ -82,7 +83,7 @@ collide::Sweep sweep_of(const collide::MovingShape& m) {
 
 }  // namespace
 
-// One query; the colliders are posed and the strays are known.
+// One query. The colliders are posed and the strays are known.
 struct Query {
   const Bodies& bodies;
   const Colliders& colliders;
@@ -91,7 +92,8 @@ struct Query {
   collide::PartsScratch& parts;
   const QueryFilter& filter;
 
-  // meet(collider) for what the sweep may meet; it returns the fraction up to which to go on.
+  // Calls collide(collider) for each collider that the sweep may hit; it returns the fraction at
+  // which to stop.
   template <class F>
   void for_swept(const collide::Sweep& sweep, const F& collide) {
     double limit = 1.0;
@@ -110,7 +112,8 @@ struct Query {
     });
   }
 
-  // hit(RayHit) for each collider; it returns the distance up to which to go on.
+  // Calls hit(RayHit) for each collider that the ray hits; it returns the distance at which to
+  // stop.
   template <class F>
   void for_ray_hits(const Vec3& origin, const Vec3& unit, double limit, const F& hit) {
     const double full_length = limit;
@@ -125,7 +128,8 @@ struct Query {
     });
   }
 
-  // hit(ShapeHit) for each collider; it returns the fraction up to which to go on.
+  // Calls hit(ShapeHit) for each collider that the cast hits; it returns the fraction at which to
+  // stop.
   template <class F>
   void for_cast_hits(const collide::MovingShape& shape, const F& hit) {
     double limit = 1.0;
@@ -178,7 +182,7 @@ struct Query {
     return {colliders.id(index), bodies.id(c.body), c.user_data, part};
   }
 
-  // Whether a hit at x comes before another at y; of two at once, that of the older collider.
+  // Whether a hit at x comes before another at y. Ties: the older collider first.
   bool comes_before(double x, const QueryHit& hit, double y, const QueryHit& other) const {
     return x < y || (x == y && colliders[hit.collider.index - 1].serial <
                                    colliders[other.collider.index - 1].serial);
@@ -221,7 +225,7 @@ Query World::Impl::query(const QueryFilter& filter) {
   return {bodies, colliders, finder, queries, narrow.parts_scratch, filter};
 }
 
-// --- rays ----------------------------------------------------------------------------------------
+// --- ray casts -----------------------------------------------------------------------------------
 
 Expected<std::optional<RayHit>> World::ray_cast(const Vec3& origin, const Vec3& direction,
                                                 double max_distance,
@@ -258,7 +262,7 @@ Expected<void> World::ray_cast_all(const Vec3& origin, const Vec3& direction, do
   return {};
 }
 
-// --- casts ---------------------------------------------------------------------------------------
+// --- shape casts ---------------------------------------------------------------------------------
 
 Expected<std::optional<ShapeHit>> World::shape_cast(const Shape& shape, const SE3& T,
                                                     const CastMotion& motion,
@@ -294,7 +298,7 @@ Expected<void> World::shape_cast_all(const Shape& shape, const SE3& T, const Cas
   return {};
 }
 
-// --- what touches, what is near ------------------------------------------------------------------
+// --- overlaps and nearest colliders --------------------------------------------------------------
 
 Expected<void> World::overlapping(const Shape& shape, const SE3& T_world_shape,
                                   std::vector<ColliderId>& found, const QueryFilter& filter) const {
@@ -335,7 +339,7 @@ Expected<std::optional<NearestHit>> World::nearest(const Vec3& point, double max
   if (!in_range(max_distance) || max_distance < 0.0) {
     return invalid("nearest: max_distance must be zero or more and at most 1e9 m");
   }
-  return impl_->query(filter).nearest({}, SE3(point), max_distance);  // a sphere of no radius
+  return impl_->query(filter).nearest({}, SE3(point), max_distance);  // a sphere of radius zero
 }
 
 }  // namespace vp

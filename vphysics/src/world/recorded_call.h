@@ -1,5 +1,5 @@
-// The calls that change a world, as data: noted by a recorder, made again by a replay. Their order
-// in the list is their code in a recording: new ones go to its end.
+// The calls that change a world, as data: written by a recorder, repeated by a replay. The index in
+// the variant is the code in a recording: append new calls at its end.
 #pragma once
 
 #include <variant>
@@ -127,7 +127,7 @@ struct RemoveCollider {
 struct DestroyArticulation {
   ArticulationId articulation;
 };
-// With options that are not the usual ones.
+// With options that differ from the defaults.
 struct CreateArticulationWithOptions {
   std::vector<LinkSpec> links;
   bool links_collide = false;

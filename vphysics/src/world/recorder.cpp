@@ -1,4 +1,4 @@
-// Noting the calls that change a world.
+// The recorder: writes the calls that change a world.
 #include "vphysics/recording.h"
 #include "world/impl.h"
 #include "world/invalid.h"
@@ -10,7 +10,7 @@
 namespace vp {
 namespace {
 
-// A frame ends with a step, or when it has become as long as this [bytes].
+// A frame ends with a step, or when it is longer than this [bytes].
 constexpr std::size_t kLongFrame = 1 << 20;
 
 }  // namespace

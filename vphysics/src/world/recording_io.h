@@ -1,14 +1,12 @@
-// What a recording consists of, each thing described once for writing and reading:
-// Fields<Io>::of(io, x) hands each of x's fields to io.
+// The format of a recording. Each type is described once, for writing and reading:
+// Fields<Io>::of(io, x) passes each field of x to io.
 //
-//   header    magic, format (8 bytes each), settings of the world, digest of its structure, whether
-//   a
-//             snapshot follows, its length and it; check
+//   header    magic, format (8 bytes each), settings of the world, topology hash, whether a
+//             snapshot follows, its length and bytes; check
 //   frames    length (4), items, check (4)
-//   item      code (1), fields: a call, those that build with the digest of the structure after it
-//   (8);
-//             or a step: dt unless it is the last one's, hash of the state if it was taken; or the
-//             end
+//   item      code (1), fields. A call; calls that build are followed by the topology hash (8).
+//             Or a step: dt if it differs from the last step's, hash of the state if it was taken.
+//             Or the end.
 //
 // Numbers are little-endian: a double has 8 bytes, an id or a count is a varint, an enum one byte.
 #pragma once
@@ -30,7 +28,7 @@ namespace vp::recording {
 
 inline constexpr std::uint64_t kMagic = 0x4443455259485056u;  // "VPHYRECD"
 inline constexpr std::uint64_t kFormat = 3;
-// Codes of items that are no calls.
+// Codes of items that are not calls.
 inline constexpr std::uint8_t kStep = 0x80, kNewDt = 1, kHash = 2, kEnd = 0xff;
 
 std::uint32_t check_of(std::span<const std::byte> bytes);
@@ -38,7 +36,7 @@ std::uint32_t check_of(std::span<const std::byte> bytes);
 template <class Io, class T>
 using Field = std::conditional_t<Io::kReads, T&, const T&>;
 
-// The kinds of shapes that a recording carries; the others it names as parts.
+// Number of shape kinds that a recording contains. It refers to the others as parts, by index.
 inline constexpr std::size_t kCarriedShapes = 6;
 
 template <class E>
@@ -123,7 +121,7 @@ class Writer {
   RecordedParts& parts_;
 };
 
-// Out of bytes or out of range makes it fail for good.
+// Fails permanently if the bytes end or a value is out of range.
 class Reader {
  public:
   static constexpr bool kReads = true;
@@ -146,7 +144,7 @@ class Reader {
     }
     return failed();
   }
-  // How many items follow: each has at least a byte.
+  // Number of the items that follow. Each has at least one byte.
   std::size_t items() {
     const std::uint64_t n = count();
     if (n > bytes_.size()) return failed();
@@ -213,7 +211,7 @@ class Reader {
   template <class T>
   void one(std::vector<T>& list) {
     list.clear();
-    // Memory grows with the bytes that there are, not with what they announce.
+    // Memory grows with the bytes present, not with the announced count.
     for (std::size_t n = items(); n > 0 && ok_; --n) one(list.emplace_back());
   }
   template <class... K>
@@ -273,7 +271,7 @@ struct Fields {
   }
   static void of(Io& io, Field<Io, BodyDesc> d) {
     io(d.motion, d.T_world_body, d.velocity, d.inertia, d.linear_damping, d.angular_damping);
-    // What came later is behind flags, so that bodies without it are written as before.
+    // Later fields are behind flags, so that bodies without them are written as before.
     constexpr std::uint8_t kContinuous = 1, kScaled = 2, kSleepless = 4;
     if constexpr (Io::kReads) {
       const std::uint8_t flags = io.byte();
@@ -321,9 +319,9 @@ struct Fields {
     io(f.lower, f.upper, f.limit_stiffness, f.limit_damping, f.stiffness, f.rest, f.friction,
        f.motor_limit);
   }
-  // Names are the user's, and not the world's.
+  // Names belong to the user, not to the world.
   static void of(Io& io, Field<Io, LinkSpec> link) {
-    // The top bit, which no parent's number has: the inertia is taken as stated.
+    // The top bit, which no parent's index uses: the inertia is taken as stated.
     auto behind = static_cast<std::uint32_t>(link.parent + 1) |
                   static_cast<std::uint32_t>(link.inertia_as_stated) << 31;
     io(behind, link.joint, link.T_parent_joint, link.inertia, link.armature, link.damping,

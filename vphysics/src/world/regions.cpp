@@ -7,11 +7,11 @@
 namespace vp {
 namespace {
 
-// What falls for so long goes 0.3 m.
+// Free fall covers 0.3 m in this time.
 constexpr double kDivisionTime = 0.25;  // [s]
 
-// How many for so many bodies, if there were `now`: a power of two, or 0 instead of one. Fewer only
-// if they would not be nearly full.
+// Number of regions for a number of bodies, given the present number `now`: a power of two, or 0
+// instead of 1. It decreases only if the fewer regions would be at most three quarters full.
 std::size_t regions_for(std::size_t bodies, std::size_t max_value, std::size_t now) {
   std::size_t count = 1;
   while (count < kMaxRegions && bodies > count * max_value) count *= 2;
@@ -31,7 +31,7 @@ std::int64_t Regions::spread(std::span<const Key> keys, int axis) {
   return separation;
 }
 
-// Another axis than before if along it they lie apart by a quarter more.
+// Changes the axis only if the spread along another one is larger by a quarter.
 std::uint8_t Regions::axis_of(std::span<const Key> keys, std::uint8_t before) {
   std::int64_t along[3];
   for (int axis = 0; axis < 3; ++axis) along[axis] = spread(keys, axis);
@@ -57,7 +57,7 @@ bool Regions::divide(Bodies& bodies, std::span<const std::uint32_t> awake_bodies
     }
   }
   if (state.count > 0) assign(bodies, awake_bodies);
-  // Halves are sets: in which order they came is the library's affair.
+  // std::nth_element does not define the order within the halves.
   std::sort(changed_.begin(), changed_.end());
   return true;
 }
@@ -75,7 +75,7 @@ void Regions::assign(Bodies& bodies, std::span<const std::uint32_t> awake_bodies
     all = merged(all, {x, x});
   }
   const Vec3 size = all.upper - all.lower;
-  // In whole steps of a grid: their sums, and so all decisions, are the same in any order.
+  // Integer grid coordinates: their sums, and so all decisions, do not depend on the order.
   const double per_metre = (1 << 30) / std::max({size.x, size.y, size.z, 1e-9});
   keys_.clear();
   for (const std::uint32_t i : awake_bodies) {
@@ -87,9 +87,10 @@ void Regions::assign(Bodies& bodies, std::span<const std::uint32_t> awake_bodies
   halve(bodies, keys_, 1);
 }
 
-// node: 1 is of all, 2 n and 2 n + 1 are the halves of n. Bodies at the same place go by number.
+// node: 1 is the root, 2 n and 2 n + 1 are the halves of n. Bodies at the same position are ordered
+// by index.
 void Regions::halve(Bodies& bodies, std::span<Key> keys, std::size_t node) {
-  if (keys.empty()) return;  // of the smallest regions some may have gone
+  if (keys.empty()) return;  // too few bodies: some regions stay empty
   if (node >= state.count) {
     for (const Key& key : keys)
       set(bodies, key.body, static_cast<std::uint16_t>(node - state.count + 1));
@@ -105,7 +106,7 @@ void Regions::halve(Bodies& bodies, std::span<Key> keys, std::size_t node) {
   halve(bodies, keys.subspan(half), 2 * node + 1);
 }
 
-// Ascending within each region.
+// Bodies are ascending within each region.
 void Regions::sort(const Bodies& bodies, std::span<const std::uint32_t> awake_bodies) {
   first_.assign(std::size_t{state.count} + 2, 0);
   if (state.count == 0) {

@@ -1,12 +1,13 @@
-// Articulations that nothing can meet: their links are not gone through one by one.
+// Remote articulations: nothing can collide with them, so a step skips their links.
 //
-// A step moves the coordinates of a remote articulation; poses, velocities and bounds of its links
-// are made when something comes near or somebody asks for them (follow()). Which pairs meet is
-// found anew in every round from the bounds, so remoteness changes what a step costs and nothing
-// that it computes.
+// A step advances the coordinates of a remote articulation. Poses, velocities and AABBs of its
+// links are updated when a body comes close or somebody requests them (follow()). Each iteration
+// finds the colliding pairs from the AABBs anew. So remoteness changes the cost of a step, but not
+// its results.
 //
-// Only of links that move along and about one line, whose motors need no solver: where they turn to
-// then changes no bounds (Body::around_line), and how far they slide is known from few coordinates.
+// Only for articulations whose links all translate along and rotate about one line, and whose
+// motors need no solver. Their rotation does not change any AABB (Body::around_line), and their
+// translation follows from few coordinates.
 #include <algorithm>
 #include <cmath>
 
@@ -15,10 +16,11 @@
 namespace vp {
 namespace {
 
-// With more bodies that move than this each articulation's test would cost more than it saves.
+// With more moving bodies than this, the test of each articulation would cost more than it saves.
 constexpr std::size_t kFewMovingBodies = 8;
-// How far a remote articulation may slide before it is looked at anew [m]; and how far a body must
-// be from that for it to become remote, so that none changes to and fro.
+// Max translation of a remote articulation before it is updated [m]. And the min distance of bodies
+// from its enlarged AABB for it to become remote, so that it does not alternate between both
+// states.
 constexpr double kRemoteSlide = 0.03, kClear = 0.01;
 
 }  // namespace
@@ -35,14 +37,14 @@ const std::vector<std::uint32_t>& World::Impl::impact_bodies() {
   return impacts.body_list;
 }
 
-// As long as no body or collider comes or goes.
+// Valid until a body or a collider is added or removed.
 bool World::Impl::can_be_remote(const Articulation& art) const {
   if (!art.keeps_twists() || !art.settles_alone()) return false;
   for (const std::uint32_t b : art.bodies) {
     if (bodies[b].first_joint != kNone) return false;
     if (bodies[b].first_collider == kNone) continue;
     for (const Body& other : bodies) {
-      const bool tested = !other.is_link && other.motion != Motion::fixed;  // as movers
+      const bool tested = !other.is_link && other.motion != Motion::fixed;  // as awake bodies
       if (other.alive && !tested && may_overlap(bodies[b], other)) return false;
     }
   }
@@ -66,8 +68,8 @@ bool World::Impl::is_near_awake_body(const collide::Bounds& box) const {
                      [&](std::uint32_t m) { return overlap(box, impacts.bounds[m]); });
 }
 
-// After the bounds of those that are not remote: whom a mover may meet within h, or who has slid
-// far, is looked at from now on.
+// Call it after the AABBs of the other articulations are updated. Articulations that an awake body
+// may collide with within h, or that have translated far, stop being remote.
 void World::Impl::collide_remote(double h) {
   for (Articulation& art : articulations) {
     if (!art.remote) continue;
@@ -82,7 +84,7 @@ void World::Impl::collide_remote(double h) {
   }
 }
 
-// At the start of the stage of impacts.
+// Called at the start of the stage of impacts.
 void World::Impl::make_remote() {
   for (Articulation& art : articulations) {
     if (art.remote || !art.can_be_remote || art.sub_stepped) continue;
@@ -105,7 +107,7 @@ void World::Impl::make_remote() {
   }
 }
 
-// For whoever asks where links are.
+// Updates a remote articulation before its links are read.
 void World::Impl::look_at(Articulation& art) {
   if (art.remote) follow(art);
 }

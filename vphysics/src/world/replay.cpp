@@ -1,6 +1,6 @@
-// Making recorded calls again. The bytes may be a stranger's: each frame is read whole and checked
-// before any of it is done, and what it asks for goes through the world's public calls, which
-// refuse what they cannot have.
+// Replay of recorded calls. The bytes may be untrusted: each frame is read completely and checked
+// before any of its calls is made. The calls go through the world's public functions, which reject
+// invalid arguments.
 #include <utility>
 
 #include "vphysics/recording.h"
@@ -33,7 +33,7 @@ Expected<ArticulationDesc> articulation_of(const std::vector<LinkSpec>& links, b
   return ArticulationDesc{std::move(*model), links_collide};
 }
 
-// Does a call; what it returns is of no interest unless it is refused.
+// Makes a call and discards its result, except errors.
 class Doer {
  public:
   using Done = Expected<void>;
@@ -120,7 +120,7 @@ class Doer {
 
 }  // namespace
 
-// A frame's items, read and not yet done.
+// The items of a frame, before they are executed.
 class Replay::Frame {
  public:
   struct Built {
@@ -132,7 +132,7 @@ class Replay::Frame {
   double dt = 0.0;
   std::uint64_t hash = 0, last_step = 0;
 
-  // False: no frame that a recorder wrote. A step or the end is a frame's last item.
+  // False: a recorder did not write this frame. A step or the end is the last item of a frame.
   bool read(std::span<const std::byte> bytes, const RecordedParts& parts, double last_dt) {
     recording::Reader in(bytes, parts);
     while (in.ok() && !in.at_end()) {

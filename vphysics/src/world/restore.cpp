@@ -1,9 +1,9 @@
-// Back to a state that snapshot() wrote (snapshot.cpp, whose head tells the words).
+// Restores a state that snapshot() wrote. The head of snapshot.cpp describes the format.
 //
-// Two phases: everything is read into Incoming and checked there, then the world takes it over, and
-// nothing of that can fail. Incoming stays with the world: what was the world's goes there in
-// exchange, so that going back again takes no memory. What can be derived is kept where the state
-// that it follows from is the same: poses of colliders, trees of the broad phase, lists of bodies.
+// Two phases: all values are read into Incoming and checked there; then the world takes them over,
+// which cannot fail. The world keeps Incoming and swaps its old data into it, so that the next
+// restore allocates nothing. Derived data are kept if the state that they follow from is the same:
+// poses of colliders, trees of the broad phase, lists of bodies.
 #include <algorithm>
 #include <bit>
 #include <cstring>
@@ -16,19 +16,19 @@
 namespace vp {
 namespace {
 
-// What of a body changes.
+// The state of a body.
 struct BodyState {
   SE3 T;
   Vec3 w, v;
   se3 prescribed;
 };
-// What of a degree of freedom changes.
+// The state of a degree of freedom.
 struct DofState {
   double v = 0.0;
   JointDrive drive;
   std::array<double, kRowsOfDof> impulses{};
 };
-// What of a joint changes.
+// The state of a joint.
 struct JointState {
   double rotated[2] = {};
   SE3 start[2];
@@ -164,11 +164,11 @@ std::uint64_t digest_of(std::span<const std::byte> bytes) {
 
 }  // namespace
 
-// Read, checked, and not yet the world's.
+// The state that was read and checked, before the world takes it over.
 struct World::Impl::Incoming {
   explicit Incoming(Impl& of) : world(of), contacts(of.contact_data()) {}
 
-  // The problem, or null.
+  // Returns the problem, or null.
   const char* read(Reader& in);
   void read_joints(Reader& in);
   void read_records(Reader& in, std::size_t count, std::size_t destroyed_count);
@@ -177,14 +177,14 @@ struct World::Impl::Incoming {
   Impl& world;
   SubStepState sub_steps;
   double impact_step = 0.0;
-  std::vector<BodyState> bodies;  // that are no links
-  std::vector<double> q;          // of all articulations, one after the other, and so:
+  std::vector<BodyState> bodies;  // without links
+  std::vector<double> q;          // of all articulations, concatenated, as dofs
   std::vector<DofState> dofs;
   std::vector<PairRecord> records;
   std::vector<DestroyedPair> destroyed_pairs;
-  std::vector<JointState> joints;  // that are alive
+  std::vector<JointState> joints;  // of joints that are alive
   std::vector<BodyLoad> loads;
-  // Articulations with forces on them; of all, one after the other, those on links and on joints.
+  // Indices of articulations with loads; loads on their links and on their joints, concatenated.
   std::vector<std::uint32_t> loaded;
   std::vector<dse3> link_loads;
   std::vector<double> joint_loads;
@@ -199,7 +199,7 @@ const char* World::Impl::Incoming::read(Reader& in) {
       in.u64() != world.articulations.size()) {
     return "restore: a snapshot of another world; build this one by the same sequence of calls";
   }
-  constexpr std::size_t kRecord = 38, kPair = 3;  // words
+  constexpr std::size_t kRecord = 38, kPair = 3;  // u64 each
   const std::size_t count = in.count(kRecord), destroyed_count = in.count(kPair);
   if (!in.ok()) return "restore: more contacts announced than bytes follow";
 
@@ -243,9 +243,9 @@ void World::Impl::Incoming::read_loads(Reader& in) {
   link_loads.clear();
   joint_loads.clear();
   if (!in.ok() || in.at_end()) return;
-  constexpr std::size_t kLoad = 7;  // words
+  constexpr std::size_t kLoad = 7;  // u64 each
   std::uint32_t next = 0;
-  std::size_t state = 0;  // of that body among `bodies`
+  std::size_t state = 0;  // index of that body's state in `bodies`
   for (std::size_t n = in.count(kLoad); n > 0 && in.ok(); --n) {
     BodyLoad load;
     load.body = in.index(world.bodies.size());
@@ -297,7 +297,7 @@ void World::Impl::adopt(Incoming& from) {
     if (!same_bits(body.T, state->T)) {
       body.T = state->T;
       body.moved();
-      // Swept pairs have found what is fixed where it was.
+      // The swept pairs were found with the poses of fixed bodies.
       if (body.motion == Motion::fixed) lists.invalidate();
     }
     body.w = state->w;

@@ -9,10 +9,10 @@
 namespace vp {
 namespace {
 
-// Share of an error that an instant takes out.
+// Fraction of an error that an instant corrects.
 constexpr double kCorrected = 0.5;
-// G of what holds hard in sub-steps, as a share of K: rows that contradict one another carry no
-// more than what its inverse makes of the speed at which errors are taken out.
+// G of hard constraints in sub-steps, as a fraction of K. It limits the impulses of contradictory
+// rows to the speed of error correction divided by G.
 constexpr double kRowLoss = 0.005;
 constexpr double kUnbounded = 1e30;
 
@@ -77,7 +77,7 @@ class RowsOfJoint {
     return {row, pair};
   }
 
-  // That an error goes: by velocities, or by moving the bodies.
+  // Corrects an error: by velocities, or by moving the bodies.
   void take_out(const BodyJointRow& from, double error, solve::JointRow& row,
                 solve::JointPair& pair) const {
     const double max_speed = fastest(from);
@@ -101,7 +101,7 @@ class RowsOfJoint {
     }
   }
 
-  // Where its bounds let it push one way only, a gap may close.
+  // If its bounds make it one-sided, an open separation may close within the rest of the step.
   void add_bounded(int i) {
     const BodyJointRow& from = joint_.rows[i];
     const double C = residual(i);
@@ -165,8 +165,8 @@ void add_rows(BodyJoint& joint, std::uint32_t index, const RowEnd& a, const RowE
               std::vector<solve::JointPair>& pairs) {
   if (joint.laid_out_for != step.h) lay_out(joint, step.h);
   joint.laid_out_for = step.h;
-  // How fast each residual grows, and what it grows more by the end of the step than at that speed,
-  // over the step.
+  // speeds: the rate of each residual. curves: by how much its mean rate over the step exceeds
+  // that.
   JointMeasure measure, next;
   double speeds[solve::kJointRows] = {}, curves[solve::kJointRows] = {};
   evaluate(joint, a.now, b.now, measure);

@@ -1,11 +1,12 @@
-// Joints that are solved with the contacts of links and of continuous bodies: in rows of their own
-// (solve/joint_row.h), in double precision. All others are in lanes (joint_steps.h).
+// Joints of links and of continuous bodies. They have rows of their own (solve/joint_row.h), in
+// double precision, and are solved together with the contacts of these bodies. All other joints are
+// in blocks (joint_steps.h).
 //
-// One of which an end is a link or continuous is solved where its contacts would be: in the
-// sub-steps, where a link moves with a body that has them, else at each instant of the stage of
-// impacts. What holds hard is there held exactly by velocities, along the chord of where the step
-// leads, so that what swings loses nothing; what error is left is taken out by moving the bodies.
-// In sub-steps it is held as in lanes.
+// Such a joint is solved where the contacts of its bodies would be: in the sub-steps, if a link
+// moves together with a body that is in them; else at each instant of the stage of impacts. There,
+// velocities satisfy hard constraints exactly along the chord of the step's motion, so that a
+// swinging body loses no energy. A position correction removes the remaining error. In sub-steps
+// the constraints are solved as in blocks.
 #pragma once
 
 #include <cstdint>
@@ -23,32 +24,33 @@ enum class RowsOf : std::uint8_t { sub_step, first_instant, impact };
 
 struct RowJointStep {
   RowsOf of;
-  double h;           // that the rows' impulses are of [s]
-  double left;        // to the end of the step [s]
-  double fraction;    // h as a share of the step
-  double speed_unit;  // what a speed of things of a metre counts
+  double h;           // duration that the rows' impulses are of [s]
+  double left;        // remaining time of the step [s]
+  double fraction;    // h as a fraction of the step
+  double speed_unit;  // scale of speeds: square root of length_unit
 
-  // Rows start from what they were in the last step, and are remembered. Springs and drives take
-  // time: what happens at once does not feel them.
+  // Rows warm start from the last step and are remembered. Springs and drives act over time, so
+  // they do not act in an impact.
   bool with_memory() const { return of != RowsOf::impact; }
 };
 
-// A body at one end: where it is now, how its reference point moves, and where that would take it
-// by the end of the step.
+// The body at one end: its present pose, the velocity of its reference point, and the pose to which
+// that leads at the end of the step.
 struct RowEnd {
   BodyPose now;
   Velocity velocity;
   BodyPose next;
 };
 
-// The rows of one joint at the end of those there are.
+// Appends the rows of one joint.
 void add_rows(BodyJoint& joint, std::uint32_t index, const RowEnd& a, const RowEnd& b,
               const RowJointStep& step, std::vector<solve::JointRow>& rows,
               std::vector<solve::JointPair>& pairs);
-// What has been solved: to be remembered, and to the joint's mean force over a step dt.
+// Takes the solved impulses back: stores them for the next step, and adds to the joint's mean force
+// over a step dt.
 void take_back(std::span<const solve::JointRow> rows, std::span<const solve::JointPair> pairs,
                const RowJointStep& step, double dt, Joints& joints);
-// Whether what it holds hard is open by much (JointSteps::is_far_open).
+// Whether a hard constraint is far open (JointSteps::is_far_open).
 bool is_far_open(const BodyJoint& joint, const BodyPose& a, const BodyPose& b, double size);
 
 }  // namespace vp

@@ -1,4 +1,4 @@
-// The contacts of all regions and colours: region after region, then what is between them.
+// Loops over the contacts of all regions and colours: one region after the other, then kBetween.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,8 @@
 
 namespace vp {
 
-// A word for each block of contacts, for what a pass finds in it; and where each region's begin.
+// 32 bits for each block of contacts, as results of a pass, and the index of each region's first
+// block.
 struct BlockBits {
   std::vector<std::uint32_t> words;
   std::vector<std::size_t> first;
@@ -26,7 +27,7 @@ struct ContactRuns {
 
   std::uint32_t* words() const { return block_bits.words.data(); }
 
-  // f(passes of the kind, run of lanes, its blocks), one colour after the other.
+  // Calls f(passes of the kind, run of contact slots, its blocks), one colour after the other.
   template <class F>
   void for_runs_of(std::size_t region, const F& f) const {
     const solve::Passes& pass = solve::passes();
@@ -50,7 +51,8 @@ struct ContactRuns {
     for_runs_of(solve::kBetween, f);
   }
 
-  // f(region) of all but kBetween, side by side: no body but the fixed world is of two.
+  // Calls f(region) for all but kBetween, in parallel: no two regions share a body, except the
+  // fixed world.
   template <class F>
   void for_regions(const F& f) const {
     workers.in_parallel(regions(), 1, [&](std::size_t begin, std::size_t end) {
@@ -58,9 +60,9 @@ struct ContactRuns {
     });
   }
 
-  // f(passes, part of a run, number of its first block as number() has it), one colour after
-  // the other; the parts of a colour side by side where regions are not. Contacts of the last
-  // colour have no parts: they share bodies.
+  // Calls f(passes, part of a run, index of its first block as number() counts), one colour after
+  // the other. In kBetween the parts of a colour run in parallel. Contacts of the last colour share
+  // bodies and are not divided into parts.
   template <class F>
   void for_parts_of(std::size_t region, const F& f) const {
     constexpr std::size_t kGrain = 8;  // blocks: some microseconds
@@ -83,7 +85,7 @@ struct ContactRuns {
     });
   }
 
-  // The same, and then of kBetween.
+  // The same, and then kBetween.
   template <class F>
   void everywhere(const F& f) const {
     for_regions(f);
@@ -95,7 +97,7 @@ struct ContactRuns {
     everywhere([&](std::size_t region) { for_parts_of(region, f); });
   }
 
-  // Numbers the blocks of all regions and colours. Returns how many there are.
+  // Numbers the blocks of all regions and colours. Returns their count.
   std::size_t number() const {
     block_bits.first.resize(graph.regions());
     std::size_t count = 0;
@@ -110,7 +112,7 @@ struct ContactRuns {
   }
 
  private:
-  std::size_t regions() const { return graph.regions() - 1; }  // but kBetween
+  std::size_t regions() const { return graph.regions() - 1; }  // without kBetween
 };
 
 }  // namespace vp

@@ -1,5 +1,5 @@
-// Falling asleep, island after island, and waking. Contacts are parked as they are, impulses
-// included, so that what wakes goes on where it stopped.
+// Sleeping and waking of islands. Contacts of sleeping bodies are parked as they are, with their
+// impulses, so that a waking body continues where it stopped.
 #include <algorithm>
 
 #include "vphysics/assert.h"
@@ -15,7 +15,7 @@ bool may_sleep(const Body& body) {
          !body.on_link;
 }
 
-// f(body) of all that touch it or are joined to it, some perhaps more than once.
+// Calls f(body) for all bodies in contact with it or joined to it, some perhaps more than once.
 template <class F>
 void for_partners(const IslandGraph& graph, std::uint32_t index, const F& f) {
   const auto other = [index](std::uint32_t a, std::uint32_t b) { return a == index ? b : a; };
@@ -46,8 +46,8 @@ void SleepIslands::watch(Body& body, std::uint32_t index, const WorldDesc& desc,
   }
 }
 
-// Into island_: all that the seed hangs together with. False, and not all of it: some of it does
-// not rest, or was found not to in an island from `first` on.
+// Collects the island of the seed in island_. Returns false, and stops early, if a body of it does
+// not rest, or belongs to an island from `first` on that does not.
 bool SleepIslands::rests(const IslandGraph& graph, std::uint32_t seed, std::uint64_t first,
                          double sleep_after) {
   const std::uint64_t island = ++found_;
@@ -108,7 +108,7 @@ void World::Impl::send_to_sleep() {
       });
 }
 
-// With all that it hangs together with.
+// Wakes the body and its island.
 void World::Impl::wake(std::uint32_t seed) {
   bodies[seed].rest_time = 0.0;
   if (!bodies[seed].asleep) return;

@@ -1,5 +1,5 @@
-// Slots of bodies, colliders or joints, in order of creation; reused after what was in them is
-// destroyed. Users hold ids: index + 1, and the generation of what is in the slot.
+// Slots of bodies, colliders or joints, in order of creation. A slot is reused after its object is
+// destroyed. Users hold ids: index + 1, and the generation of the slot's object.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace vp {
 
-// The first free slot, which is free no longer, or a new one at the end.
+// Takes a free slot, or appends a new one.
 template <class T>
 std::uint32_t take_slot(std::vector<T>& slots, std::vector<std::uint32_t>& free) {
   const auto index = static_cast<std::uint32_t>(slots.size());
@@ -24,7 +24,7 @@ std::uint32_t take_slot(std::vector<T>& slots, std::vector<std::uint32_t>& free)
 template <class T, class Id>
 class Slots {
  public:
-  // Null if it does not exist (any more).
+  // Null if the object does not exist (any more).
   const T* find(Id id) const {
     if (id.index == 0 || id.index > slots_.size()) return nullptr;
     const T& slot = slots_[id.index - 1];

@@ -1,19 +1,19 @@
-// The mutable state as bytes: 8-byte little-endian words.
+// The mutable state as bytes: a sequence of little-endian u64.
 //
-//   magic, format, structure digest, numbers of bodies, articulations, pair
-//   records, destroyed pairs; lengths of sub-steps: of impulses, of the push; 1 if the last step
-//   ended with a position error, else 0; length of the step that records and joints are of
-//   bodies:         pose (12), w, v, prescribed twist (6); of a link, nothing
-//   articulations:  coordinates; for each velocity: itself, drive (5), impulses (5)
-//   records:        key, a | b, count | number of the manifold and touching, rolling, 4 points
+//   magic, format, topology hash; numbers of bodies, articulations, pair records, destroyed pairs;
+//   sub-step lengths: of the impulses, of the bias velocity; 1 if the last step ended with a
+//   position error, else 0; step length of the records and joints
+//   bodies:          pose (12), w, v, prescribed twist (6); of a link, nothing
+//   articulations:   coordinates; for each velocity: itself, drive (5), impulses (5)
+//   records:         key, a | b, count | number of the manifold and touching, rolling, 4 points
 //   destroyed pairs: a (index, generation), b, sensor
-//   joints:         turns; of a gear its bodies' first poses; of each axis its drive (5) and
-//                   impulses (2)
-//   contacts:       contact_state.h
-//   loads, only if there are any: how many bodies have one; of each its number, force, torque; how
-//                   many articulations; of each its number, the wrench on each link, the force of
-//                   each degree of freedom
-//   digest of all words before
+//   joints:          rotations (2); of a gear its bodies' initial poses; for each axis its drive
+//                    (5) and impulses (2)
+//   contacts:        contact_state.h
+//   loads, only if there are any: number of loaded bodies; for each its index, force, torque;
+//                    number of loaded articulations; for each its index, the wrench on each link,
+//                    the force of each degree of freedom
+//   digest of all preceding u64
 #include <algorithm>
 #include <bit>
 
@@ -30,7 +30,8 @@ struct Digest {
   void u64(std::uint64_t w) { digest = mixed(digest, w); }
 };
 
-// Words go to the vector in blocks: to lengthen it for each costs more than all the rest.
+// The u64 are appended in blocks: growing the vector for each one would cost more than all the
+// rest.
 class ByteSink : public Digest {
  public:
   explicit ByteSink(std::vector<std::byte>& bytes) : bytes_(bytes) {}

@@ -1,4 +1,4 @@
-// Words out and in: how the state of a world is written, and read back with every value checked.
+// Snapshots as a sequence of u64: writing, and reading with a check of every value.
 #pragma once
 
 #include <bit>
@@ -34,7 +34,7 @@ void put_two(Sink& sink, float high, float low) {
   put_two(sink, std::bit_cast<std::uint32_t>(high), std::bit_cast<std::uint32_t>(low));
 }
 
-// Reads words and digests them; out of bytes or out of range makes it fail for good.
+// Reads u64 and digests them. Fails permanently if the bytes end or a value is out of range.
 class Reader {
  public:
   explicit Reader(std::span<const std::byte> bytes) : bytes_(bytes) {}
@@ -68,7 +68,7 @@ class Reader {
     const double x = number(), y = number(), z = number();
     return {x, y, z};
   }
-  // Rounding may have made it larger than the call that set it accepts.
+  // Rounding may have made it larger than the limit of the call that set it.
   Vec3 nearly_bounded_vector() {
     const Vec3 a = finite_vector();
     check(nearly_in_range(0.999 * a));
@@ -90,13 +90,13 @@ class Reader {
     check(std::isfinite(f.high) && std::isfinite(f.low));
     return f;
   }
-  // A number below the limit.
+  // An index below the limit.
   std::uint32_t index(std::uint64_t limit) {
     const std::uint64_t w = u64();
     check(w < limit);
     return ok_ ? static_cast<std::uint32_t>(w) : 0;
   }
-  // How many items follow, of at least so many words each: no more than the bytes hold.
+  // Number of the items that follow, of at least u64s_each u64 each: no more than the bytes hold.
   std::size_t count(std::size_t u64s_each) {
     const std::uint64_t n = u64();
     check(n <= bytes_.size() / (u64s_each * sizeof(std::uint64_t)));
@@ -105,7 +105,7 @@ class Reader {
   void check(bool condition) { ok_ = ok_ && condition; }
   bool ok() const { return ok_; }
   bool at_end() const { return bytes_.empty(); }
-  // Of all words so far, as a snapshot's last word has it.
+  // Digest of all u64 so far, as in a snapshot's last u64.
   std::uint64_t digest() const { return digest_; }
 
  private:

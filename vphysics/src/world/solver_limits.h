@@ -1,4 +1,4 @@
-// How fast contacts and joints take out their errors, and in how many sub-steps.
+// Speeds of error correction for contacts and joints, and the number of sub-steps.
 #pragma once
 
 #include <cmath>
@@ -7,25 +7,26 @@
 
 namespace vp {
 
-// Share of a penetration that a sub-step pushes out, the fastest that velocities push, and the
-// fastest with what moves the bodies themselves [m/s of things of a metre]. A body of more contacts
-// than kCrowd shares both. In short sub-steps velocities push out kSmallDepth [m of such things] at
-// once, which may be what single precision leaves.
+// kUseBias: fraction of a penetration that a sub-step corrects. kMaxBiasVelocity: max bias
+// velocity. kFastestShift: max speed of the position correction, which moves the bodies themselves.
+// Both in [m/s] for bodies of a metre; for a body with n > kCrowd contacts both are multiplied by
+// kCrowd / n. In short sub-steps the max bias velocity is larger, so that a depth of kSmallDepth [m
+// for bodies of a metre] is corrected at the full rate: single precision may leave such a depth.
 inline constexpr double kUseBias = 0.1;
 inline constexpr double kMaxBiasVelocity = 0.25;
 inline constexpr double kFastestShift = 3.0;
 inline constexpr double kCrowd = 6.0;
 inline constexpr double kSmallDepth = 1e-3;
-// How fast joints take out their errors [m/s of things of a metre].
+// Max speed at which joints correct their errors [m/s for bodies of a metre].
 inline constexpr double kFastestJoint = 3.0;
 
-// Joints that hold hard and are open by more than this share of the smaller body's size, or turned
-// by more than this [rad], are a position error.
+// A hard joint is a position error if it is open by more than kOpen times the smaller body's size,
+// or rotated by more than kRotationError [rad].
 inline constexpr double kOpen = 0.5;
 inline constexpr double kRotationError = 0.2;
 
-// Stops of joints get rows, in steps h, if they are nearer than this: twice as far as the present
-// rate leads, since an impulse may add to it, and than a metre or a radian a second more.
+// A joint limit gets a row, in steps h, if its distance is below this: twice the distance covered
+// at the present speed, since an impulse may add to it, plus that at 1 m/s or 1 rad/s.
 inline double stop_range(double h, double speed) {
   return h * (2.0 * std::fabs(speed) + 1.0);
 }

@@ -1,10 +1,9 @@
 // One step: forces, then contacts and impacts in the order of time.
 //
 //   integrate forces over dt
-//   solve what touches now
-//   repeat   advance what the next impact of a continuous body concerns, at constant twists
-//            solve what touches there (impacts.cpp)
-//   until the step is over; after max_impacts_per_step impacts, what would meet is held instead.
+//   repeat   solve the present contacts
+//            advance everything at constant twists to the next impact of a continuous body
+//   until the end of the step; after max_impacts_per_step impacts, bodies that would collide stop
 //
 // See docs/decisions/0002-impacts-and-contacts.md.
 #include <algorithm>
@@ -49,7 +48,7 @@ void World::Impl::begin_step(double dt) {
   events.clear();
   step_contacts.clear();
   impacts.next_records.clear();
-  // Room for what a busy step needs, so that the first busy one need not take it from the heap.
+  // Reserves capacity for a busy step, so that the first busy step does not allocate.
   const std::size_t capacity = 64 + 2 * colliders.size() + events.destroyed.size();
   events.reserve(capacity);
   impacts.records.reserve(capacity);
@@ -57,7 +56,7 @@ void World::Impl::begin_step(double dt) {
   contact_store.reserve(capacity);
   for (auto* list : {&narrow.dirty, &narrow.look_again})
     list->reserve(contact_store.dirty.capacity());
-  narrow.results.reserve(std::min(capacity, kLookedAtOnce));
+  narrow.results.reserve(std::min(capacity, kNarrowPhaseBatch));
   narrow.to_pose.reserve(n);
   lost_bodies.reserve(n);
   sleep_islands.reserve(n);
@@ -98,7 +97,7 @@ void World::Impl::divide_into_regions(double dt) {
   regions.sort(bodies, lists.awake_bodies);
 }
 
-// What carried a load for a shorter or a longer step is the guess for this one by its share.
+// Scales the warm-start impulses by the ratio of the step lengths.
 void World::Impl::rescale_impacts(double dt) {
   const double before = std::exchange(impacts.step, dt);
   if (before == 0.0 || before == dt) return;
@@ -133,8 +132,8 @@ void World::Impl::rescale_impacts(double dt) {
 void World::Impl::begin_impact_stage(double dt) {
   rescale_impacts(dt);
   list_row_joints();
-  // More than a pair has, unless many parts of a compound touch at once: a world's first contact,
-  // whenever it comes, allocates nothing.
+  // More than a pair has, unless many parts of a compound touch at once. So a world's first contact
+  // allocates nothing.
   constexpr std::size_t kManifoldsOfPair = 64;
   const std::size_t n = bodies.size(),
                     capacity = 64 + 2 * colliders.size() + events.destroyed.size();
@@ -177,7 +176,7 @@ void World::Impl::begin_impact_stage(double dt) {
   }
 }
 
-// Of what the stage of impacts moves.
+// For the bodies that the stage of impacts moves.
 void World::Impl::integrate_forces(double dt) {
   for (const std::uint32_t i : impact_bodies()) {
     Body& body = bodies[i];
@@ -201,7 +200,7 @@ void World::Impl::integrate_forces(double dt) {
   }
 }
 
-// Not of a link.
+// Not for links.
 bool World::Impl::stop_if_out_of_range(std::uint32_t index, const SE3& start) {
   Body& body = bodies[index];
   if (in_range(body.w) && in_range(body.v) && in_range(body.T.position())) return false;
@@ -215,7 +214,7 @@ bool World::Impl::stop_if_out_of_range(std::uint32_t index, const SE3& start) {
   return true;
 }
 
-// As the solver wants it, its point being there.
+// The body's data for the solver, with its reference point at `at`.
 solve::SolverBody World::Impl::solver_body(std::uint32_t index, const Vec3& at) const {
   const Body& body = bodies[index];
   solve::SolverBody s{};
@@ -237,8 +236,8 @@ solve::SolverBody World::Impl::solver_body(std::uint32_t index, const Vec3& at) 
   return s;
 }
 
-// Of links and what nothing moves only those that touch something: there may be many, and few of
-// them do.
+// Of links and bodies that nothing moves, only those in contact or with row joints: there may be
+// many, and few of them are.
 void World::Impl::refresh_solver_bodies(std::span<const std::uint32_t> of) {
   for (const std::uint32_t i : of) {
     const Body& body = bodies[i];
@@ -256,7 +255,7 @@ void World::Impl::refresh_solver_bodies(std::span<const std::uint32_t> of) {
   }
 }
 
-// A constant twist for h. A tumbling body's is that which comes to the same end.
+// The constant twist for h. For a tumbling body, the twist that leads to the same final rotation.
 collide::Motion World::Impl::motion_of(const Body& body, const Velocity& more, double h) const {
   collide::Motion motion{reference_point(body), body.v + more.v, body.w + more.w};
   const Vec3& mean = more.w == Vec3{} ? body.w : motion.w;
@@ -269,8 +268,8 @@ collide::Motion World::Impl::motion_of(const Body& body, const Velocity& more, d
   return motion;
 }
 
-// For the rest of the step. What touches goes as the solver has left it: at the rate of halfway its
-// contacts would close again at once.
+// Motions for the rest of the step. Bodies in contact move at the velocity that the solver has
+// computed: at the mean velocity, their contacts would approach again at once.
 void World::Impl::refresh_motions(double h) {
   if (!impacts.swept_body_pairs.dirty()) {
     for (const std::uint32_t i : impact_bodies()) refresh_motion_of(i, h);
@@ -288,7 +287,7 @@ void World::Impl::refresh_motion_of(std::uint32_t i, double h) {
                               : motion_of(body, impacts.drift[i], impacts.in_contact[i] ? 0.0 : h);
 }
 
-// Motions and bounds for the rest of the step.
+// Motions and AABBs for the rest of the step.
 void World::Impl::refresh_displacements(double h) {
   refresh_motions(h);
   refresh_bounds(h);
@@ -297,8 +296,8 @@ void World::Impl::refresh_displacements(double h) {
 
 namespace {
 
-// Of a body at the next, at a constant twist. Angular momentum is what stays and the rate follows
-// from it; but where the body would have more energy so, the rate stays as seen from the body.
+// The angular velocity of a body after rotation to `next` at a constant twist. It conserves the
+// angular momentum. If that would increase the energy, it is constant in the body's frame instead.
 Vec3 mean_rate(const Body& body, const Mat3& next) {
   const Mat3& R = body.T.rotation();
   const Vec3 was = transposed_times(R, body.w), momentum = R * (body.central * was);
@@ -308,7 +307,7 @@ Vec3 mean_rate(const Body& body, const Mat3& next) {
 
 }  // namespace
 
-// Freely: not at the constant twist, but as a tumbling body does that nothing touches.
+// freely: not at the constant twist, but as a tumbling body without contact.
 void World::Impl::advance_body(Body& body, const collide::Motion& m, double h, bool freely,
                                const Vec3& more_w) {
   const bool tumbles = body.tumbles();
@@ -326,7 +325,7 @@ void World::Impl::advance_body(Body& body, const collide::Motion& m, double h, b
   place(body, m.x + h * m.v, next);
 }
 
-// Where nothing is left to be met: to the end of the step in one go.
+// Without the stage of impacts: advances all bodies to the end of the step at once.
 void World::Impl::advance_all(double dt) {
   const BodyRows rows = rows_in(dt);
   workers.in_parallel(
@@ -349,7 +348,7 @@ void World::Impl::advance_all(double dt) {
   forget_lost_bodies();
 }
 
-// Their separations, as their bodies go.
+// Updates their separations after the bodies have advanced by h.
 void World::Impl::advance_discrete_contacts(double h) {
   for (solve::ContactConstraint& c : impacts.discrete_contacts) {
     const collide::Motion &a = impacts.motions[c.a], &b = impacts.motions[c.b];
@@ -373,7 +372,7 @@ void World::Impl::apply_corrections(std::span<const std::uint32_t> of) {
 
 namespace {
 
-// Of a velocity to which forces have added `added`, a share: as far as that made it faster.
+// Removes a fraction of the velocity that forces have added, as far as it increased the speed.
 void take_back(Vec3& velocity, const Vec3& added, double fraction) {
   const double with = dot(added, velocity);
   if (with > 0.0) velocity *= 1.0 - std::min(1.0, fraction * with / dot(velocity, velocity));
@@ -381,8 +380,8 @@ void take_back(Vec3& velocity, const Vec3& added, double fraction) {
 
 }  // namespace
 
-// For what is held no time passes: for so long forces make it no faster. Else it would collect
-// speed in each step in which it is held, and fly off when it is not.
+// Time does not pass for stopped bodies, so forces must not accelerate them meanwhile. Otherwise
+// such a body would gain speed in each step in which it is stopped, and fly off when released.
 void World::Impl::take_back_forces(double h) {
   const double fraction = h / dt_now;
   for (const std::uint32_t i : impact_bodies()) {
@@ -399,7 +398,7 @@ void World::Impl::take_back_forces(double h) {
   }
 }
 
-// Impacts in the order of time are for continuous bodies and for what meets links.
+// The stage of impacts is for continuous bodies and for contacts of links.
 bool World::Impl::has_impact_stage() const {
   return articulations.size() > free_articulations.size() || lists.some_continuous;
 }
@@ -407,7 +406,7 @@ bool World::Impl::has_impact_stage() const {
 void World::Impl::run(double dt) {
   if (finds_contacts) {
     find_contacts(dt);
-    list_bodies();  // some may have been woken
+    list_bodies();  // the narrow phase may have woken some
   }
   sub_step.awake_body_changed.resize(lists.awake_bodies.size());
   counters.awake = static_cast<std::uint32_t>(lists.awake_bodies.size());
@@ -456,7 +455,7 @@ void World::Impl::count_contacts() {
   counters.events = static_cast<std::uint32_t>(events.all().size());
 }
 
-// What is pushed out within a step of its beginning is no trouble.
+// An overlap that is corrected by the end of the next step is not an error.
 void World::Impl::note_position_error() {
   const bool before = std::exchange(sub_step_state.position_error, position_error_now);
   status.position_error = position_error_now && before;

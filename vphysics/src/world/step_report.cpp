@@ -23,7 +23,7 @@ struct Report {
   bool StepStatus::*flag;
   const char* sentence;
 };
-// By their limits.
+// Indexed by Limit.
 constexpr Report kReports[] = {
     {&StepStatus::impact_limit,
      "a swept body met more impacts than a step resolves and was held: shorten the step or "

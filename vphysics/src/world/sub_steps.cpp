@@ -1,4 +1,4 @@
-// The sub-stepped solver: soft contacts, colour after colour (solve/contact_passes.h).
+// The sub-stepped solver: soft contacts, one colour after the other (solve/contact_passes.h).
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -11,22 +11,22 @@
 namespace vp {
 namespace {
 
-// Share of an accumulated impulse that a sub-step lets go before it is solved for again. It damps
-// what warm starting does to loads that have not settled: without it a wall of 47 bodies never
-// comes to rest. With kUseBias it leaves a load L, in impulses of a sub-step, to sink by  h (kLoss
-// / kUseBias) L / m:  0.07 mm under ten boxes at 1 ms.
+// Fraction of the accumulated impulse that a sub-step discards before it solves again. It damps the
+// effect of warm starting on loads that have not converged: without it a wall of 47 bodies never
+// comes to rest. Together with kUseBias, a load L, in impulse per sub-step, sinks by
+//   h (kLoss / kUseBias) L / m:  0.07 mm under ten boxes at 1 ms.
 constexpr double kLoss = 0.07;
-// How fast the length of sub-steps that the push is made for follows theirs when they become
-// shorter.
+// Rate at which the sub-step length of the bias velocity (last_step_length) follows the actual one
+// when that becomes shorter [s/s].
 constexpr double kHurry = 0.02;
-// Passes of pushing in one sub-step.
+// Iterations with bias velocity in one sub-step.
 constexpr int kIterations = 3;
-// Rounds of bounces in one sub-step: an impact may run through as many contacts against the order
-// of the colours.
+// Max restitution passes in one sub-step: an impact may have to propagate through as many contacts
+// against the order of the colours.
 constexpr int kMaxRestitutionPasses = 64;
 
-// Impulses to start from are of sub-steps before: a load's are as long as these. Only ever shorter:
-// a blow must not come back larger.
+// Warm-start impulses come from earlier sub-steps. Those of a load are proportional to the sub-step
+// length. They are only ever reduced: the impulse of an impact must not return larger.
 void rescale_impulses(solve::ContactGraph& graph, Joints& joints, double ratio) {
   const auto factor = static_cast<float>(ratio);
   const auto rescale = [factor](auto& blocks) {
@@ -47,8 +47,8 @@ void rescale_impulses(solve::ContactGraph& graph, Joints& joints, double ratio) 
   }
 }
 
-// What is done in a sub-step to one region's bodies and contacts. Those of kBetween are gone
-// through by several workers, others by one.
+// Operations of a sub-step on the bodies and contacts of one region. Several workers share the
+// region kBetween; one worker does each of the others.
 struct SubStepContext {
   ContactRuns contacts;
   const Regions& regions;
@@ -74,8 +74,8 @@ class SubSteps {
       pass_.accelerate(rows(), some, count, h_);
     });
   }
-  // Until nothing bounces any more. Returns how many rounds something did: kMaxRestitutionPasses if
-  // it still does.
+  // Repeats until nothing bounces. Returns the number of passes in which something did:
+  // kMaxRestitutionPasses if something still does.
   int apply_restitution() const {
     std::uint32_t* const words = context_.contacts.words();
     for (int iteration = 0; iteration < kMaxRestitutionPasses; ++iteration) {
@@ -109,8 +109,9 @@ class SubSteps {
       pass_.move(rows(), some, count, h_);
     });
   }
-  // last: of the step. What is worth telling is found before: what pushes two apart that overlap is
-  // a load, though nothing of it is left in the velocities.
+  // last: the last sub-step of the step. Contact changes are found before the relaxation: an
+  // impulse that separates overlapping bodies is a load, although it leaves nothing in the
+  // velocities.
   void relax(std::size_t region, bool last) {
     if (last) {
       context_.contacts.for_parts_of(region,
@@ -129,11 +130,11 @@ class SubSteps {
     relax(region, last);
   }
   bool some_too_deep() const { return some_too_deep_; }
-  // The first sub-step's impulses have been noted.
+  // Call it after the first sub-step: from then on the recorded impulses accumulate.
   void go_on() { soft_.keeps_load = 1.0f; }
 
  private:
-  // The word of a block in which something bounces becomes 1.
+  // Sets the word of each block in which something bounces to 1.
   void apply_restitution(std::size_t region) const {
     context_.contacts.for_parts_of(region, [&](const auto& p, const auto& part, std::size_t first) {
       context_.contacts.words()[first] =
@@ -154,14 +155,14 @@ class SubSteps {
   const std::size_t blocks_;
   const float h_;
   solve::Soft soft_;
-  std::atomic<bool> some_too_deep_ = false;  // of contacts, when the sub-steps end
+  std::atomic<bool> some_too_deep_ = false;  // contacts are too deep at the end of the sub-steps
   const solve::Passes& pass_ = solve::passes();
 };
 
 }  // namespace
 
-// Errors grow with the square of the sub-step, so longer steps have shorter shares: 2 sub-steps at
-// 1 kHz, 5 at 240 Hz, 9 at 60 Hz. What is smaller falls by its own size sooner, by the root.
+// Errors grow with the square of the sub-step, so longer steps have more sub-steps: 2 at 1 kHz, 5
+// at 240 Hz, 9 at 60 Hz. Small bodies fall by their own size sooner, by the square root of it.
 int sub_steps_in(const WorldDesc& desc, double speed_unit, double dt) {
   if (desc.sub_steps > 0) return desc.sub_steps;
   return std::max(1, static_cast<int>(std::ceil(std::sqrt(dt / (0.00026 * speed_unit)))));
@@ -183,8 +184,8 @@ void World::Impl::take_sub_steps(double dt, int n) {
   SubStepState& state = sub_step_state;
   const double before = std::exchange(state.length, h);
   if (before > h) rescale_impulses(contact_store.graph, joints, h / before);
-  // What has sunk in longer sub-steps is not thrown out by shorter ones: the push becomes as fast
-  // as theirs by and by.
+  // A penetration from longer sub-steps must not be pushed out abruptly by shorter ones: the bias
+  // velocity approaches that of the shorter ones gradually.
   state.last_step_length = std::max(static_cast<double>(h), state.last_step_length - kHurry * dt);
   const double fastest =
       std::clamp(kUseBias / state.last_step_length * kSmallDepth * desc.length_unit,
@@ -207,8 +208,8 @@ void World::Impl::take_sub_steps(double dt, int n) {
   const bool links = !impacts.bodies_on_links.empty();
   if (links) find_link_contacts(dt, n);
   const bool contacts_alone = !links && joint_steps.empty();
-  // What contacts gave in one sub-step is given again in the next as a whole, by body, unless
-  // joints and links have a share in it: these turn within the step.
+  // The next sub-step applies the velocity changes by the contacts of the last one again, body by
+  // body. Not if joints or links take part, which rotate within the step.
   const bool repeats = contacts_alone && n > 1;
   runs.everywhere([&](std::size_t region) { steps.load_inertias(region); });
   for (int k = 0; k < n; ++k) {
@@ -226,8 +227,8 @@ void World::Impl::take_sub_steps(double dt, int n) {
     }
     if (k == 0 || !repeats) runs.everywhere([&](std::size_t region) { steps.warm_start(region); });
     if (contacts_alone) {
-      // All that comes one after another for a region alone is done at once, so that its contacts
-      // are read from memory once, but for what strikes and the first warm start look at.
+      // All consecutive operations on one region are done at once, so that its contacts are read
+      // from memory once, except by the restitution pass and the first warm start.
       for (int iteration = 0; iteration < kIterations; ++iteration)
         steps.solve_contacts(solve::kBetween, iteration);
       runs.for_regions([&](std::size_t region) {

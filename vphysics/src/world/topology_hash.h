@@ -1,6 +1,6 @@
-// The digest of all that a world is made of: every constant bit for bit. What calls may change
-// later (poses, velocities, joint states, drives) is in the snapshot instead; user_data is the
-// user's, may be an address, and moves nothing, so it is in neither.
+// The topology hash: a digest of all constants of a world, bit for bit. State that calls may change
+// later (poses, velocities, joint states, drives) is in the snapshot instead. user_data belongs to
+// the user, may be an address, and affects no motion, so it is in neither.
 #pragma once
 
 #include <array>
@@ -23,7 +23,7 @@ class TopologyHash {
   void add(T value) {
     digest_ = mixed(digest_, value);
   }
-  // One after the other.
+  // In this order.
   template <class A, class B, class... MORE>
   void add(const A& a, const B& b, const MORE&... more) {
     add(a);
@@ -69,7 +69,7 @@ class TopologyHash {
       add(x);
     }
     add(desc.filter.category, desc.filter.mask, static_cast<std::uint64_t>(desc.sensor));
-    // What came later counts only where it is used, so that worlds without it keep their digest.
+    // Later fields count only if they are used, so that worlds without them keep their hash.
     const ColliderDesc usual;
     add_unless(usual.material.spinning_friction, 'n', desc.material.spinning_friction);
     add_unless(usual.surface_velocity, 's', desc.surface_velocity);
@@ -96,7 +96,7 @@ class TopologyHash {
       }
     }
   }
-  // The faces too: they depend on the options that the hull was built with.
+  // Includes the faces: they depend on the options that the hull was built with.
   void add(const ConvexHull& hull) {
     add(static_cast<std::uint64_t>(hull.vertices().size()));
     for (const Vec3& v : hull.vertices()) add(v);
@@ -184,7 +184,8 @@ class TopologyHash {
   void add_joint(const HelicalJoint& j) { add(j.axis, j.pitch); }
   void add_joint(const CylindricalJoint& j) { add(j.axis); }
   void add_joint(const UniversalJoint& j) { add(j.first, j.second); }
-  // What a user's joint is made of only its owner knows; two of its poses and subspaces tell most.
+  // The constants of a user's joint are unknown here. Two of its poses and motion subspaces
+  // identify most joints.
   void add_joint(const std::shared_ptr<const UserJoint>& j) {
     const auto n = static_cast<std::size_t>(j->degrees_of_freedom());
     for (const double at : {0.0, 0.25}) {

@@ -1,4 +1,4 @@
-// Events of the contacts of the sub-stepped solver, and what of their impulses is worth telling.
+// Contact events of the sub-stepped solver, and the impulses that contacts_of() reports.
 #include <algorithm>
 #include <bit>
 
@@ -8,12 +8,12 @@
 namespace vp {
 namespace {
 
-// What a lane tells of its contact, but for where.
+// The impulse that a contact slot reports.
 template <int P>
 double impulse_of(const solve::ContactBlock<P>& block, int lane) {
   return get(block.given, lane) + get(block.impact, lane);
 }
-// Turns what the sub-steps have found of contacts into events.
+// Converts the contact changes of the sub-steps into events.
 struct TouchReport {
   ContactStore& contacts;
   const Colliders& colliders;
@@ -48,8 +48,8 @@ struct TouchReport {
     if (approach_speed > 0.0) tell(ContactEvent::Kind::hit);
   }
 
-  // One event for the whole: the impulses of the parts that have news add up, the largest tells
-  // where.
+  // One event for each aggregate contact: the impulses of its changed parts add up; the part with
+  // the largest impulse gives point and normal.
   void report_parts() {
     std::vector<PartEvent>& changed = events.part_events;
     std::sort(changed.begin(), changed.end(), [](const PartEvent& a, const PartEvent& b) {

@@ -89,7 +89,8 @@ bool has_unit_quaternions(const Model& model, std::span<const double> q) {
   return true;
 }
 
-// Each is far beyond what anybody simulates with, and bounds the time that a stranger's step takes.
+// Each limit is far beyond practical use. Together they bound the time of a step for untrusted
+// descriptions.
 std::optional<std::string> problem_with(const WorldDesc& desc) {
   if (!in_range(desc.gravity)) return "gravity must be finite and at most 1e9 m/s^2";
   if (!in_range(desc.restitution_threshold) || desc.restitution_threshold < 0.0)
@@ -145,14 +146,14 @@ std::optional<std::string> problem_with(const BodyDesc& desc) {
   return std::nullopt;
 }
 
-// A gyration radius of a kilometre of the largest mass.
+// Max: the moment of the max mass at a radius of gyration of a kilometre.
 bool is_moment(const Sym3& J) {
   constexpr double kMax = 1e15;
   return in_range((kLargest / kMax) * Vec3{J.xx, J.yy, J.zz}) &&
          in_range((kLargest / kMax) * Vec3{J.xy, J.yz, J.zx});
 }
-// Second moments of a mass, (tr J) 1 / 2 - J, are no less than zero; but by what numbers of two
-// digits are rounded by.
+// Second moments of a mass, (tr J) 1 / 2 - J, must not be negative, with a tolerance for numbers
+// rounded to two digits.
 bool is_of_mass(const Sym3& J) {
   constexpr double kRounding = 0.01;
   const double half = (0.5 + kRounding) * (J.xx + J.yy + J.zz);

@@ -4,7 +4,7 @@ namespace vp {
 namespace {
 
 constexpr int kSegments = 24;  // of a circle; a multiple of 4
-constexpr int kSquares = 10;   // of a half-space's side
+constexpr int kSquares = 10;   // along a half-space's side
 
 class Wire {
  public:
@@ -58,7 +58,7 @@ class Wire {
       line({-size, at, 0}, {size, at, 0});
     }
   }
-  // An edge runs along its two faces in opposite ways: once upwards.
+  // Each edge occurs in two faces, in opposite directions. It is drawn in the ascending one.
   void operator()(const ConvexHull& hull) {
     const auto corners = hull.vertices();
     for (const ConvexHull::Face& face : hull.faces()) {
@@ -69,7 +69,7 @@ class Wire {
       }
     }
   }
-  // Inner edges are drawn by both their triangles.
+  // Inner edges are drawn twice, by both triangles.
   void operator()(const TriangleMesh& mesh) {
     const Vec3& s = mesh.scale();
     const auto corner = [&](std::uint32_t i) {
@@ -103,7 +103,7 @@ class Wire {
   }
 
  private:
-  // So many of a circle's segments, from x over y on.
+  // Draws some segments of a circle, from x towards y.
   void arc(const Vec3& centre, const Vec3& x, const Vec3& y, int segments) {
     Vec3 from = centre + x;
     for (int i = 1; i <= segments; ++i) {

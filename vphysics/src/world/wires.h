@@ -1,4 +1,4 @@
-// The edges and outlines of shapes, as lines.
+// Wireframes: the edges and outlines of shapes, as lines.
 #pragma once
 
 #include "vphysics/debug_draw.h"

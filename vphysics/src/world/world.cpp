@@ -1,4 +1,4 @@
-// Building a world of bodies, and reading and setting their state.
+// Construction of a world's bodies; access to their state.
 #include "vphysics/world.h"
 
 #include <algorithm>
@@ -72,7 +72,7 @@ Expected<BodyId> World::create_body(const BodyDesc& desc) {
   return id;
 }
 
-// Ends all that it touches; the next step reports it.
+// Ends all contacts of a collider. The next step reports their end events.
 void World::Impl::drop_contacts(std::uint32_t index) {
   std::erase_if(impacts.records, [&](const PairRecord& r) {
     if (r.a != index && r.b != index) return false;
@@ -87,7 +87,7 @@ void World::Impl::drop_contacts(std::uint32_t index) {
   wake_neighbours(collider.body);
   contact_store.for_each_of(bodies[collider.body], [&](std::uint32_t contact, Contact& c) {
     if (c.is_part() || (c.a != index && c.b != index))
-      return;  // behind a whole come no parts of it
+      return;  // parts precede their aggregate in the list
     if (c.touching) {
       events.destroyed.push_back({colliders.id(c.a), colliders.id(c.b), c.sensor});
       c.touching = false;
