@@ -198,8 +198,7 @@ class Assembly {
   const StepContext& s_;
   std::span<const std::uint32_t> joints_, contacts_;
   DenseScratch& scratch_;
-  std::size_t n_, stride_,
-      size_ = 0;  // size_: the length of a y of the current body or articulation
+  std::size_t n_, stride_, size_ = 0;  // size_: the length of a y of the current unit
   double* W_;
 };
 

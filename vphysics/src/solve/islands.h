@@ -80,10 +80,9 @@ class Islands {
   std::vector<Island> islands_;
   std::vector<std::uint32_t> contacts_, joints_;
   // Nodes are the contacts, then the rows of joints between bodies.
-  std::vector<std::pair<MovingBodyKey, std::uint32_t>>
-      ends_;                              // the unit that moves, and a node on it
-  std::vector<std::uint32_t> parent_;     // of each node: union-find
-  std::vector<std::uint32_t> island_of_;  // of each node
+  std::vector<std::pair<MovingBodyKey, std::uint32_t>> ends_;  // a unit, and a node on it
+  std::vector<std::uint32_t> parent_;                          // of each node: union-find
+  std::vector<std::uint32_t> island_of_;                       // of each node
   std::vector<std::uint32_t> island_of_joint_;
 };
 

@@ -52,8 +52,7 @@ Vec3T<F> rotated_minus(const Vec3T<F>& q, const F& w, const Vec3T<F>& u) {
 template <int W>
 void quaternion_of(const Vec3T<Lanes<W>>& theta, Vec3T<Lanes<W>>& q, Lanes<W>& w) {
   using F = Lanes<W>;
-  constexpr float kPass =
-      12582912.0f;  // 1.5 * 2^23: adding and subtracting it rounds to an integer
+  constexpr float kPass = 12582912.0f;  // 1.5 * 2^23: adding it rounds to an integer
   const F size = sqrt(dot(theta, theta)), half = F(0.5f) * size;
   const F turns = (half * F(static_cast<float>(1.0 / kPi)) + F(kPass)) - F(kPass);
   // pi as the sum of a short number and a remainder, so that a few revolutions lose no precision.

@@ -1,5 +1,5 @@
-// Pairs that are near one another and have no points, sixteen side by side: how far each may still
-// go before the narrow phase must look at it again.
+// Speculative pairs: close pairs without contact points, in blocks of sixteen. Each has a
+// clearance, the relative displacement after which the narrow phase must process the pair again.
 #pragma once
 
 #include <cstdint>
@@ -11,12 +11,13 @@
 namespace vphysics_solver {
 
 struct SpeculativeBlock {
-  IndexField a, b;     // rows of the bodies; of an empty lane the world's
-  IndexField contact;  // kNoContact: an empty lane
-  // When it was last looked at: the rows' ways, and how far the two may go against each other [m].
+  IndexField a, b;     // rows of the bodies; the world's row in an empty slot
+  IndexField contact;  // kNoContact in an empty slot
+  // State at the last narrow phase: the rows' displacements and rotations [m], [rad].
   Field3 x_a, turn_a, x_b, turn_b;
-  // From the bodies' centres to that of a ball in which the two meet, and its radius as far as
-  // rotation counts [m].
+  // Arms from the bodies' centres to the centre of a ball in which the two meet, and its radius,
+  // the lever arm of relative rotation [m]. The clearance is the permitted relative displacement
+  // [m].
   Field3 arm_a, arm_b;
   Field radius;
   Field clearance;
@@ -38,14 +39,14 @@ inline std::span<const Field, kSpeculativeFields> fields_of(const SpeculativeBlo
                                                     kSpeculativeFields);
 }
 
-// A lane that becomes empty is filled with the last.
+// The last slot fills a slot that becomes empty.
 class SpeculativeList {
  public:
-  // The index of its lane; all of that is zero but what is given.
+  // Returns the index of the new slot. All its other fields are zero.
   std::uint32_t add(std::uint32_t contact, std::uint32_t row_a, std::uint32_t row_b);
-  // The same, of a lane of another list, as it is.
+  // The same for a copy of a slot of another list.
   std::uint32_t add(const SpeculativeList& from, std::uint32_t index);
-  // Returns the contact whose lane has now this index, or kNoContact.
+  // Returns the contact whose slot has moved to this index, or kNoContact.
   std::uint32_t remove(std::uint32_t index);
 
   // Keeps its memory.
