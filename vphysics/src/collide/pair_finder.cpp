@@ -126,7 +126,7 @@ void PairFinder::count_pair(std::uint64_t key, std::uint32_t change) {
 bool PairFinder::remove_pair(std::uint32_t i, std::uint32_t j) {
   const std::uint64_t key = ProxyPair::ordered(i, j).key();
   if (!pairs_.erase(key)) return false;
-  count_pair(key, ~0u);  // minus one
+  count_pair(key, ~0u);  // subtracts one
   return true;
 }
 

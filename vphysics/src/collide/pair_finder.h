@@ -7,7 +7,6 @@
 //
 // The pairs found and their order depend on bounds, filters, owners, the pair set and the moved
 // proxies. A snapshot contains all of these, but not the trees.
-// moved: all of that is written to a snapshot, the trees are not.
 #pragma once
 
 #include <array>

@@ -96,7 +96,7 @@ class Clipper {
   double ref_u_[kMaxCorners], ref_v_[kMaxCorners];
   double rise_u_[kMaxCorners], rise_v_[kMaxCorners];  // outward, with the edge's length
   double coincident_[kMaxCorners];
-  double plane_u_ = 0.0, plane_v_ = 0.0, plane_0_ = 0.0;  // plane of the reference's height
+  double plane_u_ = 0.0, plane_v_ = 0.0, plane_0_ = 0.0;  // the reference's height
   PatchPoint points_[kMaxPatch];
   int count_ = 0;
 };

@@ -223,7 +223,7 @@ class RayFrame {
     shear_x_ = d[x_] / along_;
     shear_y_ = d[y_] / along_;
   }
-  // A triangle's front is counter-clockwise as seen along the ray.
+  // A triangle's front is counter-clockwise as seen from the ray's origin.
   bool overlaps(const SurfaceTriangle& t, bool two_sided, double& distance) const {
     const Corner a = seen(t.p[0]), b = seen(t.p[1]), c = seen(t.p[2]);
     const double u = c.x * b.y - c.y * b.x, v = a.x * c.y - a.y * c.x, w = b.x * a.y - b.y * a.x;

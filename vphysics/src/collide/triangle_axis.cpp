@@ -25,7 +25,7 @@ double dot(const Flat& a, const Flat& b) {
 
 class ArcSearch {
  public:
-  // at: a point of the edge; outwards, up: unit vectors.
+  // at: a point of the edge; outward, up: unit vectors.
   ArcSearch(const CorePair& pair, const Vec3& at, const Vec3& outward, const Vec3& up)
       : pair_(pair), at_(at), outward_(outward), up_(up), closed_(kClosed * pair.extent) {}
 

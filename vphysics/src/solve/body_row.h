@@ -22,7 +22,7 @@ struct alignas(64) BodyRow {
   // Inverse rotational inertia xx yy zz xy yz zx; the fractions of v and of w that damping leaves
   // per sub-step.
   float inertia[8];
-  // Contribution of the forces: acceleration [m/s^2], angular acceleration [rad/s^2]; 0, 0.
+  // Contribution of the forces: acceleration [m/s^2], angular acceleration [rad/s^2]; then 0, 0.
   float rate[8];
 };
 inline constexpr int kInverseMass = 6, kFalls = 7;         // in velocity

@@ -110,8 +110,7 @@ class ContactGraph {
   // contact may not use that colour.
   bool append(std::uint32_t contact, const End& a, const End& b, int points, int colour,
               ContactSlot& slot);
-  // Returns the contact whose slot was moved into the freed one, or kNoContact. That contact now
-  // has the slot `slot`.
+  // Returns the contact that was moved into the freed slot, or kNoContact.
   std::uint32_t remove(const ContactSlot& slot, const End& a, const End& b);
   // Moves a slot unchanged into the parked slots, or back into a colour, and updates `slot`.
   // Returns as remove() does, for the old slot.

@@ -3,12 +3,12 @@
 // A sub-step h of the solver has these stages. Each runs over all colours before the next starts:
 //
 //   v += h a
-//   restitution contacts that touch within h and bounce do so now, in sequence
-//   warm start  v += M^-1 J^T p          p: the impulses of the last sub-step
-//   solve       soft: a bias velocity removes penetration, a separation may close and no more;
-//               iterations after the first skip contacts that the last one has hardly changed
+//   restitution   contacts that touch within h and bounce do so now, in sequence
+//   warm start    v += M^-1 J^T p          p: the impulses of the last sub-step
+//   solve         soft: a bias velocity removes penetration, a separation may close and no more;
+//                 iterations after the first skip contacts that the last one has hardly changed
 //   x += h v
-//   relax       the same without the bias velocity, so that no bias velocity remains
+//   relax         the same without the bias velocity, so that no bias velocity remains
 //
 // One contact is solved as a block: its points interact through K (contact_block.h), and only the
 // sum of their impulses is applied to the bodies.
@@ -43,7 +43,7 @@ struct Normals {
       arm_b[i] = c.get(c.block().arm[i].b);
     }
   }
-  // n . linear + (d x n) . turn_b + arm . (turn_b - turn_a), for all points.
+  // out_i = n . linear + (d x n) . turn_b + arm . (turn_b - turn_a), for all points.
   void along(const V& linear, const V& turn_a, const V& turn_b, F* out) const {
     const F common = dot(n, linear) + dot(d_n, turn_b);
     const V rotation = turn_b - turn_a;

@@ -160,7 +160,7 @@ class JointLanes : public BlockLanes<W, BLOCK> {
   const JointForm& form_;
 };
 
-// --- preparing -----------------------------------------------------------------------------------
+// --- preparation ---------------------------------------------------------------------------------
 
 // Computes arms and separation of the point, and axes and coordinates of the rows, at the current
 // poses. `separation` is the residual of the point's rows.
