@@ -71,8 +71,7 @@ struct SearchMargin {
   // For a contact within a ball, world frame.
   double within(const Vec3& centre, double radius) const {
     const double moved = norm(displacement + cross(rotation, centre - about)) +
-                         // A rotation keeps it within its ball.
-                         radius * std::min(norm(rotation), 2.0);
+                         radius * std::min(norm(rotation), 2.0);  // rotation keeps it in its ball
     return std::min(largest, at_rest + moved);
   }
 

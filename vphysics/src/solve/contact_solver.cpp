@@ -242,7 +242,7 @@ double one_iteration(const StepContext& s, std::span<const std::uint32_t> contac
   return change;
 }
 
-// Joint rows of an articulation without contacts are independent of the rest: they are solved to
+// Joint rows of an articulation that is not touched are independent of the rest: they are solved to
 // convergence first, and later iterations skip them. Rows that do not affect one another, as of a
 // foosball table's rod, need one iteration.
 void integrate_untouched(const StepContext& s) {

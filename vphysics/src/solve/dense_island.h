@@ -2,8 +2,8 @@
 //
 // With W = J M^-1 J^T, impulses p and speeds u = W p + b, an iteration of projected Gauss-Seidel
 // (contact_solver.cpp) costs one line of W per row. It converges slowly where a load passes back
-// and forth, as for a ball pinched between a link and the ground: the error may shrink by
-// only 0.5 % per iteration. So a Newton step precedes an iteration. It solves all rows within their
+// and forth, as for a ball pinched between a link and the ground: the error may shrink by only
+// 0.5 % per iteration. So a Newton step precedes an iteration. It solves all rows within their
 // bounds together,
 //     (W + S + e D) dp = target - u - S p,     S: softness, D: the diagonal of W,
 // and rows that slide or roll at their bounds by their own equation (Equation). e is small: it only

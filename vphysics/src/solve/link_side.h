@@ -18,7 +18,7 @@ struct SolverArticulation {
   detail::ImpulseFactor* factor;
   double* velocity;  // z of the velocities; written by the solver
   double* shift;     // z of the position correction; written by the solver
-  bool touched;      // a contact acts on it; prepared
+  bool touched;      // a contact, or a joint between bodies, acts on it; prepared
 };
 
 // The part of a contact or a joint row that acts on one articulation; empty if depth is 0.
