@@ -244,7 +244,7 @@ double one_iteration(const StepContext& s, std::span<const std::uint32_t> contac
 
 // Joint rows of an articulation that is not touched are independent of the rest: they are solved to
 // convergence first, and later iterations skip them. Rows that do not affect one another, as of a
-// foosball table's rod, need one iteration.
+// rod that slides and rotates, need one iteration.
 void integrate_untouched(const StepContext& s) {
   for (std::size_t begin = 0, end = 0; begin < s.joints.size(); begin = end) {
     if (s.joints[begin].pair != kNoPair) return;  // rows of joints between bodies come last
