@@ -8,8 +8,8 @@
 namespace vp::collide {
 namespace {
 
-// An item that has moved so far that the box around it and its neighbours has grown by more than
-// this factor is put in elsewhere.
+// An item is removed and inserted elsewhere if its move enlarges the box around it and its siblings
+// by more than this factor.
 constexpr float kFarMove = 2.0f;
 
 }  // namespace
@@ -85,7 +85,7 @@ FloatBounds BoundingTree::bounds_of(std::uint32_t item) const {
   return nodes_[slot / 8].bounds.lane(slot % 8);
 }
 
-// Fits the boxes around the node, up to where nothing changes; takes out nodes that have become
+// Refits the ancestors' boxes up to the first that does not change; removes nodes that have become
 // empty.
 void BoundingTree::fit_above(std::uint32_t node) {
   for (std::uint32_t slot = nodes_[node].parent_slot; slot != kNone;) {
@@ -129,7 +129,7 @@ bool BoundingTree::move(std::uint32_t item, const FloatBounds& bounds) {
   return true;
 }
 
-// Down into the child whose box has to grow least, until there is room.
+// Descends into the child whose box grows least, to a node with a free slot.
 bool BoundingTree::insert(std::uint32_t item, const FloatBounds& bounds) {
   if (item >= slot_of_.size()) slot_of_.resize(item + 1, kNone);
   VP_ASSERT(slot_of_[item] == kNone);
@@ -174,7 +174,7 @@ BoxSweep::BoxSweep(const Sweep& sweep) {
     const double d = sweep.displacement[axis];
     double lower = sweep.start.lower[axis], upper = sweep.start.upper[axis];
     inverse_[axis] = static_cast<float>(1.0 / d);
-    if (!(std::fabs(inverse_[axis]) < 1e30f)) {  // so short that it is taken as a whole
+    if (!(std::fabs(inverse_[axis]) < 1e30f)) {  // so short that the whole displacement is covered
       inverse_[axis] = 0.0f;
       lower = std::min(lower, lower + d);
       upper = std::max(upper, upper + d);
@@ -185,8 +185,8 @@ BoxSweep::BoxSweep(const Sweep& sweep) {
 }
 
 unsigned BoxSweep::overlaps(const EightBounds& eight, float limit, float entry[8]) const {
-  // What the differences, the inverse and the products are rounded by, on both sides of the
-  // comparison: 2 * 3 * 2^-24, and as much again.
+  // Rounding errors of the differences, the inverse and the products, on both sides of the
+  // comparison: 2 * 3 * 2^-24, doubled.
   constexpr float kRounding = 1.0f + 8e-7f;
   unsigned bits = 0;
   for (unsigned h = 0; h < 2; ++h) {

@@ -1,16 +1,16 @@
-// A tree of axis-aligned bounds with eight children a node, tested at once.
+// A bounding volume hierarchy of AABBs with eight children per node, which are tested at once.
 //
-// Its shape follows from the order of calls, but what it finds does not: it is a means, not a
-// state. A world restored from a snapshot may have another tree and finds the same.
+// The tree's shape depends on the order of calls, but query results do not: the tree is no part of
+// the simulation state. A world restored from a snapshot may have another tree and finds the same.
 //
-// Building: top down, each range cut in two, by space-filling codes or, with more effort, where a
-// binned surface area heuristic is least. Moving: the
-// boxes above are fitted again; what goes far is taken out and put in elsewhere. Both make the tree
-// worse with time, so who moves much builds it anew now and then (changes()).
+// Building: top down. Each range is divided in two, by Morton codes or, with more effort, at the
+// minimum of a binned surface area heuristic. Moving: the ancestors' boxes are refitted; an item
+// that moves far is removed and inserted elsewhere. Both make the tree worse over time, so a caller
+// with many moving items rebuilds it at intervals (changes()).
 //
 // Sources: Lauterbach et al. 2009 (Fast BVH construction on GPUs), section 3; Wald 2007 (On fast
-// construction of SAH-based BVHs); Wald, Benthin, Boulos 2008 (wide
-// nodes); Ize 2013 (Robust BVH ray traversal) for the rounding of the ray's test.
+// construction of SAH-based BVHs); Wald, Benthin, Boulos 2008 (wide nodes); Ize 2013 (Robust BVH
+// ray traversal) for the rounding of the ray test.
 #pragma once
 
 #include <algorithm>
@@ -25,21 +25,21 @@ namespace vp::collide {
 
 struct TreeItem {
   FloatBounds bounds;
-  std::uint32_t item = 0;  // < 2^31; the tree keeps a word for each up to the highest
+  std::uint32_t item = 0;  // < 2^31; the tree stores a word for each index up to the maximum
   std::uint32_t spare = 0;
-  std::uint64_t code = 0;  // the builder's
+  std::uint64_t code = 0;  // used by the builder
 };
 static_assert(sizeof(TreeItem) == 48);
 
-// A box (a point, for a ray) that moves by `displacement` while the fraction goes from 0 to 1.
+// An AABB (a point, for a ray) that moves by `displacement` while the fraction goes from 0 to 1.
 struct Sweep {
   Bounds start;
   Vec3 displacement;
 };
 
-// Memory of casts, kept by whoever casts: a heap of nodes and items by the fraction at which they
-// are entered, or their distance. A node comes before an item of the same one, since it may hold an
-// item with a lower number.
+// Scratch memory of casts, owned by the caller: a heap of nodes and items, ordered by entry
+// fraction or distance. A node precedes an item of the same fraction, since it may contain an item
+// with a lower number.
 class CastScratch {
  public:
   struct Entry {
@@ -69,18 +69,17 @@ class CastScratch {
 
 class BoundingTree {
  public:
-  // All at once. The items are put into another order. Precondition: each item occurs once.
-  // quick: for trees that are built again soon; careful: several times as long, for those that
-  // stay.
+  // Builds the whole tree; reorders the items. Precondition: each item occurs once. quick: for
+  // trees that are rebuilt soon; careful: takes several times as long, for trees that persist.
   enum class Effort : std::uint8_t { quick, careful };
   void build(std::span<TreeItem> items, Effort effort = Effort::quick);
   void clear();
 
-  // False: the tree has become too deep and has to be built anew; the item is not in it.
-  // Precondition: it was not in it before.
+  // Returns false if the tree has become too deep and must be rebuilt; the item is then not
+  // inserted. Precondition: the tree does not contain the item.
   [[nodiscard]] bool insert(std::uint32_t item, const FloatBounds& bounds);
   void remove(std::uint32_t item);  // precondition: contains(item)
-  // As remove and insert.
+  // The same as remove and insert.
   [[nodiscard]] bool move(std::uint32_t item, const FloatBounds& bounds);
   bool contains(std::uint32_t item) const {
     return item < slot_of_.size() && slot_of_[item] != kNone;
@@ -88,37 +87,39 @@ class BoundingTree {
 
   std::size_t size() const { return size_; }
   std::size_t changes() const { return changes_; }  // insert, remove and move since build()
-  FloatBounds bounds() const;                       // of all; empty if there is nothing
+  FloatBounds bounds() const;                       // of all items; empty if there is none
   FloatBounds bounds_of(std::uint32_t item) const;  // precondition: contains(item)
 
-  // found(item) for all whose bounds overlap the box, in no order that the outcome may depend on.
+  // Calls found(item) for all items whose bounds overlap the box. Results must not depend on the
+  // order.
   template <class F>
   void overlapping(const FloatBounds& box, const F& found) const;
 
-  // found(item, item) for all pairs of different items whose bounds overlap, each once.
+  // Calls found(item, item) once for each pair of different items whose bounds overlap.
   template <class F>
   void overlapping_pairs(const F& found) const;
-  // found(item of this, item of the other).
+  // Calls found(item of this, item of the other).
   template <class F>
   void overlapping_pairs(const BoundingTree& other, const F& found) const;
 
-  // hit(item, entry) in order of entry, then of items, for all whose bounds the moving box meets at
-  // a fraction of at most `limit`; entry is that fraction, to float's rounding. What hit returns is
-  // the new limit: the same to go on, less to look no farther, negative to stop.
+  // Calls hit(item, entry), in order of entry, then of items, for all items whose bounds the moving
+  // box touches at a fraction of at most `limit`; entry is that fraction, up to float rounding. hit
+  // returns the new limit: unchanged to continue, a smaller one to search less far, a negative one
+  // to stop.
   template <class F>
   void cast(const Sweep& sweep, double limit, CastScratch& scratch, const F& hit) const;
 
-  // near(item, distance) in order of distance, then of items, for all whose bounds are no farther
-  // from the box than `limit` [m]; distance is no more than theirs, by float's rounding. What near
-  // returns is the new limit, as of cast(). scale: each axis counts as that much longer.
+  // Calls near(item, distance), in order of distance, then of items, for all items whose bounds are
+  // at most `limit` [m] from the box; distance is a lower bound, up to float rounding. near returns
+  // the new limit, as in cast(). scale: factors that stretch the axes.
   template <class F>
   void nearest(const Bounds& box, const Vec3& scale, double limit, CastScratch& scratch,
                const F& near) const;
 
  private:
   static constexpr std::uint32_t kNone = 0xffffffffu;
-  static constexpr std::uint32_t kLeaf = 0x80000000u;  // child: an item, not a node
-  // A deeper node is never made: stacks have a fixed size. Eight to the tenth is a billion.
+  static constexpr std::uint32_t kLeaf = 0x80000000u;  // in child: an item, not a node
+  // The maximum depth of a node: stacks have a fixed size. Eight to the tenth is a billion.
   static constexpr unsigned kMaxDepth = 40;
   static constexpr std::size_t kStack = 7 * kMaxDepth + 16;
   static constexpr std::size_t kPairStack = 63 * kMaxDepth + 128;
@@ -126,12 +127,12 @@ class BoundingTree {
   struct alignas(64) Node {
     EightBounds bounds;
     std::uint32_t child[8];         // node, kLeaf | item, or kNone
-    std::uint32_t parent_slot = 0;  // 8 * node + lane; kNone: the root
+    std::uint32_t parent_slot = 0;  // 8 * node + index of the child; kNone: the root
     std::uint32_t used = 0;         // bit i: child i exists
-    std::uint32_t leaves = 0;       // bit i: it is an item
+    std::uint32_t leaves = 0;       // bit i: child i is an item
     std::uint32_t unused_words[5]{};
   };
-  static_assert(sizeof(Node) == 256);  // four cache lines, three of them for a box's test
+  static_assert(sizeof(Node) == 256);  // four cache lines, three of them for a box test
 
   std::uint32_t new_node(std::uint32_t parent_slot);
   void set_child(std::uint32_t slot, std::uint32_t child, const FloatBounds& bounds);
@@ -151,32 +152,33 @@ class BoundingTree {
   template <class F>
   void overlapping_below(std::uint32_t node, const SpreadBounds& box, const F& found) const;
 
-  std::vector<Node> nodes_;  // the first is the root
+  std::vector<Node> nodes_;  // the root is the first
   std::vector<std::uint32_t> free_nodes_;
   std::vector<std::uint32_t> slot_of_;  // by item
   std::size_t size_ = 0, changes_ = 0;
-  // Scratch of quick building.
+  // Scratch memory of quick building.
   std::vector<TreeItem> sorted_;
   std::vector<std::uint64_t> keys_, key_scratch_;
 };
 
-// A sweep as the lanes' test wants it: where the fraction at which the box meets [lower, upper]
-// along an axis is (near - from) * inverse, all rounded so that nothing is missed.
+// A sweep prepared for the SIMD slab test. Along an axis, the box touches [lower, upper] at the
+// fraction (near - from) * inverse. All values are rounded conservatively.
 class BoxSweep {
  public:
   explicit BoxSweep(const Sweep& sweep);
-  // Bit i: lane i is met at a fraction from 0 to limit. entry: the fractions.
+  // Bit i: the sweep touches lane i at a fraction from 0 to limit. entry: the fractions.
   unsigned overlaps(const EightBounds& eight, float limit, float entry[8]) const;
   bool overlaps(const FloatBounds& bounds, double limit, float& entry) const;
-  // Entries are rounded by some units of 2^-24: what lies beyond a fraction for sure.
+  // Entries have rounding errors of some units of 2^-24: returns a fraction that is surely beyond
+  // the limit.
   static float beyond(double limit) { return rounded_up(limit * (1.0 + 1e-6)); }
 
  private:
   float add_to_lower_[3], add_to_upper_[3];  // Minkowski sum with the box, reflected
-  float inverse_[3];                         // 0: the sweep does not go along this axis
+  float inverse_[3];                         // 0: the sweep has no displacement along this axis
 };
 
-// Never above the distance of the two.
+// A lower bound of the distance between the two.
 float distance_between(const Bounds& box, const FloatBounds& other, const Vec3& scale);
 
 template <class F>
@@ -198,8 +200,8 @@ void BoundingTree::overlapping(const FloatBounds& box, const F& found) const {
   if (size_ > 0) overlapping_below(0, SpreadBounds(box), found);
 }
 
-// A stack of pairs of children that overlap, of which the first is of this tree; a node with itself
-// stands for the pairs within it.
+// Uses a stack of pairs of children that overlap; the first of each pair is in this tree. A node
+// paired with itself represents the pairs within it.
 template <class F>
 void BoundingTree::overlapping_pairs_below(const BoundingTree& other, std::uint64_t first,
                                            const F& found) const {

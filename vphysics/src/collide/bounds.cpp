@@ -6,7 +6,7 @@
 namespace vp::collide {
 namespace {
 
-// A half-space is unbounded, but for a normal along an axis its surface is a tight face.
+// A half-space is unbounded. If its normal is along an axis, its surface is a tight bound.
 Bounds half_space_bounds(const SE3& T) {
   const Vec3 n = T.rotation().cz;
   Bounds b{{-kFar, -kFar, -kFar}, {kFar, kFar, kFar}};
@@ -17,7 +17,7 @@ Bounds half_space_bounds(const SE3& T) {
   return b;
 }
 
-// How far a disc of radius 1 across the axis reaches along each outer axis.
+// The extents along the outer axes of a disc of radius 1 perpendicular to the axis.
 Vec3 disc_extents(const Vec3& axis) {
   const double xx = axis.x * axis.x, yy = axis.y * axis.y, zz = axis.z * axis.z;
   return {std::sqrt(yy + zz), std::sqrt(zz + xx), std::sqrt(xx + yy)};

@@ -1,4 +1,4 @@
-// Axis-aligned bounds.
+// Axis-aligned bounding boxes (AABBs).
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 namespace vp::collide {
 
-// Stands for "without end"; finite, so that sums and differences of bounds stay numbers.
+// Represents infinity. It is finite so that sums and differences of bounds are not NaN.
 inline constexpr double kFar = 1e30;
 
 struct Bounds {
@@ -40,7 +40,7 @@ inline Bounds grown(const Bounds& a, double by) {
 inline Bounds moved(const Bounds& a, const Vec3& by) {
   return {by + a.lower, by + a.upper};
 }
-// |R| h: half extents, in the outer axes, of a box turned by R.
+// R| h: the half extents, along the outer axes, of a box rotated by R.
 inline Vec3 rotated_extents(const Mat3& R, const Vec3& h) {
   return {std::fabs(R.cx.x) * h.x + std::fabs(R.cy.x) * h.y + std::fabs(R.cz.x) * h.z,
           std::fabs(R.cx.y) * h.x + std::fabs(R.cy.y) * h.y + std::fabs(R.cz.y) * h.z,
@@ -48,7 +48,7 @@ inline Vec3 rotated_extents(const Mat3& R, const Vec3& h) {
 }
 
 Bounds bounds_of(const Geometry& geometry, const SE3& T);
-// Bounds in the outer frame of bounds given in an inner frame.
+// The bounds in the outer frame of bounds given in an inner frame.
 Bounds transformed(const SE3& T, const Bounds& inner);
 
 }  // namespace vp::collide

@@ -1,8 +1,8 @@
-// Box against box: the separating axis theorem over six face normals and nine crossings of edges,
-// the last separating axis first.
+// Box against box: the separating axis theorem over six face normals and nine cross products of
+// edges, the cached separating axis first.
 //
-// In a's frame b's axes are the columns of R, its centre t. Along the crossing of edge i of a and
-// edge j of b, which is of the length sqrt(1 - R_ij^2), all projections are sums of two products.
+// In a's frame b's axes are the columns of R, its centre is t. On the cross product of edge i of a
+// and edge j of b, whose length is sqrt(1 - R_ij^2), all projections are sums of two products.
 //
 // Source: Gottschalk, Lin, Manocha, OBBTree, 1996, section 5.
 #include <cmath>
@@ -13,7 +13,7 @@
 namespace vp::collide {
 namespace {
 
-// Square of the sine below which two edges give no axis.
+// The squared sine below which two edges are parallel and give no axis.
 constexpr double kParallel = 1e-12;
 
 struct Boxes {
@@ -38,7 +38,7 @@ struct Boxes {
     return std::fabs(towards_b(j)) - (hb[j] + q[0][j] * ha.x + q[1][j] * ha.y + q[2][j] * ha.z);
   }
   double squared_sine(int i, int j) const { return 1.0 - r[i][j] * r[i][j]; }
-  // Times the sine of the angle between the edges.
+  // The separation times the sine of the angle between the edges.
   double edge_separation(int i, int j) const {
     const int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
     const double along = t[i2] * r[i1][j] - t[i1] * r[i2][j];
@@ -54,8 +54,8 @@ int axis_from_face(int face) {
   return kBoxFaceAxis[static_cast<std::size_t>(face)];
 }
 
-// The gap along the axis that separated them last time: no more than their distance. 0: there is
-// none.
+// The separation along the cached separating axis: a lower bound of the distance. 0 if there is no
+// such axis.
 double separation_along_last(const Boxes& boxes, const CorePair& pair, const PairCache& cache) {
   switch (cache.feature) {
     case PairCache::face_of_a:
@@ -82,13 +82,13 @@ Vec3 face_normal(const CorePair& pair, const Boxes& boxes, bool of_a, int axis) 
   return boxes.towards_b(axis) < 0.0 ? -n : n;
 }
 
-// The face of which the normal, outwards, points to the other box.
+// The face whose outward normal points towards the other box.
 int facing(const Boxes& boxes, bool of_a, int axis) {
   const bool positive = of_a ? !(boxes.t[axis] < 0.0) : boxes.towards_b(axis) < 0.0;
   return kBoxFace[axis][positive ? 1 : 0];
 }
 
-// False as soon as a face separates by more than margin; that one is then the best.
+// Returns false as soon as a face has a separation of more than margin; that face is then `best`.
 bool find_best_face(const ContactQuery& query, const Boxes& boxes, FaceAxis& best) {
   best = {boxes.separation_of_a(0), {}, true, 0};
   const auto consider = [&](bool of_a, int axis, double separation, double needed) {
@@ -107,13 +107,13 @@ bool find_best_face(const ContactQuery& query, const Boxes& boxes, FaceAxis& bes
   return true;
 }
 
-// The best two edges, if better than the face; ends at once where they are apart by more than
-// margin.
+// Finds the best pair of edges, if better than the face; stops as soon as a pair is separated by
+// more than margin.
 void find_better_edges(const Boxes& boxes, double margin, const FaceAxis& face, EdgeAxis& edge) {
   edge.axis.separation = face.separation;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
-      // A gap below zero is no more than its part along the longer vector.
+      // A negative separation is at most its value along the unnormalized cross product.
       const double part = boxes.edge_separation(i, j);
       if (part <= edge.axis.separation) continue;
       const double sine2 = boxes.squared_sine(i, j);
@@ -129,8 +129,8 @@ void find_better_edges(const Boxes& boxes, double margin, const FaceAxis& face, 
   }
 }
 
-// Where the edges along axis i of a and j of b that face one another are nearest. False if that is
-// beyond their ends.
+// Finds the closest points of the edges along axis i of a and j of b that face each other. Returns
+// false if they are beyond the edges' ends.
 bool place_edges(const CorePair& pair, const Boxes& boxes, EdgeAxis& edge) {
   const SE3& T = pair.T_a_b;
   Vec3 da;
@@ -139,7 +139,7 @@ bool place_edges(const CorePair& pair, const Boxes& boxes, EdgeAxis& edge) {
   Vec3 n = cross(da, db);
   n = ((dot(n, boxes.t) < 0.0 ? -1.0 : 1.0) / norm(n)) * n;
   const Vec3 nb = T.unrotate(n);
-  Vec3 pa, pb;  // the middles of the edges
+  Vec3 pa, pb;  // the centres of the edges
   for (int k = 0; k < 3; ++k) {
     if (k != edge.i) pa[k] = std::copysign(boxes.ha[k], n[k]);
     if (k != edge.j) pb[k] = std::copysign(boxes.hb[k], -nb[k]);
@@ -176,7 +176,7 @@ void collide_boxes(const CorePair& pair, double margin, PairCache& cache, Manifo
     if (!near) return;
     Feature feature;
     face_feature(face.of_a ? pair.a : pair.b, face.of_a ? SE3{} : pair.T_a_b, face.face, feature);
-    // A point of the patch proves how near they are.
+    // A point of the patch proves the separation.
     const double best = edge.better ? edge.axis.separation : face.separation;
     if (add_face_contact(query, face.of_a, feature, face.normal, best, m)) return;
   }
@@ -188,10 +188,10 @@ void collide_boxes(const CorePair& pair, double margin, PairCache& cache, Manifo
       return add_contact_along(query, edge.axis, m);
     }
   }
-  // Apart, but neither across a face nor between two edges.
+  // Separated, but neither along a face normal nor between two edges.
   const GjkResult found = gjk(pair, face.normal, margin);
   if (found.state != GjkResult::State::overlaps) return collide_separated(query, found, cache, m);
-  add_contact_along(query, axis_of_face(pair, face), m);  // so near that it is rounding
+  add_contact_along(query, axis_of_face(pair, face), m);  // separated by rounding error only
 }
 
 }  // namespace vp::collide

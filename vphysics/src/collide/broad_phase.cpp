@@ -9,7 +9,7 @@ int BroadPhase::widest_axis(std::span<const Bounds> bounds) const {
   double n = 0.0;
   for (const Bounds& b : bounds) {
     const Vec3 c = 0.5 * (b.lower + b.upper);
-    // Half-spaces and empty bounds have no centre worth counting.
+    // Half-spaces and empty bounds have no meaningful centre.
     if (!(norm(b.upper - b.lower) < 0.5 * kFar) || empty(b)) continue;
     n += 1.0;
     sum += c;
@@ -27,7 +27,7 @@ int BroadPhase::widest_axis(std::span<const Bounds> bounds) const {
   return axis;
 }
 
-// Insertion sort: bodies move little from step to step, so the old order is nearly right.
+// Insertion sort: bodies move little between steps, so the old order is almost sorted.
 void BroadPhase::sort_along(int axis, std::span<const Bounds> bounds) {
   const auto before = [&](std::uint32_t i, std::uint32_t j) {
     const double a = bounds[i].lower[axis], b = bounds[j].lower[axis];
@@ -48,7 +48,7 @@ void BroadPhase::find_pairs(std::span<const Bounds> bounds, std::span<const std:
     for (std::uint32_t i = 0; i < order_.size(); ++i) order_[i] = i;
     calls_ = 0;
   }
-  // Which axis is sorted along changes the cost, never the pairs.
+  // The sort axis affects the cost, never the pairs.
   if (calls_++ % kCallsPerAxis == 0) axis_ = widest_axis(bounds);
   const int axis = axis_;
   sort_along(axis, bounds);

@@ -1,7 +1,8 @@
-// Which bounds overlap: sort and sweep along the axis on which the centres are spread most.
+// Finds overlapping bounds by sort and sweep along the axis with the largest variance of the
+// centres.
 //
-// The pairs found and their order depend on the bounds alone: the order kept from call to call only
-// makes the next sort cheap.
+// The pairs and their order depend on the bounds alone. The order kept between calls only makes the
+// next sort cheap.
 #pragma once
 
 #include <cstdint>
@@ -14,13 +15,13 @@ namespace vp::collide {
 
 struct IndexPair {
   std::uint32_t a, b;  // a < b
-  // The check takes the 0 that the compiler compares with for a pointer.
+  // The linter mistakes the 0 that the compiler compares with for a pointer.
   constexpr auto operator<=>(const IndexPair&) const = default;  // NOLINT(modernize-use-nullptr)
 };
 
 class BroadPhase {
  public:
-  // Appends every pair of overlapping, non-empty bounds of which at least one is movable, sorted.
+  // Appends, sorted, every pair of overlapping, non-empty bounds of which at least one is movable.
   void find_pairs(std::span<const Bounds> bounds, std::span<const std::uint8_t> movable,
                   std::vector<IndexPair>& pairs);
 

@@ -1,4 +1,4 @@
-// Two capsules are two segments with a thickness.
+// A capsule's axis as a segment; closest points of two segments.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@ struct Axis {
 struct AxisPair {
   double s, t;
 };
-// Where two segments are nearest to one another: s on a, t on b.
+// The closest points of two segments: s on a, t on b.
 inline AxisPair nearest_on_axes(const Axis& a, const Axis& b) {
   const Vec3 r = a.centre - b.centre;
   const double k = dot(a.direction, b.direction), ra = dot(a.direction, r),
@@ -30,14 +30,15 @@ inline AxisPair nearest_on_axes(const Axis& a, const Axis& b) {
   return {s, std::clamp(k * s + rb, -b.half, b.half)};
 }
 
-// From a to b along d, which joins their nearest points; out across both where they meet.
+// The unit normal from a to b along d, which joins the closest points. If the axes intersect, it is
+// perpendicular to both.
 inline Vec3 normal_between(const Axis& a, const Axis& b, const Vec3& d) {
   const double distance = norm(d);
   if (distance > 1e-12) return (1.0 / distance) * d;
   const Vec3 perpendicular = cross(a.direction, b.direction);
   const double sine = norm(perpendicular);
   if (sine > 1e-9) return (1.0 / sine) * perpendicular;
-  // Along one another: across the one, in whatever direction.
+  // Parallel axes: any direction perpendicular to them.
   const Vec3 e = std::fabs(a.direction.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
   const Vec3 n = cross(a.direction, e);
   return (1.0 / norm(n)) * n;

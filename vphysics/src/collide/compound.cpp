@@ -11,7 +11,7 @@ namespace vp {
 namespace {
 
 constexpr std::size_t kMaxParts = std::size_t{1} << 16;
-constexpr double kMinPart = 1e-6, kLargestPart = 1e9;  // [m], as everywhere in the engine
+constexpr double kMinPart = 1e-6, kLargestPart = 1e9;  // [m], the engine's limits
 
 tl::unexpected<Error> invalid_compound(std::string message) {
   return tl::make_unexpected(Error{Errc::invalid_argument, "compound: " + std::move(message)});
@@ -36,7 +36,7 @@ bool is_proper_pose(const SE3& T) {
          norm(cross(R.cx, R.cy) - R.cz) < kTolerance;
 }
 
-// What is wrong with a part, or nullptr.
+// The problem with a part, or nullptr.
 const char* problem_with_part(const Shape& shape) {
   if (const auto* sphere = std::get_if<Sphere>(&shape)) {
     return is_size(sphere->radius) ? nullptr : "its radius must be from 1e-6 to 1e9 m";

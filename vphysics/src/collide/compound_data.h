@@ -1,4 +1,4 @@
-// What a Compound holds: constant once built, shared by everything that uses the compound.
+// The data of a Compound: constant once built, shared by all users of the compound.
 #pragma once
 
 #include <vector>
@@ -10,10 +10,10 @@ namespace vp::collide {
 
 struct CompoundData {
   std::vector<CompoundPart> parts;
-  std::vector<Geometry> geometries;  // of the parts, which keep what these point to
+  std::vector<Geometry> geometries;  // of the parts, which own what these point to
   BoundingTree tree;                 // of the parts' bounds
   Vec3 lower, upper;                 // bounds
-  Inertia unit;                      // of density 1
+  Inertia unit;                      // at density 1
 };
 
 }  // namespace vp::collide

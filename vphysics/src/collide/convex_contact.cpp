@@ -8,7 +8,7 @@
 namespace vp::collide {
 namespace {
 
-// The better of the two features' face normals.
+// The face normal with the larger separation, of the two features' normals.
 bool find_face_axis(const ContactQuery& q, const Feature& a, const Feature& b, FaceAxis& best) {
   bool found = false;
   for (const bool of_a : {true, false}) {
@@ -43,7 +43,7 @@ void add_patch(const ContactQuery& q, const BestAxis& axis, const Feature& a, co
   find_patch(patch, true, m);
 }
 
-// Along the axis, or along the normal of a face there if that does.
+// Adds a contact along the axis, or along the normal of a face there if that suffices.
 void add_contact(const ContactQuery& q, const BestAxis& axis, Manifold& m) {
   Feature a, b;
   features_along(q, axis.normal, a, b);
@@ -54,8 +54,8 @@ void add_contact(const ContactQuery& q, const BestAxis& axis, Manifold& m) {
   add_patch(q, axis, a, b, m);
 }
 
-// What overlaps and is not two polytopes. A face seen along the last normal tells how deep they are
-// at most: nothing that is hardly better needs to be looked for.
+// For overlapping cores that are not two polytopes. A face along the cached normal gives an upper
+// bound of the depth: the search stops where nothing significantly better exists.
 void collide_overlapping(const ContactQuery& q, const Simplex& simplex, const Vec3& last,
                          PairCache& cache, Manifold& m) {
   Feature a, b;
@@ -98,7 +98,7 @@ void collide_polytopes(const ContactQuery& q, PairCache& cache, Manifold& m) {
 
 bool is_direction(const Vec3& v) {
   const double n2 = dot(v, v);
-  return n2 > 0.5 && n2 < 2.0;  // not of NaN
+  return n2 > 0.5 && n2 < 2.0;  // false for NaN
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// A hull from points: snapped to a grid, on which the triangles are found exactly; joined to faces;
-// numbered in an order that depends on the corners alone.
+// Builds a hull from points: snaps them to a grid, computes the triangles exactly, merges them into
+// faces, and numbers everything in an order that depends on the corners alone.
 #include "vphysics/convex_hull.h"
 
 #include <algorithm>
@@ -17,17 +17,18 @@ namespace {
 using collide::HullData;
 using collide::Loop;
 
-constexpr double kFarthestPoint = 1e9;    // of a coordinate [m], as everywhere in the engine
-constexpr double kSmallestExtent = 1e-6;  // [m], as of every shape
-constexpr double kThinnest = 1e-6;        // thickness, share of the extent
-constexpr int kMaxHullVertices = 256;  // names of features and costs of pairs are made for so many
-constexpr double kCoarsestTolerance = 0.01;  // tolerance
+constexpr double kFarthestPoint = 1e9;    // of a coordinate [m], the engine's limit
+constexpr double kSmallestExtent = 1e-6;  // [m], the limit of every shape
+constexpr double kThinnest = 1e-6;        // thickness, as a fraction of the extent
+// Feature names and the cost of pairs are designed for this many.
+constexpr int kMaxHullVertices = 256;
+constexpr double kCoarsestTolerance = 0.01;  // the maximum tolerance option
 
 tl::unexpected<Error> invalid_hull(std::string message) {
   return tl::make_unexpected(Error{Errc::invalid_argument, "convex hull: " + std::move(message)});
 }
 
-// In lexicographic order, each once.
+// Sorts lexicographically and removes duplicates.
 std::vector<Vec3> sorted(std::span<const Vec3> points) {
   std::vector<Vec3> found(points.begin(), points.end());
   for (Vec3& p : found) p += Vec3{};  // -0 becomes 0
@@ -55,7 +56,7 @@ Extent extent_of(std::span<const Vec3> points) {
   return e;
 }
 
-// Cells for each metre: a power of two, so that snapping only rounds.
+// Cells per metre: a power of two, so that snapping only rounds.
 double grid_scale(double extent) {
   int exponent = 0;
   (void)std::frexp(extent, &exponent);  // extent < 2^exponent
@@ -76,7 +77,7 @@ std::vector<collide::GridPoint> snapped(std::span<const Vec3> points, const Vec3
   return grid;
 }
 
-// The hull's triangles, without corners in the midst of what is flat. Indices are of all points.
+// The hull's triangles, without vertices inside flat faces. Indices refer to all points.
 collide::Quickhull find_triangles(std::span<const Vec3> points, const Extent& extent, double scale,
                                   const HullOptions& options) {
   const double cells = extent.largest * scale;
@@ -87,7 +88,7 @@ collide::Quickhull find_triangles(std::span<const Vec3> points, const Extent& ex
     const std::vector<std::uint32_t> flat =
         collide::flat_corners(points, found.triangles, found.tolerance / scale);
     if (flat.empty()) break;
-    std::vector<std::uint32_t> kept_points;  // the corners that are not
+    std::vector<std::uint32_t> kept_points;  // the corners that are not flat
     for (const collide::Triangle& t : found.triangles)
       kept_points.insert(kept_points.end(), t.begin(), t.end());
     std::sort(kept_points.begin(), kept_points.end());
@@ -107,7 +108,8 @@ collide::Quickhull find_triangles(std::span<const Vec3> points, const Extent& ex
   return found;
 }
 
-// Numbers the corners in the points' order, turns each loop to begin with its lowest, sorts loops.
+// Numbers the corners in the order of the points, rotates each loop to start with its lowest
+// corner, and sorts the loops.
 std::vector<Vec3> renumber(std::span<const Vec3> points, std::vector<Loop>& loops) {
   std::vector<std::uint32_t> number(points.size(), 0);
   for (const Loop& loop : loops) {
@@ -186,9 +188,9 @@ void set_surroundings(HullData& hull) {
   hull.first_around.push_back(static_cast<std::uint16_t>(hull.faces_around.size()));
 }
 
-// A tetrahedron of density 1 from the reference point (the origin here) to a, b, c: volume V,
-// V (a + b + c) / 4, and the integral of x x^T, V (S S^T + sum of each corner's) / 20, S = a + b +
-// c.
+// Adds a tetrahedron of density 1 from the reference point (here the origin) to a, b, c: volume V,
+// first moment V (a + b + c) / 4, and the integral of x x^T, V (S S^T + the sum of each corner's) /
+// 20, S = a + b + c.
 struct Moments {
   double volume = 0.0;
   Vec3 first;
@@ -205,7 +207,7 @@ struct Moments {
 };
 
 void set_mass(HullData& hull) {
-  Vec3 reference;  // near the hull, so that one far from its frame's origin loses nothing
+  Vec3 reference;  // near the hull, to keep precision if the frame's origin is far away
   for (const Vec3& v : hull.vertices) reference += v;
   reference *= 1.0 / static_cast<double>(hull.vertices.size());
   Moments m;

@@ -10,14 +10,14 @@
 namespace vp::collide {
 namespace {
 
-// In the frame of a, between surfaces.
+// In the frame of a, between the surfaces.
 ClosestPoints of_axis(const CorePair& pair, const BestAxis& axis) {
   const double ra = core_radius(pair.a), rb = core_radius(pair.b);
   return {axis.separation - ra - rb, axis.normal, axis.on_a + ra * axis.normal,
           axis.on_b - rb * axis.normal};
 }
 
-// The point may lie anywhere in b: nothing is lost where it is deep inside.
+// The centre may be anywhere in b: deep points lose no accuracy.
 ClosestPoints of_sphere(const CorePair& pair) {
   const Vec3 p = inverse_times(pair.T_a_b, Vec3{});
   const SignedDistance d = signed_distance(pair.b, p);

@@ -1,4 +1,4 @@
-// How far apart two shapes are, or how deep in one another.
+// Distance or penetration depth of two shapes.
 #pragma once
 
 #include "collide/geometry.h"
@@ -7,9 +7,9 @@
 namespace vp::collide {
 
 struct ClosestPoints {
-  // Negative: the least distance that one has to be moved until they only touch.
+  // Negative: the penetration depth, the minimum translation that separates them.
   double distance;
-  Vec3 normal;      // unit, world frame: from a to b where they are apart, b's way out where not
+  Vec3 normal;      // unit, world frame: from a to b; in penetration, b's exit direction
   Vec3 on_a, on_b;  // world frame; on_b - on_a = distance normal
 };
 
@@ -17,7 +17,7 @@ struct ClosestPoints {
 ClosestPoints closest_points(const Geometry& a, const SE3& T_a, const Geometry& b, const SE3& T_b,
                              PairCache& cache);
 
-// The same question without the answer's details: cheaper. Touching counts.
+// Only whether they overlap: cheaper. Touching counts as overlap.
 bool shapes_overlap(const Geometry& a, const SE3& T_a, const Geometry& b, const SE3& T_b,
                     PairCache& cache);
 

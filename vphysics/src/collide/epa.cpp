@@ -1,6 +1,6 @@
-// A polytope inside A - B that holds the origin grows by the support point beyond its face nearest
-// to the origin, until that face is one of A - B itself. The distance of the nearest face is a
-// lower bound of the depth, that of each support plane an upper one.
+// A polytope inside A - B that contains the origin grows by the support point in the direction of
+// its face closest to the origin, until that face is one of A - B itself. The distance of the
+// closest face is a lower bound of the depth; that of each support plane is an upper bound.
 //
 // Source: van den Bergen, Proximity Queries and Penetration Depth Computation on 3D Game Objects,
 // 2001.
@@ -18,9 +18,9 @@ namespace {
 constexpr int kEpaVertices = 96;
 constexpr int kEpaFaces = 2 * kEpaVertices;
 constexpr int kEpaHorizon = kEpaVertices;
-// Bounds this near to one another [share of the pair's reach] are one.
+// Convergence: the maximum difference of the bounds [fraction of the pair's extent].
 constexpr double kEpaClosed = 1e-9;
-// A point less than this above a face [the same] is on it.
+// A point less than this above a face [fraction of the pair's extent] is on it.
 constexpr double kEpaCoplanar = 1e-14;
 
 struct EpaFace {
@@ -28,7 +28,7 @@ struct EpaFace {
   std::array<std::uint16_t, 3> beside;  // across the edge from v[i] to the next
   bool alive, seen;
   Vec3 n;
-  double d;  // of its plane from the origin, along n
+  double d;  // offset of its plane from the origin, along n
 };
 
 struct EpaHorizon {
@@ -64,7 +64,8 @@ class ExpandingPolytope {
   int horizon_count_ = 0;
 };
 
-// A simplex of fewer corners has the origin on it: support points to its sides make it one of four.
+// If the simplex has fewer than four points, it contains the origin: support points complete it to
+// a tetrahedron.
 bool ExpandingPolytope::complete_to_tetrahedron(const Simplex& simplex) {
   vertex_count_ = simplex.count;
   for (int i = 0; i < simplex.count; ++i) vertices_[i] = simplex.p[i];
@@ -119,7 +120,7 @@ bool ExpandingPolytope::start(const Simplex& simplex) {
   return linked;
 }
 
-// -1 if there is no room, or it has no area.
+// Returns -1 if the capacity is reached, or the face has no area.
 int ExpandingPolytope::add_face(int a, int b, int c) {
   int index = face_count_;
   if (free_count_ > 0) {
@@ -162,7 +163,7 @@ int ExpandingPolytope::nearest() const {
   return best;
 }
 
-// Faces that w is above, and the loop of edges around them.
+// Finds the faces that w is above, and the edge loop around them.
 bool ExpandingPolytope::see(int face, const Vec3& w) {
   seen_count_ = horizon_count_ = 0;
   seen_[seen_count_++] = static_cast<std::uint16_t>(face);
@@ -186,7 +187,7 @@ bool ExpandingPolytope::see(int face, const Vec3& w) {
   return true;
 }
 
-// False if rounding or room does not allow it; the polytope is then of no more use.
+// Returns false if rounding errors or the capacity prevent it; the polytope is then unusable.
 bool ExpandingPolytope::add_vertex(const CorePoint& p, int face) {
   if (vertex_count_ == kEpaVertices) return false;
   const int v = vertex_count_++;
@@ -212,8 +213,8 @@ bool ExpandingPolytope::add_vertex(const CorePoint& p, int face) {
   return true;
 }
 
-// A direction that a shape prefers near n, in the frame of a: the normals of flat caps and faces,
-// those of its side.
+// A direction near n that a shape prefers, in the frame of a: the normals of flat caps and faces,
+// or of its side.
 int preferred_near(const Geometry& g, const SE3& T, const Vec3& n, Vec3 (&found)[2]) {
   const Vec3 d = T.unrotate(n);
   const double radial = std::sqrt(d.x * d.x + d.y * d.y);
@@ -230,8 +231,8 @@ int preferred_near(const Geometry& g, const SE3& T, const Vec3& n, Vec3 (&found)
   return count;
 }
 
-// What curves is closed in upon from many sides, and where it is as deep in many directions only
-// slowly. The directions that the shapes themselves suggest are better, or as good and steadier.
+// Curved surfaces are approached from many directions, and slowly if many of them have the same
+// depth. Directions that the shapes themselves suggest are better, or as good and more stable.
 void polish(const CorePair& pair, Penetration& best) {
   const double as_good = kEpaClosed * pair.extent;
   const auto consider = [&](const Vec3& n) {
@@ -259,10 +260,10 @@ void polish(const CorePair& pair, Penetration& best) {
   }
 }
 
-// Points of the cores where they touch once b is moved along the normal: those nearest to one
-// another when it is moved a little farther.
+// Sets the points where the cores touch once b is moved along the normal: the closest points after
+// a slightly larger move.
 void set_witness(const CorePair& pair, Penetration& found) {
-  constexpr double kFarther = 1e-3;  // share of the pair's reach
+  constexpr double kFarther = 1e-3;  // fraction of the pair's extent
   const Vec3 shift = (found.depth + kFarther * pair.extent) * found.normal;
   const SE3& T = pair.T_a_b;
   const CorePair separated(pair.a, pair.b, SE3(T.rotation(), T.position() + shift));
@@ -304,7 +305,7 @@ Penetration epa(const CorePair& pair, const Simplex& simplex, double enough) {
     set_witness(pair, found);
     return found;
   }
-  // No volume between them: they touch in what is a point, a line or a plane to rounding.
+  // Their overlap has no volume: up to rounding, they touch in a point, a line or a plane.
   Vec3 n = pair.T_a_b * core_centre(pair.b) - core_centre(pair.a);
   const double length = norm(n);
   n = length > 0.0 ? (1.0 / length) * n : Vec3{0, 0, 1};

@@ -1,5 +1,5 @@
-// A disc is a polygon of 16 corners that turn with the shape, so that what stands on it stands on
-// points that keep their names, and the corner that lies deepest, exactly, so that what tips or
+// A disc is a polygon of 16 corners that rotate with the shape, plus the exact deepest point of its
+// rim. So a shape that stands on it keeps the feature names of its points, and a shape that tips or
 // rolls on its rim rolls on a circle.
 #include "collide/feature.h"
 
@@ -15,7 +15,7 @@ constexpr double kRimCos[kRim] = {1,  kC1,  kR,  kS1,  0, -kS1, -kR, -kC1,
                                   -1, -kC1, -kR, -kS1, 0, kS1,  kR,  kC1};
 constexpr double kRimSin[kRim] = {0, kS1,  kR,  kC1,  1,  kC1,  kR,  kS1,
                                   0, -kS1, -kR, -kC1, -1, -kC1, -kR, -kS1};
-// Names: corners and edges of the upper rim, of the lower one, and of the side.
+// Name ranges: corners and edges of the upper rim, of the lower one, and of the side.
 constexpr int kUpper = 0, kLower = 32, kSide = 64;
 
 void add(Feature& f, const SE3& T, const Vec3& p, int name, int edge) {
@@ -31,7 +31,7 @@ void set_normal(Feature& f, const SE3& T, const Vec3& n) {
   f.normal_z = m.z;
 }
 
-// The disc at the height z, which looks up or down.
+// The disc at height z, facing up or down.
 void disc_feature(double radius, double z, const SE3& T, const Vec3& d, Feature& f) {
   const bool up = z > 0.0;
   const int base = up ? kUpper : kLower;
@@ -42,8 +42,9 @@ void disc_feature(double radius, double z, const SE3& T, const Vec3& d, Feature&
   for (int k = 0; k < kRim; ++k) {
     const int i = up ? k : kRim - 1 - k, next = up ? (i + 1) % kRim : (i + kRim - 1) % kRim;
     add(f, T, {radius * kRimCos[i], radius * kRimSin[i], z}, base + i, base + (up ? i : next));
-    // Between this corner and the next, well clear of both, lies the deepest one. Upright (sine of
-    // the tilt), it would be deeper by less than a millionth of the radius, and in any place.
+    // The deepest point is between this corner and the next, clear of both. If the disc is nearly
+    // upright (sine of the tilt), the point would be deeper by less than a millionth of the radius,
+    // and its position arbitrary.
     constexpr double kClear = 1e-4, kUpright = 3e-5;
     const double after = kRimCos[i] * sin - kRimSin[i] * cos;
     const double before = cos * kRimSin[next] - sin * kRimCos[next];
@@ -73,7 +74,7 @@ void cylinder_feature(const Geometry& g, const SE3& T, const Vec3& d, Feature& f
 
 void cone_feature(const Geometry& g, const SE3& T, const Vec3& d, Feature& f) {
   const double radial = std::sqrt(d.x * d.x + d.y * d.y), h = 2.0 * g.half.z, r = g.radius;
-  // Alignment with the base's normal and with the side's.
+  // Alignment of d with the base's normal and with the side's.
   const double base = -d.z, side = (h * radial + r * d.z) / std::sqrt(h * h + r * r);
   if (base > side) {
     disc_feature(r, -g.half.z, T, d, f);
@@ -82,7 +83,7 @@ void cone_feature(const Geometry& g, const SE3& T, const Vec3& d, Feature& f) {
   }
 }
 
-// Seen from behind its corners run the other way round.
+// Seen from behind, the order of its corners is reversed.
 void triangle_feature(const Vec3* p, const SE3& T, const Vec3& d, Feature& f) {
   const Vec3 n = cross(p[1] - p[0], p[2] - p[0]);
   const bool front = dot(n, d) >= 0.0;
@@ -101,7 +102,7 @@ int aligned_box_face(const Vec3& d) {
   return kBoxFace[axis][d[axis] > 0.0 ? 1 : 0];
 }
 
-// Of the faces around the farthest vertex the one that looks most along d.
+// Among the faces around the farthest vertex, the one most aligned with d.
 int aligned_hull_face(const HullData& hull, const Vec3& d) {
   const auto v = static_cast<std::size_t>(support_vertex(hull, d, 0));
   int best = hull.faces_around[hull.first_around[v]];

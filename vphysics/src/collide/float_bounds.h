@@ -1,8 +1,7 @@
-// Axis-aligned bounds in single precision, never smaller than what they were made of, and eight of
-// them side by side.
+// AABBs in single precision, rounded outward, and eight of them in structure-of-arrays layout.
 //
-// Four lanes of float are one register everywhere: SSE2, NEON, WebAssembly. Only comparisons,
-// minima and maxima are taken of them, so that every target gives the same bits.
+// Four float lanes are one register on SSE2, NEON and WebAssembly. Only comparisons, minima and
+// maxima operate on them, so every target gives the same bits.
 #pragma once
 
 #include <array>
@@ -31,7 +30,7 @@ inline Lanes4 lesser(Lanes4 a, Lanes4 b) {
 inline Lanes4 greater(Lanes4 a, Lanes4 b) {
   return a > b ? a : b;
 }
-// Bit i: lane i of an outcome of comparisons.
+// Bit i: lane i of a comparison result.
 inline unsigned bits_of(Mask4 m) {
 #ifdef __SSE2__
   return static_cast<unsigned>(_mm_movemask_ps(reinterpret_cast<__m128>(m)));
@@ -41,7 +40,7 @@ inline unsigned bits_of(Mask4 m) {
 #endif
 }
 
-// x, y, z and a lane that is not used.
+// x, y, z and an unused lane.
 struct FloatBounds {
   Lanes4 lower = broadcast(std::numeric_limits<float>::infinity());
   Lanes4 upper = broadcast(-std::numeric_limits<float>::infinity());
@@ -60,17 +59,17 @@ inline bool contains(const FloatBounds& outer, const FloatBounds& inner) {
 inline FloatBounds merged(const FloatBounds& a, const FloatBounds& b) {
   return {lesser(a.lower, b.lower), greater(a.upper, b.upper)};
 }
-// Half the surface; 0 of empty bounds.
+// Half the surface area; 0 for empty bounds.
 inline float half_area(const FloatBounds& a) {
   const Lanes4 d = greater(a.upper - a.lower, Lanes4{});
   return d[0] * d[1] + d[1] * d[2] + d[2] * d[0];
 }
 
-// What lies beyond this [m] is taken to be here: sums and products of bounds stay numbers.
+// Coordinates beyond this [m] are clamped to it: sums and products of bounds are never NaN.
 inline constexpr double kFloatFar = 1e15;
 
-// Not above x, and at most 2^-23 of it below: half of that is put off before it is rounded to the
-// nearest. Without the last term what is a little below zero would become zero.
+// A float at most x, and at most 2^-23 of it below: subtracts half of that before rounding to
+// nearest. Without the last term a number slightly below zero would become zero.
 inline float rounded_down(double x) {
   const double in_range = std::min(std::max(x, -kFloatFar), kFloatFar);
   return static_cast<float>(in_range - (std::fabs(in_range) * (0x1p-24 * 1.000001) + 1e-37));
@@ -86,7 +85,7 @@ inline Bounds widened(const FloatBounds& b) {
   return {{b.lower[0], b.lower[1], b.lower[2]}, {b.upper[0], b.upper[1], b.upper[2]}};
 }
 
-// Eight bounds as a structure of arrays; lanes that are not used are empty and overlap nothing.
+// Eight bounds as a structure of arrays; unused lanes are empty and overlap nothing.
 struct EightBounds {
   Lanes4 lower[3][2];
   Lanes4 upper[3][2];
@@ -105,7 +104,7 @@ struct EightBounds {
   }
 };
 
-// One box in every lane.
+// One box in all lanes.
 struct SpreadBounds {
   Lanes4 lower[3], upper[3];
   explicit SpreadBounds(const FloatBounds& b) {
@@ -134,13 +133,13 @@ inline unsigned overlap_mask(const EightBounds& eight, const SpreadBounds& box) 
   return bits;
 }
 
-// Calls f(i) for the bits set, from the lowest.
+// Calls f(i) for each set bit, in ascending order.
 template <class F>
 void for_each_bit(std::uint64_t bits, const F& f) {
   for (; bits != 0; bits &= bits - 1) f(static_cast<unsigned>(std::countr_zero(bits)));
 }
 
-// Where the bits that are set in a byte are, the rest 0, and how many they are.
+// By byte: the positions of the set bits, then zeros; and the number of set bits.
 struct BitPositions {
   std::array<std::array<std::uint8_t, 8>, 256> of{};
   std::array<std::uint8_t, 256> count{};
@@ -156,9 +155,9 @@ struct BitPositions {
 };
 inline constexpr BitPositions kBitPositions;
 
-// Appends the children whose bit is set, with what is to be in the word's upper half, and returns
-// how many these are. Writes eight words whatever the bits: how many they are is never foreseen, so
-// a loop over them would cost more. With out of std::uint32_t the upper half is left away.
+// Appends the children whose bit is set, combined with the upper half of the word, and returns
+// their number. Always writes eight words: their number is unpredictable, so a loop over the bits
+// would cost more. With out of std::uint32_t the upper half is dropped.
 template <class Word>
 std::size_t append_chosen(unsigned bits, const std::uint32_t child[8], std::uint64_t upper,
                           Word* out) {

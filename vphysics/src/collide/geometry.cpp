@@ -10,7 +10,7 @@
 namespace vp::collide {
 namespace {
 
-// Closer to a feature than this [m], its direction is rounding noise; a face normal is taken.
+// Below this distance [m] to a feature the direction is rounding noise; a face normal is used.
 constexpr double kDirectionNoise = 1e-12;
 
 SignedDistance distance_to_point(const Vec3& d, double radius) {
@@ -45,7 +45,7 @@ SignedDistance distance_to_box(const Vec3& half, const Vec3& p) {
   return {depth, n};
 }
 
-// At a distance rho from the axis, at the height z.
+// Cylindrical coordinates: the distance rho from the axis and the height z.
 struct Meridian {
   double rho, z;
   Vec3 outward;  // unit, from the axis towards the point
@@ -69,13 +69,13 @@ SignedDistance distance_to_cylinder(double radius, double half, const Vec3& p) {
 
 SignedDistance distance_to_cone(double radius, double half, const Vec3& p) {
   const Meridian m = meridian(p);
-  // The side's line in the meridian plane runs from the rim (radius, -half) to the apex (0, half).
+  // The side's line in the meridian plane, from the rim (radius, -half) to the apex (0, half).
   const double length = std::sqrt(radius * radius + 4.0 * half * half);
   const double n_rho = 2.0 * half / length, n_z = radius / length;
   const double side = n_rho * (m.rho - radius) + n_z * (m.z + half);
   const double base = -half - m.z;
   const Vec3 side_normal = n_rho * m.outward + Vec3{0, 0, n_z};
-  double rho = 0.0, z = 0.0;  // the nearest point, where it is on the rim or the apex
+  double rho = 0.0, z = 0.0;  // the closest point, if it is on the rim or the apex
   if (side > 0.0) {
     const double along = n_rho * (m.z + half) - n_z * (m.rho - radius);  // from the rim
     if (along >= 0.0 && along <= length) return {side, side_normal};
@@ -93,14 +93,14 @@ SignedDistance distance_to_cone(double radius, double half, const Vec3& p) {
   return {d, (d_rho / d) * m.outward + Vec3{0, 0, d_z / d}};
 }
 
-// The nearest point of the segment from a to b.
+// The closest point of the segment from a to b.
 Vec3 nearest_on_segment(const Vec3& a, const Vec3& b, const Vec3& p) {
   const Vec3 ab = b - a;
   return a + std::clamp(dot(p - a, ab) / dot(ab, ab), 0.0, 1.0) * ab;
 }
 
-// Inside, the shallowest face; outside, the face over which the point is, or else the nearest edge
-// of those that look at it.
+// Inside: the least deep face. Outside: the face above which the point is, or else the closest edge
+// of the faces that see the point.
 SignedDistance distance_to_hull(const HullData& hull, const Vec3& p) {
   const ConvexHull::Face* highest = nullptr;
   double height = 0.0, nearest = 0.0;
@@ -135,7 +135,7 @@ SignedDistance distance_to_hull(const HullData& hull, const Vec3& p) {
   return {d, (1.0 / d) * (p - on_edge)};
 }
 
-// A sheet: nowhere negative.
+// A triangle is a sheet: the distance is never negative.
 SignedDistance distance_to_triangle(const Vec3* corners, const Vec3& p) {
   const Vec3 offset = p - nearest_on_triangle(corners, p).point;
   const double d = norm(offset);

@@ -1,4 +1,4 @@
-// Shapes as the engine keeps them: flat, without a variant.
+// Shapes in the engine's internal form: flat, without a variant.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace vp::collide {
 
-// The last three are made of parts: they have no signed distance and no manifold of their own.
+// The last three are made of parts: they have no signed distance and no single manifold.
 enum class Kind : std::uint8_t {
   sphere,
   capsule,
@@ -16,7 +16,7 @@ enum class Kind : std::uint8_t {
   cylinder,
   cone,
   hull,
-  triangle,  // of a mesh or a height field, or a sheet of its own
+  triangle,  // of a mesh or a height field, or a single sheet
   half_space,
   mesh,
   height_field,
@@ -31,32 +31,32 @@ struct Geometry {
   double radius = 0.0;  // sphere, capsule, cylinder; of a cone's base
   // Box: half extents; capsule, cylinder, cone: (0, 0, half length); mesh, height field: scale.
   Vec3 half;
-  // Owned by whoever holds the shape.
+  // Owned by the shape's owner.
   union {
     const HullData* hull = nullptr;
-    const Vec3* corners;  // of a triangle: three, counter-clockwise seen from its front
+    const Vec3* corners;  // of a triangle: three, counter-clockwise seen from the front
     const MeshData* mesh;
     const HeightData* field;
     const CompoundData* compound;
   };
 };
 
-// Precondition: the shape is kept as long as the geometry is used.
+// Precondition: the shape outlives the geometry.
 Geometry make_geometry(const Shape& shape);
 Geometry triangle_geometry(const Vec3 corners[3]);
 
 inline bool is_surface(const Geometry& g) {
   return g.kind == Kind::mesh || g.kind == Kind::height_field;
 }
-// Bounded, and all of it in one piece.
+// Bounded and convex.
 inline bool is_convex_body(const Geometry& g) {
   return g.kind < Kind::triangle;
 }
 Surface surface_of(const Geometry& g);  // precondition: is_surface(g)
 
-// Signed distance of a point in the shape's frame from its surface, negative inside, and the
-// direction in which it grows fastest. The shapes are convex, hence so is the distance: it lies
-// above each of its tangent planes. The sweep rests on that.
+// The signed distance of a point in the shape's frame from its surface, negative inside, and its
+// gradient. The shapes are convex, hence so is the distance: it is above each of its tangent
+// planes. The sweep depends on this.
 struct SignedDistance {
   double distance;
   Vec3 normal;  // unit, outward

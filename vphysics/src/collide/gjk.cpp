@@ -1,9 +1,9 @@
-// The point v nearest to the origin of a simplex in A - B moves towards that of A - B itself: each
-// round adds the support point w opposite to v and keeps of the simplex what v needs. v . w / |v|
-// is a lower bound of the distance, |v| an upper one.
+// The point v of a simplex in A - B that is closest to the origin converges to the closest point of
+// A - B. Each iteration adds the support point w in the direction -v and keeps the simplex points
+// that v depends on. v . w / |v| is a lower bound of the distance, |v| an upper one.
 //
 // Source: van den Bergen, A Fast and Robust GJK Implementation for Collision Detection of Convex
-// Objects, 1999; nearest points of triangles: Ericson, Real-Time Collision Detection, 2005, 5.1.5.
+// Objects, 1999; closest points of triangles: Ericson, Real-Time Collision Detection, 2005, 5.1.5.
 #include "collide/gjk.h"
 
 #include <limits>
@@ -12,17 +12,17 @@ namespace vp::collide {
 namespace {
 
 constexpr int kMaxIterations = 96;
-// Bounds this near to one another [share of the distance, squared] are one. Normals are good to the
-// root of it.
+// Convergence: the maximum difference of the bounds [fraction of the distance, squared]. Normals
+// are accurate to its square root.
 constexpr double kRelative = 1e-14;
-// Rounding of a support point [share of the pair's reach].
+// Rounding error of a support point [fraction of the pair's extent].
 constexpr double kRounding = 4e-16;
-// Of six products of three differences [share of the largest].
+// Rounding error of six products of three differences [fraction of the largest].
 constexpr double kDoubt = 2e-15;
-// Nearer than this [share of the reach] is no direction.
+// Below this distance [fraction of the extent] the direction is undefined.
 constexpr double kTouching = 1e-11;
 
-// What of a simplex is nearest to the origin.
+// The part of a simplex that is closest to the origin.
 struct Nearest {
   Vec3 v;
   double weight[4];
@@ -62,7 +62,7 @@ const Nearest& nearer(const Nearest& a, const Nearest& b) {
 Nearest on_triangle(const Simplex& s, int i, int k, int l) {
   const Vec3 a = s.p[i].w, b = s.p[k].w, c = s.p[l].w;
   const Vec3 n = cross(b - a, c - a);
-  // Weights times n . n: each the part of the area beyond an edge.
+  // Barycentric weights times n . n: each the part of the area opposite a corner.
   const double wa = dot(n, cross(b, c)), wb = dot(n, cross(c, a)), wc = dot(n, cross(a, b));
   const double nn = dot(n, n);
   if (wa > 0.0 && wb > 0.0 && wc > 0.0 && nn > 0.0) {
@@ -74,12 +74,12 @@ Nearest on_triangle(const Simplex& s, int i, int k, int l) {
     found.add(l, wc * k1);
     return found;
   }
-  // Beyond an edge, or a triangle too thin to say: the nearest of its edges.
+  // Beyond an edge, or the triangle is too thin: the closest of its edges.
   const Nearest ab = on_segment(s, i, k), bc = on_segment(s, k, l), ca = on_segment(s, l, i);
   return nearer(nearer(ab, bc), ca);
 }
 
-// count 4 if the origin is inside.
+// count is 4 if the origin is inside.
 Nearest in_tetrahedron(const Simplex& s) {
   constexpr int kFaces[4][4] = {{0, 1, 2, 3}, {0, 3, 1, 2}, {0, 2, 3, 1}, {1, 3, 2, 0}};
   Nearest best;
@@ -88,8 +88,8 @@ Nearest in_tetrahedron(const Simplex& s) {
   for (int i = 0; i < 4; ++i) largest = std::max(largest, dot(s.p[i].w, s.p[i].w));
   for (const auto& f : kFaces) {
     const Vec3 a = s.p[f[0]].w, ab = s.p[f[1]].w - a, ac = s.p[f[2]].w - a, n = cross(ab, ac);
-    // The origin is on the face's inner side, beyond doubt: corners that are nearly the same make
-    // faces of rounding alone.
+    // The origin is clearly on the inner side of the face. Nearly identical corners make faces that
+    // are rounding noise.
     const double opposite = dot(n, s.p[f[3]].w - a), origin = -dot(n, a);
     const double doubt = kDoubt * largest * (norm(ab) + norm(ac));
     if ((opposite > doubt && origin > doubt) || (opposite < -doubt && origin < -doubt)) continue;
@@ -183,8 +183,8 @@ GjkResult gjk(const CorePair& pair, const Vec3& start, double limit) {
       set_separated(r, v, length);
       return r;
     }
-    // Where rounding ends the search, v is the nearest point as far as can be told; but only a gap
-    // tells that they are apart.
+    // If rounding errors end the search, v is the closest point within accuracy; but only a
+    // positive separation proves that they are separated.
     if (contains(r.simplex, next.w)) {
       if (separation > 0.0) set_separated(r, v, length);
       return r;

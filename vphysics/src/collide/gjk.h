@@ -1,12 +1,12 @@
-// Distance of two convex cores: Gilbert, Johnson and Keerthi's algorithm.
+// Distance of two convex cores by the algorithm of Gilbert, Johnson and Keerthi.
 #pragma once
 
 #include "collide/support.h"
 
 namespace vp::collide {
 
-// Bounds of a distance or a depth that are farther apart [share of the smaller shape's size] when a
-// search has to end are told (CorePair::rough).
+// If a search ends while its bounds of the distance or depth differ by more than this [fraction of
+// the smaller shape's size], it sets CorePair::rough.
 inline constexpr double kRough = 1e-3;
 
 // Two cores in the frame of a.
@@ -14,10 +14,10 @@ struct CorePair {
   const Geometry& a;
   const Geometry& b;
   SE3 T_a_b;
-  double extent;  // by which rounding is measured: the size of both cores and their distance
-  double size;    // by which shapes are: that of the smaller one
+  double extent;  // scale of rounding errors: the size of both cores and their distance
+  double size;    // scale of tolerances: the size of the smaller shape
   mutable int hint_a = 0, hint_b = 0;
-  // A search ended before its bounds had met, so far apart that it matters (kRough).
+  // A search ended with bounds that differ significantly (kRough).
   mutable bool rough = false;
 
   CorePair(const Geometry& shape_a, const Geometry& shape_b, const SE3& pose)
@@ -31,14 +31,14 @@ struct CorePair {
   Vec3 support_b(const Vec3& d) const { return T_a_b * core_support(b, T_a_b.unrotate(d), hint_b); }
 };
 
-// T_a_b of two poses in the world: their difference is taken first, so that shapes far from the
-// origin lose nothing.
+// T_a_b of two world poses. It subtracts the positions first, so that shapes far from the origin
+// lose no precision.
 inline SE3 relative_pose(const SE3& T_a, const SE3& T_b) {
   return {transposed_times(T_a.rotation(), T_b.rotation()),
           T_a.unrotate(T_b.position() - T_a.position())};
 }
 
-// A point of a and its difference from one of b.
+// A point of a, and its difference from a point of b.
 struct CorePoint {
   Vec3 a, w;
 
@@ -48,31 +48,32 @@ inline CorePoint support_of(const CorePair& pair, const Vec3& n) {
   const Vec3 a = pair.support_a(n);
   return {a, a - pair.support_b(-n)};
 }
-// The gap between the projections on the unit vector n, from a to b: never more than the distance.
+// The separation of the projections on the unit vector n, from a to b: a lower bound of the
+// distance.
 inline double separation_along(const CorePair& pair, const Vec3& n) {
   return -dot(n, support_of(pair, n).w);
 }
 
 struct Simplex {
   CorePoint p[4];
-  double weight[4];  // of the point nearest to the origin
+  double weight[4];  // barycentric, of the point closest to the origin
   int count = 0;
 };
 
 struct GjkResult {
   enum class State : unsigned char {
     separated,  // normal, distance and points are set
-    beyond,     // farther apart than limit; normal separates them by at least separated
-    overlaps,   // or so near that the direction is rounding noise
+    beyond,     // distance exceeds limit; `distance` along normal is a lower bound
+    overlaps,   // or so close that the direction is rounding noise
   };
   State state;
-  double distance = 0.0;  // apart: of the cores; beyond: the gap along normal
+  double distance = 0.0;  // separated: of the cores; beyond: the separation along normal
   Vec3 normal;            // unit, from a to b
   Vec3 on_a, on_b;
-  Simplex simplex;  // overlaps: it holds the origin, or touches it
+  Simplex simplex;  // for overlaps: contains or touches the origin
 };
 
-// start: any direction, unit, from a to b as far as is known. Gives up at a gap of more than limit.
+// start: any unit direction, preferably from a to b. Stops if a separation exceeds limit.
 GjkResult gjk(const CorePair& pair, const Vec3& start, double limit);
 
 }  // namespace vp::collide

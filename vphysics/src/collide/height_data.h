@@ -1,4 +1,4 @@
-// What a HeightField holds: constant once built, shared by everything that uses the field.
+// The data of a HeightField: constant once built, shared by all users of the field.
 #pragma once
 
 #include <cstdint>
@@ -12,13 +12,13 @@ struct HeightData {
   std::uint32_t columns = 0, rows = 0;
   double spacing_x = 1.0, spacing_y = 1.0;
   std::vector<double> heights;
-  std::vector<std::uint8_t> holes;  // of each cell; empty: none
+  std::vector<std::uint8_t> holes;  // by cell; empty: no holes
   double lowest = 0.0, highest = 0.0;
 
   Vec3 sample(std::uint32_t i, std::uint32_t j) const {
     return {i * spacing_x, j * spacing_y, heights[std::size_t{j} * columns + i]};
   }
-  // Beyond the border there is nothing either.
+  // Cells beyond the border count as holes.
   bool is_hole(std::int64_t i, std::int64_t j) const {
     if (i < 0 || j < 0 || i + 1 >= columns || j + 1 >= rows) return true;
     return !holes.empty() && holes[static_cast<std::size_t>(j * (columns - 1) + i)] != 0;

@@ -12,8 +12,8 @@ namespace {
 
 using collide::HeightData;
 
-constexpr std::uint32_t kMaxSamples = 1u << 15;  // along an axis
-constexpr double kHighest = 1e9;                 // [m], as everywhere in the engine
+constexpr std::uint32_t kMaxSamples = 1u << 15;  // per axis
+constexpr double kHighest = 1e9;                 // [m], the engine's limit
 constexpr double kMinSpacing = 1e-6, kMaxSpacing = 1e6;
 
 tl::unexpected<Error> invalid_field(std::string message) {

@@ -1,4 +1,4 @@
-// What a ConvexHull holds: constant once built, shared by everything that uses the hull.
+// The data of a ConvexHull: constant once built, shared by all users of the hull.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@ namespace vp::collide {
 
 inline constexpr std::size_t kSupportLanes = 4, kMaxSupport = 64;
 
-// Between two vertices, v0 < v1. Seen from outside, the face on its left has v0 before v1.
+// An edge between two vertices, v0 < v1. Seen from outside, the face on its left has v0 before v1.
 struct HullEdge {
   std::uint16_t v0, v1;
   std::uint16_t left, right;  // faces
@@ -19,21 +19,21 @@ struct HullEdge {
 
 struct HullData {
   std::vector<Vec3> vertices;
-  // Of hulls that support_vertex() goes through as a whole: their x, y and z, each filled up with
-  // the first vertex to a multiple of kSupportLanes; else empty.
+  // For hulls that support_vertex() scans in full: the vertices' x, y and z, each padded with the
+  // first vertex to a multiple of kSupportLanes; else empty.
   std::vector<double> support_x, support_y, support_z;
   std::vector<ConvexHull::Face> faces;  // sorted by their corners
-  std::vector<std::uint16_t> corners;   // of all faces, one face after the other
+  std::vector<std::uint16_t> corners;   // of all faces, face by face
   std::vector<HullEdge> edges;          // sorted by their vertices
-  // The edge from each corner to the next of its face; those of face f begin at first_corner[f].
+  // The edge from each corner to the next of its face. Those of face f start at first_corner[f].
   std::vector<std::uint16_t> corner_edges, first_corner;
-  // Faces and neighbours of vertex v: from first_around[v] up to first_around[v + 1].
+  // Faces and neighbours of vertex v: the range from first_around[v] to first_around[v + 1].
   std::vector<std::uint16_t> faces_around, neighbours, first_around;
   Vec3 lower, upper;  // bounds
   Vec3 centre;        // of mass
-  double radius;      // of the sphere about it that holds the hull
+  double radius;      // of the bounding sphere about centre
   double volume;
-  Inertia unit;  // of density 1, about the frame's origin
+  Inertia unit;  // at density 1, about the frame's origin
 };
 
 }  // namespace vp::collide

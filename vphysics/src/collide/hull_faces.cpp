@@ -10,14 +10,14 @@
 namespace vp::collide {
 namespace {
 
-// Faces at a larger angle (cosine) are never one, however small they are.
+// Faces at a larger angle (cosine) are never merged, however small they are.
 constexpr double kSameSide = 0.95;
 
 struct Piece {
   Loop loop;
-  Loop members;  // every corner that it ever had: all must stay near its plane
+  Loop members;  // all corners of the merged triangles: all must stay near its plane
   Vec3 normal;
-  double width;  // twice the area by the longest edge
+  double width;  // twice the area over the longest edge
   bool alive = true;
 };
 
@@ -34,7 +34,7 @@ Piece make_piece(std::span<const Vec3> points, Loop loop, Loop members) {
   return piece;
 }
 
-// How far the members lie apart along n.
+// The extent of the members along n.
 double spread(std::span<const Vec3> points, const Loop& members, const Vec3& n) {
   double low = dot(n, points[members[0]]), high = low;
   for (const std::uint32_t i : members) {
@@ -45,7 +45,7 @@ double spread(std::span<const Vec3> points, const Loop& members, const Vec3& n) 
   return high - low;
 }
 
-// a joined with b, or nothing if their common border is not one chain of edges.
+// Merges a and b; empty if their common border is not one chain of edges.
 std::optional<Loop> joined(const Loop& a, const Loop& b) {
   const std::size_t n = a.size(), m = b.size();
   const auto shared = [&](std::size_t i) {  // is a's edge from corner i an edge of b?
@@ -71,7 +71,7 @@ std::optional<Loop> joined(const Loop& a, const Loop& b) {
   return loop;
 }
 
-// The corner at i turns left, or lies on the line between its neighbours to within tolerance.
+// Whether the corner at i turns left, or is within tolerance of the line between its neighbours.
 bool turns_left(std::span<const Vec3> points, const Loop& loop, std::size_t i, const Vec3& n,
                 double tolerance) {
   const std::size_t count = loop.size();
@@ -116,9 +116,9 @@ std::map<Merger::Border, std::size_t> Merger::borders() const {
   return found;
 }
 
-// What the two would be together and how far from flat, if they may be one.
+// The merged piece and its deviation from a plane, if the two may be merged.
 std::optional<std::pair<double, Piece>> Merger::attempt(const Piece& a, const Piece& b) const {
-  // A sliver's normal says nothing.
+  // A sliver's normal is meaningless.
   const bool slivers = a.width <= tolerance_ || b.width <= tolerance_;
   if (!slivers && dot(a.normal, b.normal) < kSameSide) return std::nullopt;
   std::optional<Loop> loop = joined(a.loop, b.loop);
@@ -166,7 +166,7 @@ std::vector<std::size_t> Merger::faces_around() const {
   return around;
 }
 
-// A corner of two faces alone lies on the straight edge between them.
+// A corner with only two faces is on the straight edge between them.
 void Merger::drop_corners_on_edges() {
   const std::vector<std::size_t> around = faces_around();
   for (Piece& piece : pieces_) std::erase_if(piece.loop, [&](auto i) { return around[i] < 3; });
@@ -218,7 +218,7 @@ Vec3 unit(const Vec3& a) {
 
 std::vector<std::uint32_t> flat_corners(std::span<const Vec3> points,
                                         std::span<const Triangle> triangles, double tolerance) {
-  std::vector<std::vector<Triangle>> fans(points.size());  // each triangle beginning with its hub
+  std::vector<std::vector<Triangle>> fans(points.size());  // each triangle starts with its hub
   for (const Triangle& t : triangles) {
     for (std::size_t i = 0; i < 3; ++i)
       fans[t[i]].push_back({t[i], t[(i + 1) % 3], t[(i + 2) % 3]});
@@ -257,7 +257,7 @@ std::vector<Loop> faces_of(std::span<const Vec3> points, std::span<const Triangl
   while (merger.merge_flattest()) continue;
   merger.drop_corners_on_edges();
   if (merger.closed()) return merger.loops();
-  // Slivers that fold over when corners go: the triangles as they are close in any case.
+  // Removing corners would make slivers fold over: the triangles themselves are closed in any case.
   return Merger(points, triangles, tolerance).loops();
 }
 

@@ -1,4 +1,4 @@
-// From the triangles of a hull to its faces.
+// Merges the triangles of a hull into faces.
 #pragma once
 
 #include <span>
@@ -11,19 +11,19 @@ namespace vp::collide {
 
 using Loop = std::vector<std::uint32_t>;  // corners, counter-clockwise from outside
 
-// Twice the area of a loop along its normal: the sum of its triangles', so that thin ones count for
-// little.
+// Twice the area of a loop along its normal. It is the sum over the loop's triangles, so thin ones
+// have little weight.
 Vec3 area_vector(std::span<const Vec3> points, std::span<const std::uint32_t> loop);
-// a / |a|, or some unit vector if that is nothing.
+// a / |a|, or an arbitrary unit vector if a is zero.
 Vec3 unit(const Vec3& a);
 
-// Corners in the midst of a face: all triangles around lie within tolerance of one plane. No two of
-// them are neighbours; the flattest first.
+// Vertices inside a face: all triangles around one are within tolerance of a plane. No two of them
+// are neighbours; the flattest first.
 std::vector<std::uint32_t> flat_corners(std::span<const Vec3> points,
                                         std::span<const Triangle> triangles, double tolerance);
 
-// Convex polygons made by joining neighbours of which all corners lie within tolerance of one
-// plane, the flattest first. Every corner that is left has at least three faces, every edge two.
+// Merges neighbours whose corners are all within tolerance of a plane into convex polygons, the
+// flattest first. Every remaining corner has at least three faces, every edge two.
 std::vector<Loop> faces_of(std::span<const Vec3> points, std::span<const Triangle> triangles,
                            double tolerance);
 

@@ -1,4 +1,4 @@
-// Where two shapes touch or nearly touch.
+// Contact manifolds: where two shapes touch or nearly touch.
 #pragma once
 
 #include <cstdint>
@@ -13,14 +13,14 @@ inline constexpr int kMaxPoints = 4;
 struct ManifoldPoint {
   Vec3 position;          // world frame, midway between the two surfaces
   double separation;      // along the normal; negative: penetration
-  std::uint32_t feature;  // the same from step to step while the same features touch
+  std::uint32_t feature;  // persistent from step to step while the same features touch
 };
 
 struct Manifold {
   Vec3 normal;  // unit, world frame, from a to b
   int count = 0;
-  bool rough = false;  // its depth is less certain than it should be: CorePair::rough
-  // Without points: no more than the distance of the two, as far as it has come out [m].
+  bool rough = false;  // its depth is less accurate than required: CorePair::rough
+  // Without points: a lower bound of the distance, as far as it was computed [m].
   double min_separation = 0.0;
   ManifoldPoint points[kMaxPoints];
 
@@ -29,14 +29,14 @@ struct Manifold {
   }
 };
 
-// The contact points with a separation of at most margin. Precondition: not two half-spaces.
+// Finds the contact points with a separation of at most margin. Precondition: not two half-spaces.
 //
-// The normal is that of the least penetration, or of the least distance of what is apart. Where a
-// face does nearly as well (within 5% and 1e-5 of the smaller shape's size), its normal is taken
-// and the patch that lies over it: manifolds of faces have several points and are steady.
+// The normal is the direction of minimum penetration, or of minimum distance if they are separated.
+// If a face does nearly as well (within 5% and 1e-5 of the smaller shape's size), its normal and
+// the patch over it are used: face manifolds have several points and are stable.
 void find_manifold(const Geometry& a, const SE3& T_a, const Geometry& b, const SE3& T_b,
                    double margin, PairCache& cache, Manifold& manifold);
-// For those who ask once.
+// Without a cache, for a single query.
 void find_manifold(const Geometry& a, const SE3& T_a, const Geometry& b, const SE3& T_b,
                    double margin, Manifold& manifold);
 

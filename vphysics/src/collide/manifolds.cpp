@@ -25,7 +25,7 @@ class Finder {
          std::vector<SubManifold>& out)
       : search_(margin), margin_(margin.largest), known_(known), scratch_(scratch), out_(out) {}
 
-  // a has no parts that are compounds; neither has b.
+  // Precondition: neither a nor b is a compound.
   void find(const Geometry& a, const SE3& T_a, const Geometry& b, const SE3& T_b,
             PairCache& cache) {
     if (is_surface(a) || is_surface(b)) {
@@ -41,7 +41,7 @@ class Finder {
     if (found.manifold.count > 0) out_.push_back(found);
   }
 
-  // of: the parts of a compound, each against the other.
+  // of: the compound whose parts are tested against the other shape.
   void find_of_parts(const Geometry& of, const SE3& T_of, const Geometry& other, const SE3& T_other,
                      bool swapped) {
     const CompoundData& compound = *of.compound;
@@ -101,11 +101,11 @@ class Finder {
   }
 
   const SearchMargin& search_;
-  double margin_;  // of the parts that are looked at
+  double margin_;  // for the current parts
   std::span<const KnownPart> known_;
   ManifoldScratch& scratch_;
   std::vector<SubManifold>& out_;
-  std::uint32_t sub_a_ = 0, sub_b_ = 0;  // of the compounds' parts that are looked at
+  std::uint32_t sub_a_ = 0, sub_b_ = 0;  // current parts of the compounds
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Who is whose neighbour in a mesh, and which edges can be felt.
+// The neighbours of a mesh's triangles, and the active edges.
 #include <algorithm>
 #include <cmath>
 
@@ -7,12 +7,12 @@
 namespace vp::collide {
 namespace {
 
-// Sine of the angle between neighbours that are taken for one plane.
+// The sine of the angle below which neighbours count as coplanar.
 constexpr double kFlatSine = 1e-3;
 
-// Edge e of a triangle, by the corners that it joins.
+// Edge e of a triangle, identified by its corners.
 struct HalfEdge {
-  std::uint64_t corners;  // the lower one above the higher one
+  std::uint64_t corners;  // the lower index in the upper half
   std::uint32_t triangle;
   std::uint8_t edge;
   bool upwards;  // from the lower corner to the higher one
@@ -29,7 +29,7 @@ std::vector<HalfEdge> half_edges(const MeshData& mesh) {
   edges.reserve(3 * mesh.triangles.size());
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     const TriangleMesh::Triangle& c = mesh.triangles[t];
-    // Two corners in one place: its neighbours are neighbours of one another.
+    // Two corners coincide: the triangle's neighbours are neighbours of each other.
     if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0]) continue;
     for (std::uint8_t e = 0; e < 3; ++e) {
       const std::uint32_t from = c[e], to = c[(e + 1) % 3];
@@ -41,7 +41,8 @@ std::vector<HalfEdge> half_edges(const MeshData& mesh) {
   return edges;
 }
 
-// Who is across each edge: 3 * triangle + edge there; kNoVertex: nobody, or more than one.
+// The partner across each edge: 3 * triangle + edge there; kNoVertex if there is none, or more than
+// one.
 std::vector<std::uint32_t> partners(const MeshData& mesh, bool& closed) {
   const std::vector<HalfEdge> edges = half_edges(mesh);
   std::vector<std::uint32_t> partner(3 * mesh.triangles.size(), kNoVertex);
@@ -57,12 +58,12 @@ std::vector<std::uint32_t> partners(const MeshData& mesh, bool& closed) {
   return partner;
 }
 
-// Across an edge, and on across triangles without area: the third corner of the first that has one.
+// The third corner of the first triangle with area across an edge, through triangles without area.
 std::uint32_t opposite_corner(const MeshData& mesh, const std::vector<std::uint32_t>& partner,
                               std::uint32_t half_edge) {
   std::uint32_t waiting[8] = {half_edge};
   std::size_t count = 1;
-  // Triangles without area side by side are few: who has more has a border.
+  // Adjacent triangles without area are few: with more of them the edge counts as a border.
   for (std::size_t k = 0; k < count; ++k) {
     const std::uint32_t opposite = partner[waiting[k]];
     if (opposite == kNoVertex) continue;
@@ -121,11 +122,11 @@ void set_surroundings(MeshData& mesh) {
 unsigned active_sides(const Vec3& p, const Vec3& q, const Vec3& third, const Vec3& opposite) {
   const Vec3 along = q - p, this_side = third - p, other = opposite - p;
   const Vec3 n = cross(along, this_side), inwards = cross(n, along);
-  // Across the edge: how far the neighbour goes on outwards, and how far up.
+  // In the plane perpendicular to the edge: the neighbour's extent outwards, and upwards.
   const double out = -dot(inwards, other) / norm(inwards), up = dot(n, other) / norm(n);
   const double length = std::sqrt(out * out + up * up);
   const bool flat = std::fabs(up) <= kFlatSine * length;
-  if (flat) return out > 0.0 ? 0u : 3u;  // one plane, or folded onto itself
+  if (flat) return out > 0.0 ? 0u : 3u;  // coplanar, or folded onto itself
   return up < 0.0 ? 1u : 2u;
 }
 

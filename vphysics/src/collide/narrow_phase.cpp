@@ -1,6 +1,6 @@
-// Manifolds of every pair of shapes: here those with a closed form, the others by convex_contact.h.
-// Each routine takes the shapes in the order of Kind; find_manifold turns the pair and, at the end,
-// the normal around.
+// Manifolds of every pair of convex shapes. Closed forms are here, the others are in
+// convex_contact.h. Each routine takes the shapes in the order of Kind; find_manifold swaps the
+// pair and, at the end, reverses the normal.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -18,7 +18,7 @@ struct Posed {
   const SE3& T;
 };
 
-// A sphere at centre against any convex shape b. The manifold's normal is set from a to b.
+// A sphere at centre against any convex shape b. The normal points from a to b.
 void sphere_against(const Vec3& centre, double radius, const Posed& b, double margin,
                     std::uint32_t feature, Manifold& m) {
   const SignedDistance d = signed_distance(b.g, inverse_times(b.T, centre));
@@ -33,7 +33,7 @@ Axis axis_of(const Posed& capsule) {
   return {capsule.T.position(), capsule.T.rotation().cz, capsule.g.half.z};
 }
 
-// Capsules that lie along one another touch along a stretch: its two ends carry them.
+// Parallel capsules touch along a segment: its two ends are the contact points.
 void capsule_capsule(const Posed& a, const Posed& b, double margin, Manifold& m) {
   const Axis axis_a = axis_of(a), axis_b = axis_of(b);
   const Vec3 &da = axis_a.direction, &db = axis_b.direction;
@@ -66,7 +66,7 @@ void capsule_capsule(const Posed& a, const Posed& b, double margin, Manifold& m)
   m.add(axis_a.at(nearest.s) + (a.g.radius + 0.5 * separation) * m.normal, separation, 0);
 }
 
-// The four corners of the face that looks into the half-space most: among them is the deepest.
+// The four corners of the face that faces the half-space most: the deepest corner is among them.
 void box_half_space(const Posed& a, const Posed& b, double margin, Manifold& m) {
   const Vec3 up = b.T.rotation().cz;
   const Vec3 n = a.T.unrotate(up);
@@ -90,10 +90,10 @@ void box_half_space(const Posed& a, const Posed& b, double margin, Manifold& m) 
   }
 }
 
-// The corners of what lies lowest.
+// The corners of the lowest feature.
 void lowest_half_space(const Posed& a, const Posed& b, double margin, Manifold& m) {
   const Vec3 up = b.T.rotation().cz;
-  const SE3 turned(a.T.rotation(), {});  // the position is added last: it may be large
+  const SE3 turned(a.T.rotation(), {});  // the position is added last, since it may be large
   const double height = dot(up, a.T.position() - b.T.position()) - core_radius(a.g);
   Feature feature;
   find_feature(a.g, turned, -a.T.unrotate(up), feature);

@@ -1,9 +1,9 @@
-// Two polytopes that overlap: the separating axis theorem over faces and pairs of edges.
+// Two overlapping polytopes: the separating axis theorem over faces and pairs of edges.
 //
-// Only edges whose arcs on the Gauss map cross make a face of A - B, the others need not be looked
-// at. And if the best face has a depth of D, two edges with less have their nearest points less
-// than D apart, so that along its normal neither is more than 2 D behind what lies foremost: where
-// shapes touch, few edges are left.
+// Only edges whose arcs on the Gauss map cross form a face of A - B; the others are skipped. If the
+// best face has a depth of D, two edges with less depth have closest points less than D apart. So
+// along the face's normal neither is more than 2 D behind the foremost vertex: for touching shapes,
+// few edges remain.
 //
 // Source: Gregorius, The Separating Axis Test between Convex Polyhedra, GDC 2013; the bound is
 // derived here.
@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kMaxCornersOf = 256;
 constexpr int kMaxEdgesOf = 3 * kMaxCornersOf;
-// Squared sine between edges that give no axis.
+// The squared sine below which edges are parallel and give no axis.
 constexpr double kParallelEdges = 1e-16;
 
 struct View {
@@ -33,7 +33,7 @@ class FaceSearch {
     centre_b_ = v_.pair.T_a_b * core_centre(v_.pair.b);
   }
 
-  // Along the normal the other's middle is at least as far as its nearest point.
+  // Along the normal the other's centre is at least as far as its closest point.
   void try_face(bool of_a, int f) {
     const ConvexHull::Face& face = (of_a ? v_.a : v_.b).faces[static_cast<std::size_t>(f)];
     const SE3& T = v_.pair.T_a_b;
@@ -73,7 +73,7 @@ struct EdgeList {
   std::uint16_t edges[kMaxEdgesOf];
 };
 
-// Edges that reach within depth of the foremost corner along n.
+// Edges with a point within depth of the foremost corner along n.
 void find_near_edges(const Polytope& p, const Vec3& n, double depth, EdgeList& list) {
   double height[kMaxCornersOf];
   double foremost = -1e300;
@@ -88,7 +88,7 @@ void find_near_edges(const Polytope& p, const Vec3& n, double depth, EdgeList& l
 }
 
 struct EdgeLine {
-  Vec3 p, d, left, right;  // from p along d to the other end; normals of the faces
+  Vec3 p, d, left, right;  // the edge is from p to p + d; left, right: the normals of its faces
 };
 EdgeLine line_of(const Polytope& p, int edge, const SE3* T) {
   const HullEdge& e = p.edges[static_cast<std::size_t>(edge)];
@@ -98,7 +98,7 @@ EdgeLine line_of(const Polytope& p, int edge, const SE3* T) {
   return {*T * line.p, T->rotate(line.d), T->rotate(line.left), T->rotate(line.right)};
 }
 
-// The arc from left to right of a crosses that of -left to -right of b.
+// Whether the arc from left to right of a crosses that from -left to -right of b.
 bool arcs_cross(const EdgeLine& a, const EdgeLine& b) {
   const double bl = dot(b.left, a.d), br = dot(b.right, a.d);
   if (!(bl * br < 0.0)) return false;
@@ -106,7 +106,7 @@ bool arcs_cross(const EdgeLine& a, const EdgeLine& b) {
   return al * ar < 0.0 && bl * ar < 0.0;
 }
 
-// Points of the two lines nearest to one another, within the edges.
+// The closest points of the two lines, clamped to the edges.
 void set_nearest_points(const EdgeLine& a, const EdgeLine& b, BestAxis& axis) {
   const double aa = dot(a.d, a.d), bb = dot(b.d, b.d), ab = dot(a.d, b.d);
   const Vec3 r = a.p - b.p;
@@ -134,7 +134,7 @@ void find_edge_axis(const View& v, const FaceAxis& face, EdgeAxis& best) {
       const Vec3 n = (sign / std::sqrt(c2)) * c;
       if (!(dot(n, b.p - a.p) > largest)) continue;
       const double separation =
-          separation_along(v.pair, n);  // as it is, should the arcs cross by rounding alone
+          separation_along(v.pair, n);  // computed again, in case the arcs cross by rounding only
       if (!(separation > largest)) continue;
       largest = separation;
       best = {true, near_a.edges[i], near_b.edges[k], {separation, n, {}, {}}};

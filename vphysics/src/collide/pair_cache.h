@@ -1,4 +1,4 @@
-// What a call about a pair of shapes leaves for the next call about the same pair.
+// Data that a query for a pair of shapes caches for the next query for the same pair.
 #pragma once
 
 #include <cstdint>
@@ -6,18 +6,18 @@
 
 namespace vp::collide {
 
-// Zero at first. Plain data, kept by the caller for each pair in the order (a, b), part of a
-// snapshot. Any bytes are safe: what makes no sense for the pair is not used, and of two caches the
-// better one only saves time, GJK's last bits aside.
+// Initially zero. Plain data, stored by the caller for each pair in the order (a, b); part of a
+// snapshot. Any bytes are safe: values that are invalid for the pair are ignored. A better cache
+// only saves time, except for the last bits of GJK's results.
 struct PairCache {
   enum Feature : std::uint8_t {
     none,
     face_of_a,  // i
     face_of_b,  // i
-    edges,      // edge i of a, edge j of b; of two boxes their axes
+    edges,      // edge i of a, edge j of b; for two boxes their axes
   };
-  float normal[3] = {};  // in a's frame, from a to b: along it they were apart, or overlapped least
-  std::uint16_t i = 0, j = 0;  // what that is the normal of
+  float normal[3] = {};  // in a's frame, from a to b: the axis of separation or minimum overlap
+  std::uint16_t i = 0, j = 0;  // the features that define the normal
   std::uint8_t feature = none;
   std::uint8_t unused[3] = {};
 };

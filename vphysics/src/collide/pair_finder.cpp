@@ -7,10 +7,11 @@
 namespace vp::collide {
 namespace {
 
-// A query for each that has moved costs as much as comparing all with all when one in so many has.
+// If more than one proxy in this many has moved, a query per moved proxy costs more than a join of
+// the trees.
 constexpr std::size_t kRebuildFraction = 6;
 
-[[maybe_unused]] bool is_ordered(const Bounds& b) {  // false of NaN
+[[maybe_unused]] bool is_ordered(const Bounds& b) {  // false for NaN
   return b.lower.x <= b.upper.x && b.lower.y <= b.upper.y && b.lower.z <= b.upper.z;
 }
 
@@ -41,7 +42,7 @@ void PairFinder::resize(std::size_t proxies) {
   pair_counts_.resize(proxies, 0);
   moved_.resize(proxies);
   pending_.resize(proxies);
-  // So that the first busy step need not take them from the heap.
+  // So that the first busy step need not allocate.
   const std::size_t room = 64 + 2 * bounds_.capacity();
   for (auto* list : {&candidates_, &new_keys_, &key_scratch_}) list->reserve(room);
   for (auto* list : {&moved_list_, &pending_list_}) list->reserve(room);
@@ -104,7 +105,7 @@ bool PairFinder::enlarge(std::uint32_t proxy, const Bounds& bounds, double margi
                          const Vec3& displacement) {
   VP_ASSERT(exists(proxy) && is_ordered(bounds) && margin >= 0.0);
   const FloatBounds larger = enlarged(bounds, margin, displacement);
-  if (larger == bounds_[proxy]) return false;  // what has no end never fits
+  if (larger == bounds_[proxy]) return false;  // unbounded bounds never fit
   put(proxy, larger, is_moving(places_[proxy]) ? Mobility::moving : Mobility::fixed);
   return true;
 }
@@ -125,7 +126,7 @@ void PairFinder::count_pair(std::uint64_t key, std::uint32_t change) {
 bool PairFinder::remove_pair(std::uint32_t i, std::uint32_t j) {
   const std::uint64_t key = ProxyPair::ordered(i, j).key();
   if (!pairs_.erase(key)) return false;
-  count_pair(key, ~0u);  // minus one
+  count_pair(key, ~0u);  // subtracts one
   return true;
 }
 
@@ -139,7 +140,8 @@ void PairFinder::rebuild(TreeKind tree_kind) {
 
 void PairFinder::refresh(TreeKind tree_kind, std::size_t pending) {
   BoundingTree& t = tree(tree_kind);
-  // Half of them changed since the tree was built: it is about as costly to change on, and worse.
+  // More than half of the tree has changed since it was built: further updates cost about as much
+  // as a rebuild, and give a worse tree.
   bool anew = 2 * (t.changes() + pending) > t.size();
   for (std::size_t k = 0; k < pending_list_.size() && !anew; ++k) {
     const std::uint32_t i = pending_list_[k];
@@ -168,7 +170,7 @@ void PairFinder::consider(std::uint32_t i, std::uint32_t j) {
   if (agree(filters_[i], filters_[j])) candidates_.push_back(ProxyPair::ordered(i, j).key());
 }
 
-// The set is far larger than the caches near the core: ask for what comes next.
+// The set is far larger than the inner caches: prefetches the following entries.
 void PairFinder::take_candidates() {
   constexpr std::size_t kAhead = 16;
   const std::size_t n = candidates_.size();
@@ -259,14 +261,14 @@ bool PairFinder::incoming_fits() const {
   return true;
 }
 
-// A rollback by some steps changes few bounds: then the trees are changed, not built.
+// A rollback of a few steps changes few bounds: then the trees are updated, not rebuilt.
 void PairFinder::adopt() {
   State& s = incoming_;
   const bool same = s.tree_kinds == places_;
   if (!same) {
     for (BoundingTree& t : trees_) t.clear();
     unbounded_.clear();
-    places_.clear();  // and with them what the bits say
+    places_.clear();  // resize() then sets all to none
     resize(s.tree_kinds.size());
     pending_.clear();
   }

@@ -1,12 +1,12 @@
-// The broad phase: which colliders come near enough to one another to be looked at closely.
+// The broad phase: finds the pairs of colliders that are close enough for the narrow phase.
 //
-// Each collider has a proxy with enlarged bounds. While its true bounds stay inside of them nothing
-// is done at all; when they leave, the proxy gets new ones and has "moved". update() then finds the
-// pairs that have come to overlap. Pairs stay in the set until the caller takes them out, which he
-// may do as soon as should_pair() is false.
+// Each collider has a proxy with enlarged bounds. While its true bounds stay inside them, nothing
+// is done. When they leave, the proxy gets new ones and counts as moved. update() then finds the
+// new overlapping pairs. Pairs stay in the set until the caller removes them, which it may do as
+// soon as should_pair() is false.
 //
-// What is found, and its order, depends on bounds, filters, owners, the pair set and on who has
-// moved: all of that is written to a snapshot, the trees are not.
+// The pairs found and their order depend on bounds, filters, owners, the pair set and the moved
+// proxies. A snapshot contains all of these, but not the trees.
 #pragma once
 
 #include <array>
@@ -20,45 +20,47 @@
 namespace vp::collide {
 
 enum class Mobility : std::uint8_t {
-  fixed,  // two of these never pair
+  fixed,  // two fixed proxies never pair
   moving,
 };
 
 inline constexpr std::uint32_t kNoOwner = ~0u;
 
 struct ProxyDesc {
-  Bounds bounds;  // beyond 1e9 m: kept apart, in a list that is compared with everything
+  Bounds bounds;  // beyond 1e9 m: stored in a list that is compared with all proxies
   Mobility mobility = Mobility::moving;
-  std::uint32_t category = 1, mask = ~0u;  // two pair if each one's category is in the other's mask
-  std::uint32_t owner = kNoOwner;          // two of one owner never pair
+  // Two proxies pair if each one's category is in the other's mask.
+  std::uint32_t category = 1, mask = ~0u;
+  std::uint32_t owner = kNoOwner;  // two proxies of one owner never pair
   std::uint32_t user = 0;
   double margin = 0.0;  // [m] >= 0
 };
 
 class PairFinder {
  public:
-  // Preconditions of all: bounds are numbers, lower <= upper; indices are of proxies that exist.
+  // Preconditions of all functions: bounds are no NaN, lower <= upper; indices are of existing
+  // proxies.
   std::uint32_t add(const ProxyDesc& desc);
-  // Its pairs go with it. Cheap if the caller has taken them out, else the whole set is gone
-  // through.
+  // Also removes its pairs. Cheap if the caller has removed them before; otherwise it scans the
+  // whole set.
   void remove(std::uint32_t proxy);
 
-  // True: the bounds had left the enlarged ones (or those had become much too large), so that it
-  // gets new ones: larger by the margin, and longer by the displacement, the way that it is
-  // expected to go.
+  // Returns true if the bounds had left the enlarged ones (or those had become much too large).
+  // Then the proxy gets new ones: enlarged by the margin, and extended by the expected
+  // displacement.
   bool set_bounds(std::uint32_t proxy, const Bounds& bounds, double margin = 0.0,
                   const Vec3& displacement = {}) {
     if (fits(bounds_[proxy], bounds, margin, displacement)) return false;
     return enlarge(proxy, bounds, margin, displacement);
   }
-  // Counts as having moved: new pairs are found by update(), old ones stay.
+  // The proxy counts as moved: update() finds its new pairs, old ones stay.
   void set_filter(std::uint32_t proxy, std::uint32_t category, std::uint32_t mask);
 
-  // Whether update() has anything to do.
+  // Whether update() has work to do.
   bool has_moved() const { return !moved_.empty(); }
-  // Appends the pairs that are new, in ascending order, and puts them into the set.
+  // Appends the new pairs, in ascending order, and inserts them into the set.
   void update(std::vector<ProxyPair>& found);
-  // Whose enlarged bounds or filter changed before the last update(), ascending.
+  // The proxies whose enlarged bounds or filter changed before the last update(), ascending.
   std::span<const std::uint32_t> moved() const { return moved_list_; }
 
   bool enlarged_overlap(std::uint32_t i, std::uint32_t j) const {
@@ -69,7 +71,7 @@ class PairFinder {
     return agree(filters_[i], filters_[j]) && (is_moving(places_[i]) || is_moving(places_[j])) &&
            enlarged_overlap(i, j);
   }
-  bool remove_pair(std::uint32_t i, std::uint32_t j);  // false: it is not in the set
+  bool remove_pair(std::uint32_t i, std::uint32_t j);  // false: it was not in the set
   bool has_pair(std::uint32_t i, std::uint32_t j) const {
     return pairs_.contains(ProxyPair::ordered(i, j).key());
   }
@@ -82,32 +84,33 @@ class PairFinder {
   std::uint32_t owner(std::uint32_t proxy) const { return filters_[proxy].owner; }
   Bounds enlarged_bounds(std::uint32_t proxy) const { return widened(bounds_[proxy]); }
 
-  // Brings the trees up to date for the queries; update() does so too.
+  // Updates the trees for queries; update() does so too.
   void refresh();
-  // Proxies whose enlarged bounds overlap the box, appended in ascending order. Precondition of all
-  // queries: refreshed since the last change.
+  // Appends the proxies whose enlarged bounds overlap the box, in ascending order. Precondition of
+  // all queries: refresh() was called since the last change.
   void overlapping(const Bounds& box, std::vector<std::uint32_t>& found) const;
-  // hit(proxy, entry) as BoundingTree::cast has it: in order of entry among the unbounded, then
-  // among the fixed, then among the moving ones.
+  // Calls hit(proxy, entry) as in BoundingTree::cast: in order of entry among the fixed proxies,
+  // then among the moving ones. The unbounded ones come first, in ascending order.
   template <class F>
   void cast(const Sweep& sweep, double limit, CastScratch& scratch, const F& hit) const;
-  // near(proxy, distance) as BoundingTree::nearest has it, in the order of cast().
+  // Calls near(proxy, distance) as in BoundingTree::nearest, with the groups in the order of
+  // cast().
   template <class F>
   void nearest(const Bounds& box, double limit, CastScratch& scratch, const F& near) const;
 
-  // Snapshot: words to a sink with word(std::uint64_t).
+  // Writes the snapshot state to a sink with word(std::uint64_t).
   template <class Sink>
   void write(Sink& sink) const;
-  // From a reader with word(), check(bool) and ok(), into memory set apart: adopt() takes it over.
-  // Precondition of adopt(): the reader was ok after the last read().
+  // Reads the snapshot state from a reader with word(), check(bool) and ok() into separate memory;
+  // adopt() makes it current. Precondition of adopt(): the reader was ok after the last read().
   template <class Reader>
   void read(Reader& in);
   void adopt();
-  // Whether what was read has the same proxies as there are now, but for their bounds.
+  // Whether the state that was read has the same proxies as the current one, bounds aside.
   bool incoming_fits() const;
 
  private:
-  // Which tree or list it is in.
+  // The tree or list that contains a proxy.
   enum class TreeKind : std::uint8_t { fixed, moving, unbounded_fixed, unbounded_moving, none };
 
   struct Filter {
@@ -116,7 +119,7 @@ class PairFinder {
     bool operator==(const Filter&) const = default;
   };
 
-  // What a snapshot carries.
+  // The state in a snapshot.
   struct State {
     std::vector<FloatBounds> bounds;
     std::vector<Filter> filters;
@@ -151,20 +154,20 @@ class PairFinder {
   template <class Reader>
   void read_slot(Reader& in);
 
-  // Of each proxy.
+  // By proxy.
   std::vector<FloatBounds> bounds_;  // enlarged
   std::vector<Filter> filters_;
   std::vector<TreeKind> places_;
   std::vector<std::uint32_t> pair_counts_;
-  std::vector<std::uint32_t> free_;       // the last is used next
+  std::vector<std::uint32_t> free_;       // the last one is used next
   std::vector<std::uint32_t> unbounded_;  // ascending
   IndexSet moved_;                        // since the last update()
   PairSet pairs_;
-  // What the trees do not know yet.
+  // Changes that the trees do not contain yet.
   IndexSet pending_;
-  std::array<BoundingTree, 2> trees_;  // of fixed and of moving ones
+  std::array<BoundingTree, 2> trees_;  // of fixed and of moving proxies
 
-  // Scratch and results of the last update().
+  // Scratch memory and results of the last update().
   std::vector<std::uint32_t> moved_list_, pending_list_;
   std::vector<TreeItem> items_;
   std::vector<std::uint64_t> candidates_, new_keys_;
@@ -173,8 +176,9 @@ class PairFinder {
   IndexSet seen_;
 };
 
-// Inside, and nowhere by more than four margins and twice the displacement larger: then it would
-// keep pairs that are of no use. Rounding to float may add two units of 2^-23.
+// Whether b is inside, and the enlarged bounds are nowhere larger by more than four margins and
+// twice the displacement: otherwise they would keep useless pairs. Rounding to float may add two
+// units of 2^-23.
 inline bool PairFinder::fits(const FloatBounds& enlarged, const Bounds& b, double margin,
                              const Vec3& d) {
   bool fits = true;
@@ -220,8 +224,8 @@ void PairFinder::nearest(const Bounds& box, double limit, CastScratch& scratch,
   }
 }
 
-// Slots: state (place | moved), category | mask, owner | user, bounds; of a free one the state
-// alone. Then the free list and the pairs, each after its number.
+// Slots: state (tree kind | moved), category | mask, owner | user, bounds; only the state for a
+// free slot. Then the free list and the pairs, each after its count.
 template <class Sink>
 void PairFinder::write(Sink& sink) const {
   const auto both = [](std::uint32_t high, std::uint32_t low) {
@@ -289,7 +293,7 @@ void PairFinder::read(Reader& in) {
   State& s = incoming_;
   s.bounds.clear(), s.filters.clear(), s.tree_kinds.clear(), s.free.clear(), s.moved.clear(),
       s.pairs.clear();
-  // Memory grows with the bytes that there are, not with what they announce.
+  // Memory grows with the bytes actually read, not with the announced count.
   const std::uint64_t proxies = in.u64();
   for (std::uint64_t i = 0; i < proxies && in.ok(); ++i) read_slot(in);
   const std::uint64_t free = in.u64();

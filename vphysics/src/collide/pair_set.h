@@ -1,4 +1,4 @@
-// Sets of pairs of indices and of indices, and how pairs are put in order.
+// Sets of pairs of indices, sets of indices, and sorting of pairs.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace vp::collide {
 
 struct ProxyPair {
   std::uint32_t a, b;  // a < b
-  // The check takes the 0 that the compiler compares with for a pointer.
+  // The linter mistakes the 0 that the compiler compares with for a pointer.
   constexpr auto operator<=>(const ProxyPair&) const = default;  // NOLINT(modernize-use-nullptr)
 
   constexpr std::uint64_t key() const { return (std::uint64_t{a} << 32) | b; }
@@ -26,11 +26,11 @@ struct ProxyPair {
   }
 };
 
-// Keys of pairs in one flat table: linear probing, at most half full; what is erased leaves no
-// trace, since those behind it move up. Nothing goes through it by its order.
+// A flat hash table of pair keys: linear probing, at most half full. Erasing shifts later entries
+// back, without tombstones. No result depends on the table's order.
 class PairSet {
  public:
-  // False: it was there.
+  // Returns false if it was already present.
   bool insert(std::uint64_t key) {
     if (2 * (size_ + 1) > table_.size()) grow();
     std::size_t i = home(key);
@@ -41,7 +41,7 @@ class PairSet {
     ++size_;
     return true;
   }
-  // Says that the key will be asked for soon.
+  // Prefetches the key's entry.
   void prefetch(std::uint64_t key) const {
     if (!table_.empty()) __builtin_prefetch(&table_[home(key)]);
   }
@@ -49,14 +49,14 @@ class PairSet {
     if (size_ == 0) return false;
     return table_[find(key)] == key;
   }
-  // False: it was not there.
+  // Returns false if it was not present.
   bool erase(std::uint64_t key) {
     if (size_ == 0) return false;
     std::size_t hole = find(key);
     if (table_[hole] != key) return false;
     for (std::size_t i = next(hole); table_[i] != kEmpty; i = next(i)) {
       const std::size_t mask = table_.size() - 1;
-      // Stays only if its home lies behind the hole.
+      // An entry stays only if its home is after the hole.
       if (((i - home(table_[i])) & mask) < ((i - hole) & mask)) continue;
       table_[hole] = table_[i];
       hole = i;
@@ -70,7 +70,8 @@ class PairSet {
     size_ = 0;
   }
   std::size_t size() const { return size_; }
-  // In no order that may be seen. Takes room for as many as come before the table grows.
+  // Appends the keys in unspecified order. Reserves as much memory as the table can hold before it
+  // grows.
   void append_keys(std::vector<std::uint64_t>& keys) const {
     keys.reserve(keys.size() + table_.size() / 2);
     for (const std::uint64_t key : table_) {
@@ -82,7 +83,7 @@ class PairSet {
   static constexpr std::uint64_t kEmpty = ~std::uint64_t{0};
 
   std::size_t next(std::size_t i) const { return (i + 1) & (table_.size() - 1); }
-  // The high bits of a product with 2^64 over the golden ratio depend on all bits of the key.
+  // The high bits of the product with 2^64 over the golden ratio depend on all bits of the key.
   std::size_t home(std::uint64_t key) const {
     return static_cast<std::size_t>(((key ^ (key >> 29)) * 0x9e3779b97f4a7c15u) >> shift_);
   }
@@ -101,12 +102,12 @@ class PairSet {
     }
   }
 
-  std::vector<std::uint64_t> table_;  // a power of two
+  std::vector<std::uint64_t> table_;  // its size is a power of two
   std::size_t size_ = 0;
   int shift_ = 0;
 };
 
-// A set of indices as bits; gone through from the lowest.
+// A set of indices as bits; iteration is ascending.
 class IndexSet {
  public:
   void resize(std::size_t indices) { words_.resize((indices + 63) / 64, 0); }
@@ -131,8 +132,8 @@ class IndexSet {
   std::vector<std::uint64_t> words_;
 };
 
-// Ascending, by the bits from `lowest` up; keys are all different, or where they are not, alike.
-// Radix sort from the lowest digit; digits that all keys share cost one look.
+// Sorts in ascending order by the bits from `lowest` up. Precondition: keys that agree in these
+// bits are in ascending order. LSD radix sort; skips digits that all keys share.
 inline void sort_keys(std::vector<std::uint64_t>& keys, std::vector<std::uint64_t>& scratch,
                       int lowest = 0) {
   if (keys.size() < 256) {

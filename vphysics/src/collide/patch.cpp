@@ -1,5 +1,5 @@
-// Both features are projected along the normal; the one is clipped to the other; what is left are
-// the corners of their intersection, at each of which the two surfaces have a gap.
+// Both features are projected along the normal, and one is clipped to the other. The contact points
+// are the corners of their intersection, with the separation of the two surfaces there.
 //
 // Source: Sutherland and Hodgman, Reentrant Polygon Clipping, 1974.
 #include "collide/patch.h"
@@ -11,25 +11,25 @@
 namespace vp::collide {
 namespace {
 
-// So near to an edge or to one another [share of the size], a corner is on it: equal faces on one
-// another would else gain and lose corners with every rounding error.
+// A corner this close to an edge or to another corner [fraction of the size] coincides with it:
+// otherwise equal faces on each other would gain and lose corners with every rounding error.
 constexpr double kCoincident = 1e-6;
-// Depths that differ by less [the same] are one.
+// Depths that differ by less [fraction of the size] are equal.
 constexpr double kSameDepth = 1e-6;
-// Sine of the angle between two edges below which they touch along a stretch.
+// The sine of the angle between two edges below which they touch along a segment.
 constexpr double kAlongside = 1e-3;
-// A face at a steeper angle to the normal (cosine) is no reference.
+// A face at a larger angle to the normal (cosine) cannot be the reference.
 constexpr double kSteepest = 0.05;
 
-// What a point is: a corner of a, of b, or where an edge of a crosses one of b.
+// The kind of a point: a corner of a, of b, or the crossing of an edge of a and one of b.
 enum : std::uint32_t { kCornerOfA = 1u << 30, kCornerOfB = 2u << 30, kCrossing = 3u << 30 };
 
-// Coordinates across the normal, and the height along it.
+// Coordinates perpendicular to the normal, and the height along it.
 struct ClipCorner {
   double u, v, h;
   std::uint32_t name;
-  int edge;       // what leads to the next corner: an edge of the incident feature,
-  bool from_ref;  // or one of the reference
+  int edge;       // the edge to the next corner: of the incident feature,
+  bool from_ref;  // or of the reference feature
 };
 
 struct ClipPolygon {
@@ -73,7 +73,8 @@ class Clipper {
   const Feature& incident() const { return ref_is_a_ ? q_.b : q_.a; }
   ClipCorner projected(const FeatureCorner& c) const;
   void project_reference();
-  // Outside of edge k, times the edge's length; and how much of that is still on it.
+  // The distance outside of edge k times the edge's length. coincident_: the tolerance for this
+  // product.
   double outside(int k, const ClipCorner& c) const {
     return rise_u_[k] * (c.u - ref_u_[k]) + rise_v_[k] * (c.v - ref_v_[k]);
   }
@@ -93,7 +94,7 @@ class Clipper {
   bool ref_is_a_ = true;
   int edges_ = 0;
   double ref_u_[kMaxCorners], ref_v_[kMaxCorners];
-  double rise_u_[kMaxCorners], rise_v_[kMaxCorners];  // outward, as long as the edge
+  double rise_u_[kMaxCorners], rise_v_[kMaxCorners];  // outward, with the edge's length
   double coincident_[kMaxCorners];
   double plane_u_ = 0.0, plane_v_ = 0.0, plane_0_ = 0.0;  // the reference's height
   PatchPoint points_[kMaxPatch];
@@ -115,7 +116,7 @@ void Clipper::project_reference() {
     ref_u_[k] = c.u;
     ref_v_[k] = c.v;
   }
-  const double sign = ref_is_a_ ? 1.0 : -1.0;  // b's faces look the other way
+  const double sign = ref_is_a_ ? 1.0 : -1.0;  // b's faces have the opposite orientation
   for (int k = 0; k < edges_; ++k) {
     const int next = k + 1 < edges_ ? k + 1 : 0;
     rise_u_[k] = sign * (ref_v_[next] - ref_v_[k]);
@@ -139,7 +140,7 @@ std::uint32_t Clipper::crossing_name(int incident_edge, int k) const {
   return kCrossing | (ref_is_a_ ? (r << 15) | e : (e << 15) | r);
 }
 
-// Between a corner inside of edge k and one outside.
+// The crossing between a corner inside edge k and one outside.
 ClipCorner Clipper::cut(const ClipCorner& from, const ClipCorner& to, double d_from, double d_to,
                         int k) const {
   const double t = d_from / (d_from - d_to);
@@ -151,7 +152,7 @@ ClipCorner Clipper::cut(const ClipCorner& from, const ClipCorner& to, double d_f
                from.from_ref};
   if (!from.from_ref) {
     c.name = crossing_name(from.edge, k);
-  } else {  // along an edge of the reference as far as the next: their corner
+  } else {  // along a reference edge to the next one: their common corner
     const int j = from.edge;
     const int shared = j + 1 == k || (k == 0 && j == edges_ - 1) ? k : j;
     c.name = corner_name(ref_is_a_, ref().corners[shared].name);
@@ -192,7 +193,7 @@ void Clipper::keep(const ClipCorner& c) {
   keep(c.u, c.v, ref_is_a_ ? h : c.h, ref_is_a_ ? c.h : h, c.name);
 }
 
-// A polygon clipped to a polygon. False if there is nothing left.
+// Clips a polygon to a polygon. Returns false if nothing is left.
 bool Clipper::clip(bool ref_is_a) {
   ref_is_a_ = ref_is_a;
   project_reference();
@@ -213,7 +214,7 @@ bool Clipper::clip(bool ref_is_a) {
   return in->count > 0;
 }
 
-// A segment or a point clipped to a polygon.
+// Clips a segment or a point to a polygon.
 void Clipper::clip_segment(bool ref_is_a) {
   ref_is_a_ = ref_is_a;
   project_reference();
@@ -243,8 +244,7 @@ void Clipper::clip_segment(bool ref_is_a) {
   if (f.count > 1) end(last, last_edge, f.corners[1]);
 }
 
-// Two segments alongside one another, the stretch that they share. Crossing ones have one point,
-// which is known.
+// The overlap of two parallel segments. Crossing ones have a single point, which is already known.
 void Clipper::along_segments() {
   if (q_.a.count != 2 || q_.b.count != 2) return;
   const ClipCorner a0 = projected(q_.a.corners[0]), a1 = projected(q_.a.corners[1]),
@@ -253,7 +253,7 @@ void Clipper::along_segments() {
   const double aa = au * au + av * av, bb = bu * bu + bv * bv;
   const double sine = au * bv - av * bu, cosine = au * bu + av * bv;
   if (!(sine * sine <= kAlongside * kAlongside * aa * bb) || !(aa > 0.0) || !(bb > 0.0)) return;
-  // Along a, from 0 to 1.
+  // The coordinate along a, from 0 to 1.
   const auto along_a = [&](const ClipCorner& c) {
     return ((c.u - a0.u) * au + (c.v - a0.v) * av) / aa;
   };
@@ -274,8 +274,7 @@ void Clipper::along_segments() {
              : point(1.0, corner_name(true, q_.a.corners[1].name));
 }
 
-// Leaves out, one by one, the flattest corner, until eight are left, but never the last of the
-// deepest.
+// Removes the flattest corner repeatedly until eight are left, but never the last of the deepest.
 int thin_out(const PatchPoint* points, int count, const Vec3& n, double deep, int* kept_points) {
   int deep_ones = 0;
   for (int i = 0; i < count; ++i) {
@@ -319,8 +318,8 @@ void reduce_patch(const PatchPoint* points, int count, const Vec3& n, double siz
   deep += kSameDepth * size;
   int kept_points[kMaxPatch];
   count = thin_out(points, count, n, deep, kept_points);
-  // The widest four of which one is deep; of equally wide ones the first. Twice their area is the
-  // product of the diagonals.
+  // The largest quadrilateral that contains a deep corner; of equal ones the first. Twice its area
+  // is the product of the diagonals.
   constexpr double kClearlyWider = 1.0 + 1e-3;
   double widest = -1.0;
   int best[4] = {0, 1, 2, 3};
@@ -359,7 +358,7 @@ void find_patch(const PatchQuery& q, bool with_nearest, Manifold& m) {
     clipper.along_segments();
   }
   reduce_patch(clipper.points(), clipper.count(), q.normal, q.size, m);
-  // Where the features are not quite those that touch, the nearest points are added.
+  // If the features are not exactly those that touch, the closest points are added.
   const double separation = q.core_separation - q.radius_a - q.radius_b;
   if (!with_nearest || separation > q.margin) return;
   for (int i = 0; i < m.count; ++i) {

@@ -1,4 +1,4 @@
-// Where two features lie over one another: the contact points between them.
+// Contact points between two overlapping features.
 #pragma once
 
 #include "collide/feature.h"
@@ -6,25 +6,25 @@
 
 namespace vp::collide {
 
-// Everything in one frame.
+// All in one frame.
 struct PatchQuery {
   const Feature& a;
   const Feature& b;
   Vec3 normal;                // unit, from a to b
-  double radius_a, radius_b;  // what the cores are swept by
-  double margin;              // points farther apart than this along the normal are left out
-  double size;                // size by which "the same place" is measured
-  Vec3 on_a, on_b;            // nearest points of the cores, as found
+  double radius_a, radius_b;  // radii of the spheres that sweep the cores
+  double margin;              // rejects points with a larger separation along the normal
+  double size;                // scale of the tolerance for coincident points
+  Vec3 on_a, on_b;            // the closest points of the cores, already found
   double core_separation;     // of the cores along the normal, at these points
 };
 
-// Appends at most four points. If the nearest points are asked for, and lie within the margin but
-// deeper than what the features give, they are one of them.
+// Appends at most four points. with_nearest: adds the closest points if they are within the margin
+// and deeper than the features' points.
 void find_patch(const PatchQuery& query, bool with_nearest, Manifold& manifold);
 
 inline constexpr int kMaxPatch = 2 * kMaxCorners;
 
-// No defaults, as of FeatureCorner.
+// No default initializers, as in FeatureCorner.
 struct PatchPoint {
   double x, y, z, separation;
   std::uint32_t name;
@@ -32,8 +32,8 @@ struct PatchPoint {
   Vec3 at() const { return {x, y, z}; }
 };
 
-// Appends four of the corners of a convex patch, in their order around it, that keep its extent;
-// one of them is one of the deepest. At most kMaxPatch.
+// Appends four corners of a convex patch, in their order around it, that preserve its extent; one
+// of them is among the deepest. Precondition: at most kMaxPatch points.
 void reduce_patch(const PatchPoint* points, int count, const Vec3& normal, double size,
                   Manifold& manifold);
 

@@ -23,9 +23,9 @@ PolytopeOf::PolytopeOf(const Geometry& g) {
 
 namespace {
 
-// Four numbers side by side; one of them at a time where the machine has no such registers.
+// Four numbers in parallel; one at a time if the machine has no such registers.
 using Four [[gnu::vector_size(32)]] = double;
-// The first of those that are farthest along d.
+// The first of the vertices that are farthest along d.
 int farthest_vertex(const HullData& hull, const Vec3& d) {
   const std::size_t n = hull.support_x.size();
   Four largest{-kFar, -kFar, -kFar, -kFar}, found{}, at{0.0, 1.0, 2.0, 3.0};

@@ -1,4 +1,4 @@
-// Boxes and hulls alike: corners, faces and edges.
+// A common view of boxes and hulls: vertices, faces and edges.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace vp::collide {
 
-// A hull's own data, or a box's, put together on the spot.
+// Refers to a hull's own data, or to a box's generated data.
 struct Polytope {
   std::span<const Vec3> vertices;
   std::span<const ConvexHull::Face> faces;
@@ -19,7 +19,7 @@ inline bool is_polytope(const Geometry& g) {
   return g.kind == Kind::box || g.kind == Kind::hull;
 }
 
-// A box numbered as the hull of its corners is: corner 4 x + 2 y + z, each 0 or 1.
+// A box is numbered as the hull of its corners: corner 4 x + 2 y + z, each 0 or 1.
 inline constexpr std::uint16_t kBoxCorners[6][4] = {{0, 1, 3, 2}, {0, 2, 6, 4}, {0, 4, 5, 1},
                                                     {1, 5, 7, 3}, {2, 3, 7, 6}, {4, 6, 7, 5}};
 inline constexpr HullEdge kBoxEdges[12] = {{0, 1, 0, 2}, {0, 2, 1, 0}, {0, 4, 2, 1}, {1, 3, 0, 3},
@@ -27,17 +27,17 @@ inline constexpr HullEdge kBoxEdges[12] = {{0, 1, 0, 2}, {0, 2, 1, 0}, {0, 4, 2,
                                            {4, 5, 2, 5}, {4, 6, 5, 1}, {5, 7, 3, 5}, {6, 7, 5, 4}};
 inline constexpr std::uint16_t kBoxCornerEdges[6][4] = {
     {0, 3, 5, 1}, {1, 6, 9, 2}, {2, 8, 4, 0}, {4, 10, 7, 3}, {5, 7, 11, 6}, {9, 11, 10, 8}};
-// The axis of each face and its side.
+// The axis and the side of each face.
 inline constexpr int kBoxFaceAxis[6] = {0, 2, 1, 2, 1, 0};
 inline constexpr double kBoxFaceSide[6] = {-1, -1, -1, 1, 1, 1};
-// The faces whose outward normals are along an axis, against it and with it.
+// The faces whose outward normals point along the negative and the positive direction of an axis.
 inline constexpr int kBoxFace[3][2] = {{0, 5}, {2, 4}, {1, 3}};
 inline Vec3 box_corner(const Vec3& half, int corner) {
   return {corner & 4 ? half.x : -half.x, corner & 2 ? half.y : -half.y,
           corner & 1 ? half.z : -half.z};
 }
 
-// Room for a box's view. Not copied: the view points into it.
+// Storage for the view of a box. Not copyable: the view points into it.
 class PolytopeOf {
  public:
   explicit PolytopeOf(const Geometry& g);

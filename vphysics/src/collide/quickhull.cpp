@@ -1,7 +1,7 @@
-// Beneath-beyond with outside sets: the point farthest outside of all facets is added next; the
-// facets that it sees give way to a cone from their horizon. On a grid of 41 bits for each
-// coordinate every decision is exact in 128 bits (a height is a sum of six products of three
-// differences, below 2^123), so that the facets always close, whatever the points.
+// Quickhull with outside sets: each iteration adds the point farthest outside all facets. A cone
+// from their horizon replaces the facets that it sees. On a grid of 41 bits per coordinate every
+// decision is exact in 128 bits (a height is a sum of six products of three differences, below
+// 2^123). So the facets always close, for any points.
 //
 // Source: Barber, Dobkin, Huhdanpaa, The Quickhull Algorithm for Convex Hulls, 1996.
 #include "collide/quickhull.h"
@@ -46,7 +46,7 @@ struct Facet {
   std::array<std::uint32_t, 3> beside;  // across the edge from v[i] to the next
   WideVector normal;
   double normal_length;
-  std::vector<std::uint32_t> outside;  // points above, each in one facet's set
+  std::vector<std::uint32_t> outside;  // points above; each is in one facet's set
   double farthest_distance = 0.0;
   std::uint32_t farthest = 0;
   bool alive = true;
@@ -54,8 +54,8 @@ struct Facet {
 };
 
 struct HorizonEdge {
-  std::uint32_t from, to;  // counter-clockwise around what is seen
-  std::uint32_t beyond;    // the facet that stays
+  std::uint32_t from, to;  // counter-clockwise around the visible facets
+  std::uint32_t beyond;    // the facet that remains
 };
 
 class QuickhullBuilder {
@@ -65,7 +65,7 @@ class QuickhullBuilder {
 
   Quickhull::Result start(double thinnest);
   bool grow();
-  std::uint32_t vertices() const { return alive_ / 2 + 2; }  // Euler, of triangles
+  std::uint32_t vertices() const { return alive_ / 2 + 2; }  // Euler's formula for triangles
   std::vector<Triangle> triangles() const;
   double tolerance() const { return tolerance_; }
 
@@ -88,7 +88,7 @@ class QuickhullBuilder {
   double tolerance_;
   std::vector<Facet> facets_;
   std::uint32_t alive_ = 0;
-  std::vector<std::uint32_t> starts_at_;  // the new facet whose first edge leaves a vertex
+  std::vector<std::uint32_t> starts_at_;  // by vertex: the new facet whose first edge starts there
   std::vector<std::uint32_t> seen_, fresh_, loose_;
   std::vector<HorizonEdge> horizon_;
 };
@@ -104,7 +104,7 @@ std::uint32_t QuickhullBuilder::add_facet(std::uint32_t a, std::uint32_t b, std:
   return static_cast<std::uint32_t>(facets_.size() - 1);
 }
 
-// Tells two facets that share an edge of one another.
+// Links two facets that share an edge.
 void QuickhullBuilder::link(std::uint32_t f, std::uint32_t g) {
   Facet &a = facets_[f], &b = facets_[g];
   for (std::size_t i = 0; i < 3; ++i) {
@@ -124,8 +124,9 @@ void QuickhullBuilder::put(std::uint32_t p, Facet& f, double d) {
   }
 }
 
-// To the facet above which it is the highest. What no candidate has far enough below it may still
-// be seen by another; if not, it is within the tolerance of the hull and left out.
+// Assigns a point to the candidate facet that it is highest above. Another facet may see a point
+// that is not far enough above any candidate; otherwise it is within tolerance of the hull and is
+// dropped.
 void QuickhullBuilder::assign(std::uint32_t p, std::span<const std::uint32_t> candidates) {
   std::uint32_t best = kNoFacet;
   double largest = 0.0;
@@ -151,11 +152,12 @@ void QuickhullBuilder::assign_to_any(std::uint32_t p) {
   }
 }
 
-// Four points as far apart as can be had cheaply.
+// Chooses four points that are far apart, at low cost.
 Quickhull::Result QuickhullBuilder::start(double thinnest) {
   using Result = Quickhull::Result;
   const auto n = static_cast<std::uint32_t>(points_.size());
-  // The longest of the three lines between the extremes along the axes; ties to the lowest index.
+  // The longest of the three segments between the extremes along the axes; ties go to the lowest
+  // index.
   std::uint32_t a = 0, b = 0;
   double longest = 0.0;
   for (std::int64_t GridPoint::*axis : {&GridPoint::x, &GridPoint::y, &GridPoint::z}) {
@@ -213,7 +215,7 @@ Quickhull::Result QuickhullBuilder::start(double thinnest) {
   return Result::hull;
 }
 
-// Marks the facets that p is above of, and the edges around them.
+// Marks the facets that p is above, and collects the edges around them.
 void QuickhullBuilder::see(std::uint32_t first, std::uint32_t p) {
   seen_.assign(1, first);
   horizon_.clear();
@@ -244,7 +246,7 @@ void QuickhullBuilder::add_cone(std::uint32_t p) {
   for (const std::uint32_t f : fresh_) link(f, starts_at_[facets_[f].v[1]]);
 }
 
-// Adds the point that is farthest outside; false if there is none.
+// Adds the point that is farthest outside; returns false if there is none.
 bool QuickhullBuilder::grow() {
   std::uint32_t best = kNoFacet;
   for (std::uint32_t f = 0; f < facets_.size(); ++f) {

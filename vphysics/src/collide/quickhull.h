@@ -1,4 +1,4 @@
-// The triangles of the convex hull of points on an integer grid, exactly.
+// The convex hull of points on an integer grid, as triangles, computed exactly.
 #pragma once
 
 #include <array>
@@ -15,17 +15,17 @@ struct GridPoint {
 
 inline constexpr int kGridBits = 40;
 
-using Triangle = std::array<std::uint32_t, 3>;  // indices of points, counter-clockwise from outside
+using Triangle = std::array<std::uint32_t, 3>;  // point indices, counter-clockwise from outside
 
 struct Quickhull {
   enum class Result : std::uint8_t { hull, point, line, plane };
   Result result = Result::point;
-  double tolerance = 0.0;           // what was used: at most a hundredth of the thickness
-  std::vector<Triangle> triangles;  // of a hull: closed, every edge shared by two
+  double tolerance = 0.0;           // the tolerance used: at most a hundredth of the thickness
+  std::vector<Triangle> triangles;  // if result is hull: closed, two triangles share every edge
 };
 
-// Keeps at most max_vertices, the farthest first, and leaves out what would stick out by at most
-// tolerance. Points thinner than thinnest are a plane, a line or a point. Both in grid cells.
+// Keeps at most max_vertices, the farthest first, and drops points that protrude by at most
+// tolerance. Points thinner than `thinnest` form a plane, a line or a point. Both in grid cells.
 Quickhull quickhull(std::span<const GridPoint> points, int max_vertices, double tolerance,
                     double thinnest);
 

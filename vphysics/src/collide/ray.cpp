@@ -1,5 +1,5 @@
-// In closed form: a convex shape is what several simple sets have in common, and a ray is in each
-// of them from one distance to another.
+// Closed-form ray casts: a convex shape is an intersection of simple sets, and the ray is inside
+// each of them over one interval of distances.
 //
 // Sources: Ericson, Real-Time Collision Detection, 2005, section 5.3; Woop, Benthin, Wald,
 // Watertight ray/triangle intersection, 2013.
@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kEndless = std::numeric_limits<double>::infinity();
 
-// Distances between which the ray is in a set, and the surface's normal where it enters.
+// The interval of distances inside a set, and the surface normal at its entry.
 struct Stretch {
   double in = -kEndless, out = kEndless;
   Vec3 normal{0, 0, 1};
@@ -28,7 +28,7 @@ struct Stretch {
     if (t > in) in = t, normal = n;
   }
   void leave(double t) { out = std::min(out, t); }
-  // With all x of n . x <= offset.
+  // Intersects with the half-space n . x <= offset.
   void cut(const Ray& ray, const Vec3& n, double offset) {
     const double height = dot(n, ray.origin) - offset, along = dot(n, ray.direction);
     if (along < 0.0) {
@@ -61,7 +61,7 @@ Stretch in_sphere(const Ray& ray, const Vec3& centre, double radius) {
   return s;
 }
 
-// The set of all within the radius of the z axis.
+// Intersects with the infinite cylinder of this radius about the z axis.
 void cut_tube(Stretch& s, const Ray& ray, double radius) {
   const Vec3 &o = ray.origin, &d = ray.direction;
   const double a = d.x * d.x + d.y * d.y;
@@ -85,7 +85,7 @@ Stretch in_cylinder(const Ray& ray, double radius, double half) {
   return s;
 }
 
-// Of the nappe |(x, y)| <= k u, u = half - z >= 0, which is where A t^2 + 2 B t + C <= 0.
+// Intersects with the nappe |(x, y)| <= k u, u = half - z >= 0, where A t^2 + 2 B t + C <= 0.
 void cut_nappe(Stretch& s, const Ray& ray, double k, double half) {
   const Vec3 &o = ray.origin, &d = ray.direction;
   const double u = half - o.z, du = -d.z;
@@ -100,7 +100,8 @@ void cut_nappe(Stretch& s, const Ray& ray, double k, double half) {
   };
   const double square = B * B - A * C;
   if (square < 0.0) {
-    // A steep line is never beside both nappes, but for rounding, and then through the apex.
+    // A steep line is never outside both nappes, except by rounding, and then it passes through the
+    // apex.
     if (A < 0.0) return;
     return s.make_empty();
   }
@@ -109,11 +110,11 @@ void cut_nappe(Stretch& s, const Ray& ray, double k, double half) {
     if (C > 0.0) s.make_empty();
     return;
   }
-  const double one = q / A, other = C / q;  // one is infinite where A is nought
+  const double one = q / A, other = C / q;  // one is infinite if A is zero
   if (A > 0.0) {
     enter(std::min(one, other));
     s.leave(std::max(one, other));
-  } else if (A < 0.0) {  // from one nappe to the other: this one is where u is positive
+  } else if (A < 0.0) {  // from one nappe to the other: u is positive in this one
     if (du > 0.0) {
       enter(std::max(one, other));
     } else {
@@ -134,7 +135,7 @@ Stretch in_cone(const Ray& ray, double radius, double half) {
   return s;
 }
 
-// Of the pieces of a capsule, together convex.
+// The union with a piece of a capsule; the pieces together are convex.
 void join(Stretch& s, const Stretch& piece) {
   if (piece.empty()) return;
   if (s.empty() || piece.in < s.in) {
@@ -189,8 +190,8 @@ Stretch in_convex(const Geometry& g, const Ray& ray) {
   return s;
 }
 
-// As seen from the place of the ray that is nearest to the shape's origin: from far away numbers
-// would lose their last digits in squares.
+// Uses the point of the ray closest to the shape's origin as its origin: squares of large distances
+// would lose precision.
 bool cast_at_convex(const Geometry& g, const Ray& ray, double limit, RayEntry& entry) {
   const bool is_bounded = g.kind != Kind::half_space;
   const double ahead = is_bounded ? -dot(ray.origin, ray.direction) : 0.0;
@@ -204,9 +205,10 @@ bool cast_at_convex(const Geometry& g, const Ray& ray, double limit, RayEntry& e
   return true;
 }
 
-// Corners are seen along the ray: sheared so that it runs along one axis, and across it lies at the
-// origin. On which side of an edge that is, is told by two products, whose order rounding never
-// reverses, and a corner has the same place for all its triangles: nothing passes between them.
+// Corners are sheared so that the ray is along one axis, at the origin of the plane perpendicular
+// to it. Two products decide on which side of an edge the origin is; rounding never reverses their
+// order. A corner has the same coordinates in all its triangles. So no ray passes between
+// triangles.
 class RayFrame {
  public:
   explicit RayFrame(const Ray& ray) : origin_(ray.origin) {
@@ -216,12 +218,12 @@ class RayFrame {
     }
     x_ = (z_ + 1) % 3;
     y_ = (z_ + 2) % 3;
-    if (d[z_] < 0.0) std::swap(x_, y_);  // or triangles would turn their backs
+    if (d[z_] < 0.0) std::swap(x_, y_);  // keeps the orientation of the triangles
     along_ = d[z_];
     shear_x_ = d[x_] / along_;
     shear_y_ = d[y_] / along_;
   }
-  // A triangle's front turns counter-clockwise to who comes along the ray.
+  // A triangle's front is counter-clockwise as seen from the ray's origin.
   bool overlaps(const SurfaceTriangle& t, bool two_sided, double& distance) const {
     const Corner a = seen(t.p[0]), b = seen(t.p[1]), c = seen(t.p[2]);
     const double u = c.x * b.y - c.y * b.x, v = a.x * c.y - a.y * c.x, w = b.x * a.y - b.y * a.x;
@@ -246,7 +248,7 @@ class RayFrame {
   double along_, shear_x_, shear_y_;
 };
 
-// In order of distance, then of parts, whatever the order in which they are found.
+// Order by distance, then by part, independent of the order of discovery.
 bool is_first(const RayEntry& best, double distance, std::uint32_t part) {
   return distance < best.distance || (distance == best.distance && part < best.part);
 }

@@ -1,4 +1,4 @@
-// Where does a ray enter a shape?
+// Ray casts against shapes.
 #pragma once
 
 #include "collide/bounding_tree.h"
@@ -7,18 +7,18 @@
 namespace vp::collide {
 
 struct Ray {
-  Vec3 origin, direction;  // the direction of unit length
+  Vec3 origin, direction;  // direction: unit length
 };
 
 struct RayEntry {
-  double distance;         // 0 where the ray starts inside
-  Vec3 normal;             // unit, outward; starting inside, that of the nearest surface
+  double distance;         // 0 if the ray starts inside
+  Vec3 normal;             // unit, outward; if the ray starts inside, of the nearest surface
   std::uint32_t part = 0;  // of a compound, or the triangle of a surface
 };
 
-// Any shape; ray and entry in the shape's frame. False: it does not come into it within the limit
-// [m]. One-sided triangles are met from their front alone; of what is met at one distance the part
-// with the lowest number.
+// Casts a ray against any shape; ray and entry are in the shape's frame. Returns false if it does
+// not hit within the limit [m]. One-sided triangles are hit from the front only. Of hits at equal
+// distance the part with the lowest number is reported.
 bool cast_ray(const Geometry& geometry, const Ray& ray, double limit, CastScratch& scratch,
               RayEntry& entry);
 

@@ -10,7 +10,7 @@
 namespace vp::collide {
 namespace {
 
-// f(part, its pose, its number) of a compound, or of a shape that is its own only part.
+// Calls f(part, its pose, its number) for a compound's parts, or for the shape itself.
 template <class F>
 void for_parts(const Geometry& g, const SE3& T, const F& f) {
   if (g.kind != Kind::compound) return f(g, T, 0u);
@@ -19,7 +19,7 @@ void for_parts(const Geometry& g, const SE3& T, const F& f) {
   }
 }
 
-// --- touching ------------------------------------------------------------------------------------
+// --- overlap -------------------------------------------------------------------------------------
 
 bool part_touches(const Geometry& a, const SE3& T_a, const Geometry& b, const SE3& T_b,
                   PartsScratch& scratch) {
@@ -47,7 +47,7 @@ bool part_touches(const Geometry& a, const SE3& T_a, const Geometry& b, const SE
   });
 }
 
-// --- the nearest ---------------------------------------------------------------------------------
+// --- closest parts -------------------------------------------------------------------------------
 
 class NearestFinder {
  public:
@@ -110,19 +110,19 @@ class NearestFinder {
   bool found_ = false;
 };
 
-// --- the first impact ----------------------------------------------------------------------------
+// --- first impact --------------------------------------------------------------------------------
 
-// No point of the shape is farther from what it turns about.
+// An upper bound of the distance of the shape's points from its centre of rotation.
 double bounding_radius_of(const MovingShape& m) {
   return norm(m.T * core_centre(*m.shape) - m.motion.x) + core_extent(*m.shape) +
          core_radius(*m.shape);
 }
-// As far as a turn takes a point that is at most reach away.
+// An upper bound of the displacement of a point within `radius` by rotation.
 double rotation_bound(const MovingShape& m, double radius, double duration) {
   return std::min(norm(m.motion.w) * duration, 2.0) * radius;
 }
 
-// What the first shape passes, seen from the second.
+// The volume that the first shape sweeps, in the second's frame.
 Sweep sweep_of(const ImpactQuery& q, double more) {
   const Vec3 offset = q.duration * (q.a.motion.v - q.b.motion.v);
   const double radius = bounding_radius_of(q.a);
@@ -145,7 +145,7 @@ class ImpactFinder {
   }
   bool found() const { return best_.time < std::numeric_limits<double>::infinity(); }
 
-  // a is convex.
+  // Precondition: a is convex.
   void find(const ImpactQuery& q, std::uint32_t part_a) {
     const Geometry& b = *q.b.shape;
     if (b.kind == Kind::compound) {
@@ -174,7 +174,7 @@ class ImpactFinder {
   }
 
  private:
-  // The fraction of the way after which nothing is of interest.
+  // The fraction of the sweep after which no impact is of interest.
   double limit(double duration) const {
     return duration > 0.0 ? std::min(1.0, best_.time / duration) : 1.0;
   }

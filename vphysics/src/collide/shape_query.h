@@ -1,8 +1,8 @@
-// What is asked of a shape and any other one, with all its parts: do they touch, how near are they,
-// when do they meet?
+// Queries between a shape and any other one, including all parts: overlap, closest points, time of
+// impact.
 //
-// The first shape is convex or a compound; the second is any. Surfaces have no inside here: they
-// are where their triangles are. The order in which parts are found has no say in any answer.
+// The first shape is convex or a compound; the second is any. Surfaces have no interior here, only
+// their triangles. No result depends on the order in which parts are found.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace vp::collide {
 
-// Kept by whoever asks. Between calls there is nothing in it.
+// Scratch memory, owned by the caller. It holds no data between calls.
 struct PartsScratch {
   CastScratch cast;
   std::vector<std::uint32_t> triangles;
@@ -23,28 +23,29 @@ struct PartsScratch {
 bool parts_touch(const Geometry& a, const SE3& T_a, const Geometry& b, const SE3& T_b,
                  PartsScratch& scratch);
 
-// Parts of compounds and triangles of surfaces, 0 of others.
+// Part numbers in compounds and triangle numbers in surfaces; 0 for other shapes.
 struct NearestParts {
   ClosestPoints points;
   std::uint32_t part_a = 0, part_b = 0;
 };
-// The two that are nearest or, where some overlap, deepest; of equals those with the lowest
-// numbers. False: none are as near as limit [m].
+// Finds the closest two parts or, if some overlap, the deepest; of equals those with the lowest
+// numbers. Returns false if none are within limit [m].
 bool nearest_parts(const Geometry& a, const SE3& T_a, const Geometry& b, const SE3& T_b,
                    double limit, PartsScratch& scratch, NearestParts& found);
 
 struct PartsImpact {
   double time;
-  ClosestPoints points;  // then
+  ClosestPoints points;  // at that time
   std::uint32_t part_a = 0, part_b = 0;
 };
-// The first time at which the separation of two parts has come down to target [m], 0 if it has from
-// the start; of equals those with the lowest numbers. A one-sided triangle is met only by what has
-// its middle in front of it then. False: not within the duration.
+// Finds the first time at which the separation of two parts has decreased to target [m], 0 if it is
+// at most target from the start; of equals those with the lowest numbers. A one-sided triangle is
+// hit only if the other part's centre is then in front of it. Returns false if there is none within
+// the duration.
 //
-// Who follows something that touches a surface already has to give a target below the separation of
-// all parts together: else it meets the next triangle wherever it slides. Of what is as near as the
-// target at time 0, he may know better whether it is a contact: parts are then passed over.
+// If the shape already touches a surface, target must be below the separation of all parts
+// together: otherwise the shape hits the next triangle as it slides. Parts within target at time 0
+// are ignored with NearParts::passed: the caller may know better whether they are contacts.
 enum class NearParts { met, passed };
 bool first_impact(const ImpactQuery& query, double target, PartsScratch& scratch,
                   PartsImpact& found, NearParts near_at_start = NearParts::met);

@@ -1,4 +1,4 @@
-// The mass of shapes, and shapes made larger and smaller.
+// Mass properties of shapes, and scaled shapes.
 #include <cmath>
 #include <vector>
 
@@ -20,8 +20,7 @@ Inertia solid_inertia(const Shape& shape, double density) {
     return {m, (m / 3.0) * Vec3{y + z, z + x, x + y}};
   }
   if (const auto* capsule = std::get_if<Capsule>(&shape)) {
-    // A cylinder of length 2 l and two half spheres, whose centres of mass lie 3/8 r beyond its
-    // ends.
+    // A cylinder of length 2 l and two half balls, whose centres of mass are 3/8 r beyond its ends.
     const double r = capsule->radius, l = capsule->half_length;
     const double cylinder = density * kPi * r * r * 2.0 * l;
     const double ball = density * (4.0 / 3.0) * kPi * r * r * r;
@@ -37,7 +36,7 @@ Inertia solid_inertia(const Shape& shape, double density) {
     return {m, Vec3{radial, radial, 0.5 * m * r * r}};
   }
   if (const auto* cone = std::get_if<Cone>(&shape)) {
-    // Of height 2 h, its centre of mass h / 2 above the base; about that, across the axis,
+    // Height 2 h, the centre of mass h / 2 above the base; about it, perpendicular to the axis,
     // 3/20 m r^2 + 3/80 m (2 h)^2.
     const double r = cone->radius, h = cone->half_height;
     const double m = density * kPi * r * r * 2.0 * h / 3.0;
@@ -66,7 +65,7 @@ Expected<Shape> as_shape(Expected<T> made) {
   return Shape(*std::move(made));
 }
 
-// Parts that are turned would be sheared by unequal factors.
+// Unequal factors would shear rotated parts.
 Expected<Shape> scaled_compound(const Compound& compound, const Vec3& scale) {
   if (!compound.data()) return invalid_scale("scaled: the compound was moved from");
   if (scale.x != scale.y || scale.y != scale.z) {
@@ -134,7 +133,7 @@ Expected<Shape> scaled(const Shape& shape, const Vec3& scale) {
   if (const auto* field = std::get_if<HeightField>(&shape)) return as_shape(field->scaled(scale));
   if (const auto* compound = std::get_if<Compound>(&shape))
     return scaled_compound(*compound, scale);
-  return shape;  // a half-space is the same at any scale
+  return shape;  // a half-space does not change with scale
 }
 
 }  // namespace vp

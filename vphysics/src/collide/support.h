@@ -1,7 +1,7 @@
-// The farthest point of a shape in a direction.
+// Support mapping: the farthest point of a shape in a direction.
 //
-// A shape is a core swept by a sphere: a sphere's core is its centre, a capsule's its axis; all
-// others are their own core, swept by nothing.
+// A shape is a core swept by a sphere. A sphere's core is its centre, a capsule's its axis; every
+// other shape is its own core, with radius zero.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@ inline double core_radius(const Geometry& g) {
   return g.kind == Kind::sphere || g.kind == Kind::capsule ? g.radius : 0.0;
 }
 
-// A point of the core from which no other point of it is farther than core_extent.
+// A point of the core; no point of the core is farther from it than core_extent.
 inline Vec3 core_centre(const Geometry& g) {
   if (g.kind == Kind::hull) return g.hull->centre;
   if (g.kind == Kind::triangle) {
@@ -47,7 +47,7 @@ inline double core_extent(const Geometry& g) {
   return norm(g.half);
 }
 
-// All of few vertices are looked at; from one neighbour to the next among more.
+// Scans all vertices if they are few; otherwise climbs from neighbour to neighbour.
 int support_vertex(const HullData& hull, const Vec3& d, int hint);
 
 inline Vec3 rim_direction(const Vec3& d) {
@@ -56,7 +56,7 @@ inline Vec3 rim_direction(const Vec3& d) {
   return {d.x / radial, d.y / radial, 0};
 }
 
-// In the shape's frame; d need not be of unit length. hint: a vertex of a hull to begin with, and
+// In the shape's frame; d need not be of unit length. hint: a hull vertex to start from; receives
 // the one found.
 inline Vec3 core_support(const Geometry& g, const Vec3& d, int& hint) {
   switch (g.kind) {

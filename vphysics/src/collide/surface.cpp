@@ -3,8 +3,8 @@
 namespace vp::collide {
 namespace {
 
-// What rounding may do to a direction: a corner as little above the plane across it, as a share of
-// its distance, is in the plane.
+// Rounding tolerance of a direction: a neighbour at most this far above the plane [fraction of its
+// distance] counts as in the plane.
 constexpr double kInPlane = 1e-6;
 
 void set_normal(SurfaceTriangle& t) {
@@ -18,8 +18,8 @@ bool is_above(const Vec3& from, const Vec3& corner, const Vec3& d) {
   return height > 0.0 && height * height > kInPlane * kInPlane * dot(offset, offset);
 }
 
-// Corners and neighbours of the two triangles of a cell, as steps of columns and rows from its
-// first sample: the corners, and what is across each edge, with the cell that has it.
+// Corners and neighbours of the two triangles of a cell, as offsets in columns and rows from its
+// first sample: the corners, the third corner across each edge, and the cell that contains it.
 struct CellTriangle {
   int corner[3][2], opposite[3][2], cell[3][2];
 };
@@ -28,7 +28,8 @@ constexpr CellTriangle kLowerCell{
 constexpr CellTriangle kUpperCell{
     {{0, 0}, {1, 1}, {0, 1}}, {{1, 0}, {1, 2}, {-1, 0}}, {{0, 0}, {0, 1}, {-1, 0}}};
 
-// Next to a sample, by the diagonals too, each with two cells of which one has to be there.
+// Neighbours of a sample, including diagonals, each with two cells of which at least one must
+// exist.
 constexpr int kAround[6][2] = {{1, 0}, {1, 1}, {0, 1}, {-1, 0}, {-1, -1}, {0, -1}};
 constexpr int kAroundCells[6][2][2] = {{{0, 0}, {0, -1}},    {{0, 0}, {0, 0}},
                                        {{0, 0}, {-1, 0}},    {{-1, 0}, {-1, -1}},

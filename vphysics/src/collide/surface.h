@@ -1,4 +1,4 @@
-// Meshes and height fields alike: triangles, their neighbours, and what of them can be felt.
+// A common view of meshes and height fields: triangles, their neighbours, and active edges.
 #pragma once
 
 #include <algorithm>
@@ -15,11 +15,11 @@ namespace vp::collide {
 struct SurfaceTriangle {
   std::uint32_t id;
   Vec3 p[3];
-  Vec3 normal;               // unit, of the front
+  Vec3 normal;               // unit, of the front side
   std::uint32_t corners[3];  // names of vertices
-  Vec3 opposite[3];          // the neighbour's third corner beyond the edge from p[i]
+  Vec3 opposite[3];          // the neighbour's third corner across the edge from p[i]
   bool has_opposite[3];
-  unsigned active;  // as of MeshData
+  unsigned active;  // as in MeshData
 };
 
 class Surface {
@@ -31,23 +31,24 @@ class Surface {
   Bounds bounds() const;
   SurfaceTriangle triangle(std::uint32_t id) const;
   void corners(std::uint32_t id, Vec3 p[3]) const;  // of the triangle
-  // Appends the triangles whose bounds overlap the box, ascending.
+  // Appends the triangles whose bounds overlap the box, in ascending order.
   void append_overlapping(const Bounds& box, std::vector<std::uint32_t>& ids) const;
-  // found(triangle) for the same, in an order that depends on surface and box alone.
+  // Calls found(triangle) for the same triangles, in an order that depends on surface and box
+  // alone.
   template <class F>
   void overlapping(const Bounds& box, const F& found) const;
-  // The surface around a vertex lies below the plane through it across d, a unit vector; so to the
-  // rounding that allowed stands for.
+  // Whether the surface around a vertex is below the plane through it that is perpendicular to the
+  // unit vector d, up to rounding.
   bool lies_below(std::uint32_t vertex, const Vec3& d) const;
 
-  // hit(triangle, entry) for those whose bounds a moving box meets at a fraction of at most limit;
-  // what it returns is the new limit. In the order of entry, which is that of the bounds or, of a
-  // height field, of the row of cells.
+  // Calls hit(triangle, entry) for triangles whose bounds a moving box touches at a fraction of at
+  // most limit; hit returns the new limit. In order of entry: of the bounds or, for a height field,
+  // of the row of cells.
   template <class F>
   void cast(const Sweep& sweep, double limit, CastScratch& scratch, const F& hit) const;
 
-  // near(triangle) for those whose bounds are no farther from the box than limit [m]; what it
-  // returns is the new limit, no more than the old one.
+  // Calls near(triangle) for triangles whose bounds are at most limit [m] from the box; near
+  // returns the new limit, which must not exceed the old one.
   template <class F>
   void nearest(const Bounds& box, double limit, CastScratch& scratch, const F& near) const;
 
@@ -74,7 +75,7 @@ void Surface::overlapping(const Bounds& box, const F& found) const {
   mesh_->tree.overlapping(rounded_outward(unscaled(box)), found);
 }
 
-// Of the field, unscaled.
+// For a height field, unscaled.
 template <class F>
 void Surface::for_cells(const Bounds& box, const F& found) const {
   const HeightData& f = *field_;
@@ -84,7 +85,8 @@ void Surface::for_cells(const Bounds& box, const F& found) const {
   };
   const double width = (f.columns - 1) * f.spacing_x, depth = (f.rows - 1) * f.spacing_y;
   if (box.upper.x < 0.0 || box.upper.y < 0.0 || box.lower.x > width || box.lower.y > depth) return;
-  // What touches a line between two cells is in both: a cell's share of rounding is added.
+  // A box that touches a line between two cells overlaps both: adds a rounding tolerance relative
+  // to a cell.
   const double ex = 1e-9 * f.spacing_x, ey = 1e-9 * f.spacing_y;
   const std::uint32_t i0 = cell(box.lower.x - ex, f.spacing_x, f.columns),
                       i1 = cell(box.upper.x + ex, f.spacing_x, f.columns),
@@ -106,7 +108,7 @@ void Surface::for_cells(const Bounds& box, const F& found) const {
   }
 }
 
-// Row after row of cells across the axis along which the sweep goes farther.
+// Visits row after row of cells, along the axis of the larger displacement.
 template <class F>
 void Surface::cast_field(const Sweep& sweep, double limit, const F& hit) const {
   const HeightData& f = *field_;
@@ -136,7 +138,7 @@ void Surface::cast_field(const Sweep& sweep, double limit, const F& hit) const {
     }
     if (in > limit) return;
     Bounds box = box_between(in, out);
-    box.lower[axis] = from + 0.5 * spacing;  // this row alone
+    box.lower[axis] = from + 0.5 * spacing;  // only this row
     box.upper[axis] = from + 0.5 * spacing;
     for_cells(box, [&](std::uint32_t id) {
       if (limit >= in) limit = hit(id, in);
@@ -159,7 +161,8 @@ void Surface::cast(const Sweep& sweep, double limit, CastScratch& scratch, const
   }
 }
 
-// Of all cells within a distance, of twice that, and so on: a cell may be told several times.
+// Searches all cells within a distance, then within twice that, and so on: reports a cell several
+// times.
 template <class F>
 void Surface::nearest_of_field(const Bounds& box, double limit, const F& near) const {
   const HeightData& f = *field_;

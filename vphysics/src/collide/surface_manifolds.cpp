@@ -1,5 +1,5 @@
-// Each triangle near the shape is asked for itself; then those contacts are left out that another
-// one's way out takes away as well, and those of one normal are put together.
+// Tests each triangle near the shape on its own. Then removes contacts that the exit of another
+// contact resolves too, and merges contacts with the same normal.
 #include "collide/surface_manifolds.h"
 
 #include <algorithm>
@@ -15,21 +15,20 @@ namespace {
 
 using Contact = ManifoldScratch::Contact;
 
-// Normals of one manifold: within 2 degrees.
+// Normals of one manifold: the cosine of 2 degrees.
 constexpr double kSameNormal = 0.99939;
-// Points nearer than that [share of the shape's size] are one, and as little is no depth.
+// Points closer than this [fraction of the shape's size] are one; a smaller depth counts as zero.
 constexpr double kSamePoint = 1e-6;
-// Contacts are close by whose deepest points are no farther apart than so many depths.
+// Contacts are close if their deepest points are at most this many depths apart.
 constexpr double kNear = 4.0;
-// How much farther a point must lie out [share] to be taken for another.
+// The factor by which a point must be farther out to replace another.
 constexpr double kClearly = 1.0 + 1e-6;
-// Less than this [share of the shape's size] below the others, a point is level with them.
+// A point less than this [fraction of the shape's size] deeper than the others is level with them.
 constexpr double kLevel = 5e-4;
-// Of one cluster: four points each.
+// The maximum number of manifolds of a cluster, with four points each.
 constexpr int kMaxManifoldsOfCluster = 4;
 
-// An edge or a corner that is felt is found by each triangle that has it: the one that needs less
-// counts.
+// Every triangle at an active edge or corner finds it: the contact with the least depth is kept.
 void add_contact(const Contact& contact, std::vector<Contact>& contacts) {
   if (contact.contact.active_part != TriangleContact::kFace) {
     for (Contact& c : contacts) {
@@ -67,9 +66,8 @@ void find_contacts(const Surface& surface, const Geometry& shape, const SE3& T, 
   }
 }
 
-// Of what overlaps, leaves out those contacts that a shorter way out, told by another contact close
-// by, takes away as well: near an edge or a corner, triangles that do not have it know of longer
-// ways only.
+// For overlaps, removes contacts that a shorter exit of a close contact resolves too: near an edge
+// or a corner, triangles that do not contain it find only longer exits.
 class Pruning {
  public:
   Pruning(const Surface& surface, const Geometry& shape, const SE3& T, double size,
@@ -119,15 +117,16 @@ bool Pruning::resolves(const Contact& shorter, const Contact& longer) const {
   if (l.active_part != TriangleContact::kFace) {
     return !overlaps_triangle(surface_.triangle(longer.triangle), shape_, moved);
   }
-  // A face goes on over the edges that are not felt: none of its triangles may be left.
+  // A face continues over inactive edges: none of the triangles in other directions may still
+  // overlap.
   return std::none_of(scratch_.triangles.begin(), scratch_.triangles.end(), [&](std::uint32_t id) {
     SurfaceTriangle t = surface_.triangle(id);
     return std::fabs(dot(t.normal, l.normal)) > kSameNormal && overlaps_triangle(t, shape_, moved);
   });
 }
 
-// Each contact to the first cluster with nearly its normal; past the last cluster, to that which
-// comes nearest.
+// Assigns each contact to the first cluster with nearly its normal or, after the last cluster, to
+// the one with the closest normal.
 std::uint32_t find_clusters(std::vector<Contact>& contacts, bool& crowded) {
   Vec3 normals[kMaxClusters];
   std::uint32_t count = 0;
@@ -146,9 +145,9 @@ std::uint32_t find_clusters(std::vector<Contact>& contacts, bool& crowded) {
   return count;
 }
 
-// The points of a cluster. A few of them stand for all: those between them that are no deeper come
-// no nearer than they do, however the shape tilts. On a crest, whose facets are of one cluster, the
-// points of the crest are deeper than those on its sides: a second manifold has them.
+// The points of a cluster. A few of them represent all: points between them that are no deeper stay
+// less deep, however the shape tilts. On a crest, whose facets are in one cluster, the points on
+// the crest are deeper than those on its sides: a second manifold contains them.
 class Cluster {
  public:
   Cluster(ManifoldScratch& scratch, std::uint32_t cluster, double size)
@@ -156,11 +155,11 @@ class Cluster {
     scratch_.converged.resize(scratch_.points.size());
   }
 
-  // Appends one manifold after the other, until all points are there or stood for.
+  // Appends manifolds until all points are contained or represented.
   void reduce(std::vector<SubManifold>& manifolds);
 
  private:
-  // Of the points that are left.
+  // Calls f for the remaining points.
   template <class F>
   void for_each(const F& f) const {
     for (const Contact& c : scratch_.contacts) {
@@ -171,9 +170,9 @@ class Cluster {
       }
     }
   }
-  // Four that span the most, and the deepest.
+  // Four points of maximum span, including the deepest.
   SubManifold reduced() const;
-  // Returns whether any point is left.
+  // Returns whether any point remains.
   bool settle(const Manifold& manifold);
   const ManifoldPoint* farthest_from(const Vec3& from) const;
   void span_farthest(const ManifoldPoint& deepest, const Vec3& normal,
@@ -192,19 +191,19 @@ void Cluster::reduce(std::vector<SubManifold>& manifolds) {
   }
 }
 
-// The plane of a manifold's points, seen along the normal.
+// The component perpendicular to the manifold's normal.
 Vec3 tangential(const Manifold& m, const Vec3& v) {
   return v - dot(v, m.normal) * m.normal;
 }
 
-// The separation at a place in the plane of three of a manifold's points.
+// The separation at a position in the plane of three of a manifold's points.
 struct InPlane {
-  bool between;  // the place is between them
+  bool between;  // the position is in their triangle
   double separation;
 };
 std::optional<InPlane> in_plane_of(const Manifold& m, const int (&corner)[3], const Vec3& at,
                                    double same) {
-  double area[3], sum = 0.0;  // of the triangles that the place makes with two of them
+  double area[3], sum = 0.0;  // of the triangles that the position forms with two of them
   for (int k = 0; k < 3; ++k) {
     const Vec3 a = m.points[corner[(k + 1) % 3]].position - at;
     const Vec3 b = m.points[corner[(k + 2) % 3]].position - at;
@@ -221,7 +220,7 @@ std::optional<InPlane> in_plane_of(const Manifold& m, const int (&corner)[3], co
   return found;
 }
 
-// The separation at the place nearest to it on the lines between a manifold's points.
+// The separation at the closest position on the segments between a manifold's points.
 double beside_all(const Manifold& m, const Vec3& at) {
   double separation = m.points[0].separation, smallest = kFar;
   for (int i = 0; i < m.count; ++i) {
@@ -239,8 +238,9 @@ double beside_all(const Manifold& m, const Vec3& at) {
   return separation;
 }
 
-// The separation that a manifold's points stand for at a place: between them the lowest, since it
-// is held up there; beside them that of the highest plane through three of them.
+// The separation that a manifold's points represent at a position. Between them it is the lowest
+// plane through three of them, since the shape is supported there; beside them it is the highest
+// such plane.
 double stood_for_at(const Manifold& m, const Vec3& at, double same) {
   constexpr int kTriangles[4][3] = {{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3}};
   std::optional<double> between, beside;
@@ -282,8 +282,8 @@ const ManifoldPoint* Cluster::farthest_from(const Vec3& from) const {
   return best;
 }
 
-// The farthest from the deepest, the farthest from that, and the farthest to either side of the
-// line between these.
+// The farthest from the deepest point, the farthest from that one, and the farthest on either side
+// of the line between them.
 void Cluster::span_farthest(const ManifoldPoint& deepest, const Vec3& normal,
                             const ManifoldPoint* (&chosen)[4]) const {
   chosen[0] = farthest_from(deepest.position);
@@ -313,7 +313,7 @@ SubManifold Cluster::reduced() const {
   });
   const ManifoldPoint* chosen[4] = {};
   span_farthest(*deepest, found.manifold.normal, chosen);
-  const ManifoldPoint** nearest = nullptr;  // to the deepest: gives way to it
+  const ManifoldPoint** nearest = nullptr;  // the closest to the deepest: replaced by it
   double smallest = 0.0;
   bool told = false;
   for (const ManifoldPoint*& p : chosen) {

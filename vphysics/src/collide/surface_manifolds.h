@@ -1,11 +1,12 @@
-// Manifolds of a surface and one convex shape.
+// Manifolds between a surface and a convex shape.
 #pragma once
 
 #include "collide/manifolds.h"
 
 namespace vp::collide {
 
-// Appends them in the surface's frame, normals from the surface to the shape; sub_a is a triangle.
+// Appends manifolds in the surface's frame, with normals from the surface to the shape; sub_a is a
+// triangle.
 void collide_surface(const Surface& surface, const Geometry& shape, const SE3& T_surface_shape,
                      double margin, ManifoldScratch& scratch, std::vector<SubManifold>& manifolds);
 

@@ -6,13 +6,13 @@
 // and with |c''| <= A on the whole interval
 //     f(t+s)    >= f + f' s - A s^2 / 2,        f' = n . c'(t).
 // The smallest positive root of the right side is a step that cannot pass the impact. Unlike a
-// bound on speed alone this needs no more steps for a grazing ball, nor for a man who turns at 150
-// rad/s.
+// bound on the speed alone it needs no extra steps for a grazing ball, nor for a body that rotates
+// at 150 rad/s.
 //
-// A: with u = v_sphere - v_other - w x d (d from x of the other body to the centre),
-// c' = R^T u and c'' = R^T (u' - w x u), |u'| <= |w_s|^2 rho + |w| |v_rel|, where rho is the
-// centre's distance from the point its own body turns about. Sources: Mirtich 1996, section 2.3
-// (advancement); the second-order bound is derived here.
+// A: with u = v_sphere - v_other - w x d (d from x of the other body to the centre), c' = R^T u and
+// c'' = R^T (u' - w x u), |u'| <= |w_s|^2 rho + |w| |v_rel|, where rho is the centre's distance
+// from its own body's centre of rotation. Sources: Mirtich 1996, section 2.3 (advancement); the
+// second-order bound is derived here.
 #include "collide/sweep.h"
 
 #include <algorithm>
@@ -33,7 +33,7 @@ bool turns(const Vec3& w) {
 
 struct Local {
   Vec3 centre;    // in the frame of the shape
-  Vec3 velocity;  // the same frame
+  Vec3 velocity;  // in the frame of the shape
 };
 
 Local local_at(const SweepQuery& q, double t) {
@@ -58,15 +58,15 @@ double acceleration_bound(const SweepQuery& q) {
   return ws * ws * rho + w * (2.0 * v + w * distance_bound);
 }
 
-// Smallest positive s with f + df s - A s^2 / 2 = 0, f > 0.
+// The smallest positive s with f + df s - A s^2 / 2 = 0, f > 0.
 double safe_step(double f, double df, double A) {
   const double root = std::sqrt(df * df + 2.0 * A * f);
   if (df < 0.0) return 2.0 * f / (root - df);
   return A > 0.0 ? (df + root) / A : std::numeric_limits<double>::infinity();
 }
 
-// The first time at which distance(centre in the shape's frame) has come down to target and radius;
-// distance is a convex function, as signed_distance.
+// The first time at which distance(centre in the shape's frame) has decreased to target plus
+// radius. distance is a convex function, like signed_distance.
 template <class F>
 double first_time(const SweepQuery& q, double A, double target, const F& distance) {
   double t = 0.0;
@@ -78,15 +78,15 @@ double first_time(const SweepQuery& q, double A, double target, const F& distanc
     t += safe_step(f, dot(d.normal, c.velocity), A);
     if (!(t < q.duration)) return -1.0;
   }
-  return t;  // not there yet, but safe: the caller advances to t and asks again
+  return t;  // not reached, but safe: the caller advances to t and repeats the query
 }
 
 double earlier(double a, double b) {
   return a < 0.0 || b < 0.0 ? std::max(a, b) : std::min(a, b);
 }
 
-// Of all places of the sphere, in the shape's frame: its centre leaves the chord by no more than
-// A h^2 / 8.
+// Bounds of all positions of the sphere, in the shape's frame: its centre deviates from the chord
+// by at most A h^2 / 8.
 Bounds bounds_of_sweep(const SweepQuery& q, double A, double target) {
   const Vec3 from = local_at(q, 0.0).centre, to = local_at(q, q.duration).centre;
   const double around = q.radius + std::max(target, 0.0) + q.tolerance;
@@ -113,9 +113,8 @@ SignedDistance distance_to_segment(const Vec3& a, const Vec3& b, const Vec3& p) 
   return {d, d > 0.0 ? (1.0 / d) * offset : Vec3{0, 0, 1}};
 }
 
-// A triangle's face is met when its plane is, an edge that can be felt when its segment is, if that
-// is then what can be felt of the triangle. What that leaves out, neighbours have, who are met no
-// later.
+// A triangle's face is hit when its plane is, an active edge when its segment is, if that part is
+// then the active one of the triangle. Neighbours, which are hit no later, cover the rest.
 double time_to_triangle(const SweepQuery& q, double A, double target, const Surface& surface,
                         const SurfaceTriangle& t) {
   const auto active = [&](double time) {

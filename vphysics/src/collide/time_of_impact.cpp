@@ -1,26 +1,25 @@
-// Conservative advancement of second order, for shapes that turn.
+// Conservative advancement of second order, for rotating shapes.
 //
-// A separating direction n bounds the separation from below by the gap g between the projections on
-// it. Let n turn at a rate O that is nought or that of one of the bodies, so that a face's normal
-// stays one. A point r of a body, from the point about which that turns at w, then changes its
-// projection as
+// A separating direction n bounds the separation from below by the separation g of the projections
+// on it. Let n rotate at a rate O that is zero or that of one of the bodies, so that it can follow
+// a face's normal. The projection of a point r of a body, relative to the body's centre of
+// rotation, with the angular velocity w, changes as
 //     d/ds   n . r = r . (n x (w - O)),
 //     d^2/ds^2     = r . (w x m - (w - O) x (O x n)),      m = (w - O) x n,
-// which is no more than |w - O| (|w| + |O x n|) |r|, or |w| |w x n| |r| if O = 0; and the way D
-// from the one turning point to the other, which changes at v,
+// which is at most |w - O| (|w| + |O x n|) |r|, or |w| |w x n| |r| if O = 0. The displacement D
+// between the centres of rotation, which changes at v, gives
 //     d/ds   n . D = n . v + D . (O x n),     |d^2/ds^2| <= |O x n| (|O| |D| + 2 |v|).
 // With A the sum of these bounds over the bodies and D, and h the support functions of the bodies
-// from their turning points,
-//     g(s) >= n . D + s (n . v + D . (O x n)) - h_b(-n - s n x (w_b - O)) - h_a(n + s n x (w_a -
-//     O))
-//             - A s^2 / 2.
-// The right side is concave, so that whatever lies before a place where it is above the target is
-// as well. It is found by support functions alone; GJK gives the next n. Where the direction is the
-// right one, the error is of second order in s: a rod at 150 rad/s needs a handful of steps.
+// about their centres of rotation,
+//     g(s) >= n . D + s (n . v + D . (O x n)) - h_b(-n - s n x (w_b - O))
+//             - h_a(n + s n x (w_a - O)) - A s^2 / 2.
+// The right side is concave: if it is above the target at some s, it is so at all earlier ones. It
+// needs support functions only; GJK gives the next n. If the direction is right, the error is of
+// second order in s: a rod at 150 rad/s needs a handful of steps.
 //
 // Sources: Mirtich, Impulse-based Dynamic Simulation, 1996, section 2.3 (advancement); Zhang, Lee,
 // Kim, Interactive continuous collision detection for non-convex polyhedra, 2006 (along
-// directions); the bound of second order is derived here.
+// directions); the second-order bound is derived here.
 #include "collide/time_of_impact.h"
 
 #include <algorithm>
@@ -32,27 +31,29 @@ namespace vp::collide {
 namespace {
 
 constexpr int kMaxAdvances = 200;
-// Of the tolerance: where steps aim at, and how much less will do.
+// Fractions of the tolerance: the aim of a step, and the slack below it.
 constexpr double kAim = 0.5, kSlack = 0.25;
 
 bool is_turning(const Vec3& w) {
   return w.x != 0.0 || w.y != 0.0 || w.z != 0.0;
 }
 
-// Seen from where the first shape was at time 0, so that shapes far from the origin lose nothing.
+// Relative to the first shape's position at time 0, so that shapes far from the origin lose no
+// precision.
 MovingShape shifted(const MovingShape& m, const Vec3& origin) {
   MovingShape s{m.shape, SE3(m.T.rotation(), m.T.position() - origin), m.motion};
   s.motion.x = m.motion.x - origin;
-  // What does not turn may as well do so about its middle, from which it reaches least far.
+  // For a shape that does not rotate, the core's centre serves as the centre of rotation: it gives
+  // the least bounding radius.
   if (!is_turning(m.motion.w)) s.motion.x = s.T * core_centre(*m.shape);
   return s;
 }
 
-// A shape at some time, from the point about which it turns.
+// A shape at some time, relative to its centre of rotation.
 struct TurningShape {
   const Geometry* shape;
   Mat3 R;
-  Vec3 arm;  // to its frame's origin
+  Vec3 arm;  // to the origin of its frame
   Vec3 w;
   double rate, reach;
   mutable int hint = 0;
@@ -77,7 +78,7 @@ struct TurningShape {
 
 struct Pair {
   TurningShape a, b;
-  Vec3 D, v;  // from a's turning point to b's, and its change
+  Vec3 D, v;  // from a's centre of rotation to b's, and its derivative
   double radii;
 
   Pair(const ImpactQuery& q, double t)
@@ -88,7 +89,7 @@ struct Pair {
         radii(core_radius(*q.a.shape) + core_radius(*q.b.shape)) {}
 };
 
-// What is above the gap's lower bound, along n turning at a rate.
+// The lower bound of the separation along n, which rotates at a rate.
 class SeparationBound {
  public:
   SeparationBound(const Pair& pair, const Vec3& n, const Vec3& rate, double horizon)
@@ -117,8 +118,8 @@ class SeparationBound {
                 dot(on_a, towards_b),
             derivative_ - bend_ * s + dot(on_b, angular_b_) - dot(on_a, angular_a_)};
   }
-  // A time not above the horizon up to which the gap stays above goal - slack. Preconditions: now
-  // it is above goal.
+  // A time, at most the horizon, up to which the bound stays above goal - slack. Precondition: it
+  // is above goal now.
   double safe_time(double goal, double slack, double horizon) const;
 
  private:
@@ -130,20 +131,20 @@ class SeparationBound {
 double SeparationBound::safe_time(double goal, double slack, double horizon) const {
   double left = 0.0;
   Value at_left = at(0.0);
-  // The parabola of the bodies' foremost points of now lies above the bound: where it comes down to
-  // the goal is an end, and the answer as long as these stay foremost.
+  // The parabola of the bodies' current support points is above the bound. The time at which it
+  // reaches the goal is an upper limit, and the answer as long as these stay the support points.
   const double f = at_left.separation - goal, b = at_left.slope;
-  if (!(f > 0.0)) return 0.0;  // GJK's rounding
+  if (!(f > 0.0)) return 0.0;  // rounding errors of GJK
   const double root = std::sqrt(b * b + 2.0 * bend_ * f);
   const double down = b < 0.0 ? 2.0 * f / (root - b) : bend_ > 0.0 ? (b + root) / bend_ : horizon;
   double right = std::min(down, horizon);
   Value at_right = at(right);
   constexpr int kMaxIterations = 12;
-  constexpr double kNear = 0.02;  // share of the step
+  constexpr double kNear = 0.02;  // fraction of the step
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     if (at_right.separation >= goal - slack) return right;
     if (right - left <= kNear * right) break;
-    // A concave function lies above its chord and below its tangent.
+    // A concave function is above its chord and below its tangent.
     const double chord = left + (right - left) * (at_left.separation - goal) /
                                     (at_left.separation - at_right.separation);
     left = std::clamp(chord, left, right);
@@ -161,7 +162,7 @@ double longest_step(const Pair& pair, const Vec3& n, double goal, double slack, 
   const auto rotation_at = [&](const Vec3& rate) {
     step = std::max(step, SeparationBound(pair, n, rate, horizon).safe_time(goal, slack, horizon));
   };
-  // A half-space has no support but along its normal.
+  // A half-space has a support point only along its normal.
   if (pair.a.shape->kind == Kind::half_space) {
     rotation_at(pair.a.w);
   } else if (pair.b.shape->kind == Kind::half_space) {
@@ -199,7 +200,7 @@ double time_of_impact(const ImpactQuery& query, double target, PairCache& cache,
     t += step;
     if (!(t < q.duration) || t > latest) return -1.0;
   }
-  return t;  // not there yet, but safe: who advances to t may ask again
+  return t;  // not reached, but safe: the caller may advance to t and repeat the query
 }
 
 }  // namespace vp::collide

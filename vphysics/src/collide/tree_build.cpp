@@ -1,14 +1,14 @@
-// Building a tree of bounds from the top: each node's items are cut in two until there are eight
-// parts, the largest first; a part that fits into one node is not cut further.
+// Builds a bounding tree top down: each node's items are divided in two until there are eight
+// parts, the largest part first; a part that fits into one node is not divided further.
 //
-// Quick: the items are sorted by Morton codes of their centres (the bits of x, y and z by turns),
-// and cut where the highest bit changes that is not the same for all. The codes' grid spans what
-// the middle half of a sample spans, four times, so that one box far away does not make it coarse;
-// items of one cell are cut in the middle of their centres.
+// Quick: the items are sorted by Morton codes of their centres (the bits of x, y and z
+// interleaved), and divided at the highest bit that is not the same for all. The grid of the codes
+// spans four times the middle half of a sample, so that one remote box does not make it coarse.
+// Items of one cell are divided at the middle of their centres.
 //
-// Careful: of the planes between kBins equal bins of the centres, along the axis on which these are
-// spread most, the one with the least (area left * count left + area right * count right). Source:
-// Wald 2007, section 3.
+// Careful: uses the planes between kBins equal bins of the centres, along the axis of their largest
+// extent, and takes the one with the minimum of (area left * count left + area right * count
+// right). Source: Wald 2007, section 3.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -20,10 +20,10 @@ namespace vp::collide {
 namespace {
 
 constexpr int kBins = 16;
-constexpr int kCodeBits = 12;         // an axis
-constexpr std::size_t kSample = 128;  // centres that the grid is laid by
-// Deeper than this, cuts are made through the median, which ends within as many levels as the
-// number of items has bits. No scene but one made for it comes here.
+constexpr int kCodeBits = 12;         // per axis
+constexpr std::size_t kSample = 128;  // centres that determine the grid
+// Below this depth the items are divided at the median, which ends within as many levels as the
+// number of items has bits. Only an adversarial scene reaches it.
 constexpr unsigned kBinnedDepth = 24;
 
 // The lowest `kCodeBits` bits of x with two zeros before each.
@@ -74,7 +74,7 @@ struct Bin {
   }
 };
 
-// The last bin of the left side.
+// The last bin of the left side at the cheapest plane.
 int cheapest_plane(const std::array<Bin, kBins>& bins) {
   std::array<float, kBins> cost_right{};
   Bin right, left;
@@ -129,7 +129,7 @@ struct Grid {
   }
 };
 
-// Of items sorted by code: the number of those in which the highest bit that differs is 0.
+// For items sorted by code: the number of those whose highest differing bit is 0.
 std::size_t cut_by_code(std::span<const TreeItem> items) {
   const std::uint64_t last = items.back().code;
   const std::uint64_t high = std::bit_floor(items.front().code ^ last);
@@ -138,7 +138,7 @@ std::size_t cut_by_code(std::span<const TreeItem> items) {
                                   items.begin());
 }
 
-// Puts those first of which it is true; how many they are.
+// Moves the items for which is_left is true to the front and returns their number.
 template <class F>
 std::size_t divide(std::span<TreeItem> items, const F& is_left) {
   std::size_t left = 0, right = items.size();
@@ -152,20 +152,20 @@ std::size_t divide(std::span<TreeItem> items, const F& is_left) {
   return left;
 }
 
-// The number of items that come to the left; neither side is empty.
+// Divides the items and returns the number on the left; neither side is empty.
 std::size_t cut(std::span<TreeItem> items, unsigned depth, bool quick) {
   if (quick && items.front().code != items.back().code) return cut_by_code(items);
   const FloatBounds centres = bounds_of_centres(items);
   const int axis = widest(centres);
   const float from = centres.lower[axis], width = centres.upper[axis] - from;
   const float scale = (static_cast<float>(kBins) * 0.99999f) / width;
-  if (!(width > 0.0f) || !(scale < 1e30f)) return items.size() / 2;  // all in one place
+  if (!(width > 0.0f) || !(scale < 1e30f)) return items.size() / 2;  // all at one position
   if (depth > kBinnedDepth) return median_cut(items, axis);
   if (quick) {
     const float centre = from + 0.5f * width;
     const auto is_left = [&](const TreeItem& i) { return doubled_centre(i)[axis] < centre; };
     const std::size_t left = divide(items, is_left);
-    // The middle of two neighbouring numbers is one of them.
+    // The middle of two adjacent floats is one of them.
     return left > 0 && left < items.size() ? left : items.size() / 2;
   }
   const auto bin_of = [&](const TreeItem& i) {
@@ -177,7 +177,7 @@ std::size_t cut(std::span<TreeItem> items, unsigned depth, bool quick) {
     bin.bounds = merged(bin.bounds, i.bounds);
     bin.count += 1.0f;
   }
-  // The lowest and the highest centre are in the first and the last bin, so both sides have some.
+  // The lowest and the highest centre are in the first and the last bin, so neither side is empty.
   const int plane = cheapest_plane(bins);
   return divide(items, [&](const TreeItem& i) { return bin_of(i) <= plane; });
 }
@@ -220,7 +220,7 @@ FloatBounds BoundingTree::build_node(std::span<TreeItem> items, std::uint32_t no
 
 std::span<TreeItem> BoundingTree::sort_by_code(std::span<TreeItem> items) {
   const Grid grid(items);
-  // The code above the number of the item: one word to sort.
+  // One word to sort: the code above the item's index.
   constexpr int kIndexBits = 64 - 3 * kCodeBits;
   keys_.resize(items.size());
   for (std::size_t i = 0; i < items.size(); ++i) {

@@ -1,8 +1,9 @@
-// Across an edge all ways out lie in the plane across it, where the edge is a point and the shape
-// another convex one. The gap along a direction d is d . s - what the point has, s the shape's
-// support point against d. Between two directions with support points s1 and s2 it is at most the
-// lesser of d . s1 and d . s2, hence no more than along the d that is across s1 - s2: the arc is
-// cut there until that bound is reached or not worth it.
+// All exit directions across an edge are perpendicular to it. In that plane the edge is a point and
+// the shape a convex figure. The separation along a direction d is d . s minus the point's
+// projection, with s the shape's support point against d. Between two directions with support
+// points s1 and s2 it is at most the smaller of d . s1 and d . s2, hence at most the value along
+// the d perpendicular to s1 - s2. The arc is divided there until that bound is reached or not worth
+// a division.
 #include "collide/triangle_axis.h"
 
 #include <cmath>
@@ -10,11 +11,11 @@
 namespace vp::collide {
 namespace {
 
-// Bounds this near to one another [share of the pair's reach] are one.
+// Convergence: the maximum difference of the bounds [fraction of the pair's extent].
 constexpr double kClosed = 1e-9;
 constexpr int kMaxCuts = 64;
 
-// In the plane across an edge: outwards of the triangle, and up along its normal.
+// In the plane perpendicular to an edge: outward from the triangle, and up along its normal.
 struct Flat {
   double out, up;
 };
@@ -24,11 +25,11 @@ double dot(const Flat& a, const Flat& b) {
 
 class ArcSearch {
  public:
-  // at: a point of the edge; outwards, up: unit vectors.
+  // at: a point of the edge; outward, up: unit vectors.
   ArcSearch(const CorePair& pair, const Vec3& at, const Vec3& outward, const Vec3& up)
       : pair_(pair), at_(at), outward_(outward), up_(up), closed_(kClosed * pair.extent) {}
 
-  // From the one direction to the other, less than half a turn apart.
+  // Searches the directions from one to the other, less than half a turn apart.
   void search(const Flat& from, const Flat& to);
 
   double best_separation = -1e300;
@@ -63,7 +64,7 @@ void ArcSearch::search(const Flat& from, const Flat& to) {
     const Flat chord{arc.s_to.out - arc.s_from.out, arc.s_to.up - arc.s_from.up};
     const double length = std::sqrt(dot(chord, chord));
     if (length <= closed_) continue;
-    // Across the chord, on the side of the arc.
+    // Perpendicular to the chord, on the side of the arc.
     Flat d{chord.up / length, -chord.out / length};
     if (dot(d, arc.from) + dot(d, arc.to) < 0.0) d = {-d.out, -d.up};
     const auto cross_2d = [](const Flat& a, const Flat& b) { return a.out * b.up - a.up * b.out; };
@@ -83,7 +84,7 @@ void try_edge(const SurfaceTriangle& t, const Vec3 p[3], const CorePair& pair, i
               TriangleAxis& best) {
   const Vec3 along = p[(e + 1) % 3] - p[e];
   const Vec3 c = cross(along, t.normal), outward = (1.0 / norm(c)) * c;
-  Flat last{1.0, 0.0};  // at a border
+  Flat last{1.0, 0.0};  // of a border
   if (t.has_opposite[e]) {
     const Vec3 offset = t.opposite[e] - t.p[e];
     const double out = vp::dot(outward, offset), up = vp::dot(t.normal, offset);
@@ -98,7 +99,7 @@ void try_edge(const SurfaceTriangle& t, const Vec3 p[3], const CorePair& pair, i
           {TrianglePart::edge, e}};
 }
 
-// A corner inside the shape leaves it where its surface is nearest.
+// The exit of a corner inside the shape is towards the closest point of the shape's surface.
 void try_corner(const Surface& surface, const SurfaceTriangle& t, const Vec3 p[3],
                 const CorePair& pair, int i, TriangleAxis& best) {
   if (!is_active_edge(t, i) && !is_active_edge(t, (i + 2) % 3)) return;

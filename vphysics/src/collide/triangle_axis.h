@@ -1,4 +1,4 @@
-// Along which way out a convex shape is least deep in a triangle of a surface.
+// The exit axis of minimum penetration of a convex shape from a triangle of a surface.
 #pragma once
 
 #include "collide/gjk.h"
@@ -7,14 +7,14 @@
 namespace vp::collide {
 
 struct TriangleAxis {
-  double separation;  // of the cores along the normal: less than 0, they overlap
+  double separation;  // of the cores along the normal: negative if they overlap
   Vec3 normal;        // unit, from the triangle to the shape
   TrianglePart part;
 };
 
-// Of the ways out that the surface allows: over the face, across the edges that can be felt, each
-// from the one face's normal to the other's, and over their corners. The pair is of the triangle,
-// in the frame of p with its axes along the surface's, and the shape.
+// Considers the exit directions that the surface allows: along the face normal, across active
+// edges, each from the one face's normal to the other's, and at their corners. The pair is the
+// triangle, in the frame of p with its axes along the surface's, and the shape.
 TriangleAxis best_exit_axis(const Surface& surface, const SurfaceTriangle& triangle,
                             const Vec3 p[3], const CorePair& pair);
 

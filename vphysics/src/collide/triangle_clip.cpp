@@ -6,7 +6,7 @@
 namespace vp::collide {
 namespace {
 
-// So near to a side of the triangle [share of the size], a corner is on it.
+// A corner this close to a side of the triangle [fraction of the size] is on it.
 constexpr double kOnSide = 1e-6;
 
 struct TrimCorner {
@@ -16,7 +16,7 @@ struct TrimCorner {
 };
 constexpr std::uint32_t kTriangleSide = 1u << 15, kCrossed = 1u << 19, kCornerOfTriangle = 1u << 20;
 
-// Each side adds one corner at most.
+// Each side adds at most one corner.
 constexpr int kMaxTrimmed = kMaxCorners + 3;
 
 struct Trimmed {
@@ -37,7 +37,7 @@ SidePlane side(const ClipQuery& q, int k) {
   return {(1.0 / norm(c)) * c, q.p[k]};
 }
 
-// Of an edge of the feature with side k; of side j with side k, their corner.
+// The name of the crossing of a feature's edge and side k; or of the corner between sides j and k.
 std::uint32_t crossing(std::uint32_t edge, int k) {
   if (edge < kTriangleSide) return kCrossed | edge << 2 | static_cast<std::uint32_t>(k);
   const int j = static_cast<int>(edge - kTriangleSide);
@@ -66,7 +66,7 @@ void trim(const Trimmed& in, const SidePlane& plane, int k, double on, Trimmed& 
   }
 }
 
-// A segment has no inside: its ends move.
+// A segment has no interior: its ends move.
 void trim_segment(Trimmed& s, const SidePlane& plane, int k, double on) {
   const double d0 = plane.above(s.corners[0].p), d1 = plane.above(s.corners[1].p);
   if (d0 > on && d1 > on) {

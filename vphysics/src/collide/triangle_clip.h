@@ -1,4 +1,4 @@
-// What of a shape's feature lies over a triangle.
+// Clips a shape's feature to a triangle.
 #pragma once
 
 #include <vector>
@@ -8,20 +8,20 @@
 
 namespace vp::collide {
 
-// The triangle p with the normal n, unit; the feature that the shape has against n, in the same
-// frame; the radius that its core is swept by.
+// The triangle p with the unit normal n; the shape's feature that faces -n, in the same frame; the
+// radius of the sphere that sweeps its core.
 struct ClipQuery {
   const Vec3* p;
   Vec3 n;
   const Feature& feature;
   double radius;
-  double margin;  // corners that lie higher are left out
-  double size;    // by which "on an edge" is measured
+  double margin;  // rejects corners that are higher
+  double size;    // scale of the tolerance for points on an edge
 };
 
-// Appends the corners of what lies over the triangle, midway between the surfaces, in order around.
-// Names: of the feature's corner, of its edge and the triangle's that cross, of the triangle's
-// corner; below 2^21.
+// Appends the corners of the part of the feature over the triangle, midway between the surfaces, in
+// order around it. Names are those of the feature's corner, of the crossing of its edge with the
+// triangle's, or of the triangle's corner; below 2^21.
 void append_clipped(const ClipQuery& query, std::vector<ManifoldPoint>& points);
 
 }  // namespace vp::collide

@@ -12,10 +12,10 @@
 namespace vp::collide {
 namespace {
 
-// Nearer than this [m] to a triangle, the direction to a centre is rounding noise.
+// Below this distance [m] to a triangle, the direction to a centre is rounding noise.
 constexpr double kNoDirection = 1e-12;
-// As little beside a triangle [share of its size], a centre is over it: over an edge that cannot be
-// felt, rounding might else put it beside both neighbours.
+// A centre at most this far beside a triangle [fraction of its size] is over it: at an inactive
+// edge, rounding might otherwise put it beside both neighbours.
 constexpr double kBeside = 1e-9;
 
 std::uint64_t active_part(const SurfaceTriangle& t, const TrianglePart& part) {
@@ -33,7 +33,7 @@ std::uint32_t part_name(const SurfaceTriangle& t, const TrianglePart& part, std:
                     feature);
 }
 
-// What of a triangle is nearest to a sphere's centre.
+// The part of a triangle that is closest to a sphere's centre.
 struct NearSphere {
   Vec3 point, normal;
   double distance;
@@ -66,8 +66,8 @@ void collide_sphere(const Surface& surface, const SurfaceTriangle& t, const Vec3
                     part_name(t, contact.part, 0)});
 }
 
-// The triangle's frame has its axes along the surface's, and its first corner as origin, so that
-// triangles far from the surface's origin lose nothing.
+// The triangle's frame has the surface's axes, with the first corner as its origin, so that
+// triangles far from the surface's origin lose no precision.
 class TriangleCollider {
  public:
   TriangleCollider(const Surface& surface, const SurfaceTriangle& t, const Geometry& shape,
@@ -132,10 +132,10 @@ void TriangleCollider::find(TriangleContact& contact) {
   along(best, part, nearest_known, contact);
 }
 
-// Points of both where they touch once the shape is moved out: those nearest to one another when it
-// is moved a little farther. False: its foremost point is beside the triangle.
+// The points where the two touch once the shape has exited: the closest points after a slightly
+// larger move. Returns false if its foremost point is beside the triangle.
 bool TriangleCollider::find_witness(BestAxis& axis) const {
-  constexpr double kFarther = 1e-3;  // share of the pair's size
+  constexpr double kFarther = 1e-3;  // fraction of the pair's size
   const double farther = kFarther * pair_.size;
   const SE3& T = pair_.T_a_b;
   const Vec3 shift = (farther - axis.separation) * axis.normal;
@@ -147,7 +147,7 @@ bool TriangleCollider::find_witness(BestAxis& axis) const {
   return true;
 }
 
-// Whether the points since the first are as deep as the cores' gap says.
+// Whether the points from `first` on are as deep as the cores' separation.
 bool TriangleCollider::tells(std::size_t first, double separation) const {
   Manifold deepest;
   for (std::size_t i = first; i < points_.size(); ++i) {
@@ -158,7 +158,7 @@ bool TriangleCollider::tells(std::size_t first, double separation) const {
   return deepest.count > 0 && query_.tells(deepest, separation);
 }
 
-// What of the shape lies over the triangle.
+// Adds the part of the shape's feature over the triangle.
 void TriangleCollider::along_face(double separation, TriangleContact& contact) {
   Feature other;
   find_feature(pair_.b, pair_.T_a_b, -pair_.T_a_b.unrotate(t_.normal), other);
@@ -166,7 +166,7 @@ void TriangleCollider::along_face(double separation, TriangleContact& contact) {
   finish(contact, {}, t_.normal, separation - query_.radii);
 }
 
-// An edge, from the corner with the lower name, or a corner.
+// Adds the contact of an edge, from the corner with the lower name, or of a corner.
 void TriangleCollider::along(const BestAxis& axis, const TrianglePart& part, bool nearest_known,
                              TriangleContact& contact) {
   int i = part.index, k = (part.index + 1) % 3;

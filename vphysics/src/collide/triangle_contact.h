@@ -1,9 +1,9 @@
-// One triangle of a surface against a convex shape.
+// Contact of one triangle of a surface with a convex shape.
 //
-// The normal of a contact is that of the face, unless an edge or a corner that can be felt is
-// nearest and the surface there lies below the plane across the direction to the shape. So what
-// slides over triangles that go on flat or upwards meets faces alone: what lies beyond such an edge
-// is left to the neighbour.
+// The normal is that of the face. The exception: an active edge or corner is closest, and the
+// surface there is below the plane perpendicular to the direction to the shape. So a shape that
+// slides over triangles that continue flat or upwards touches faces alone. The region beyond such
+// an edge belongs to the neighbour.
 #pragma once
 
 #include <vector>
@@ -17,28 +17,28 @@ namespace vp::collide {
 struct TriangleContact {
   Vec3 normal;  // unit, from the triangle to the shape
   TrianglePart part;
-  double separation;               // along the normal: less than 0, they overlap
+  double separation;               // along the normal: negative if they overlap
   std::size_t first_point, count;  // in the vector that they were appended to
-  // Of an edge the names of both corners, the lower one above the higher one, of a corner its name
-  // twice; of a face kFace.
+  // For an edge the names of both corners, the lower one in the upper half; for a corner its name
+  // twice; for a face kFace.
   std::uint64_t active_part;
   static constexpr std::uint64_t kFace = ~std::uint64_t{0};
   bool rough = false;  // CorePair::rough
 };
 
 // Appends the points of a separation of at most margin, not reduced, in the surface's frame.
-// Features have names that are the same for all triangles that share the edge or corner touched.
-// count 0: they do not touch. Precondition: the triangle faces the shape's middle; the shape is
-// convex and no half-space.
+// Triangles that share the touched edge or corner give the same feature names. count 0: no contact.
+// Precondition: the triangle's front faces the shape's centre; the shape is convex and no
+// half-space.
 TriangleContact collide_triangle(const Surface& surface, const SurfaceTriangle& triangle,
                                  const Geometry& shape, const SE3& T_surface_shape, double margin,
                                  std::vector<ManifoldPoint>& points);
 
-// Distance from a sphere's centre to what of the triangle it would touch; kFar if what is nearest
-// cannot be felt from there. Precondition: the triangle faces the centre.
+// The distance from a sphere's centre to the part of the triangle that it would touch; kFar if the
+// closest part is not active from there. Precondition: the triangle's front faces the centre.
 double active_distance(const Surface& surface, const SurfaceTriangle& triangle, const Vec3& centre);
 
-// Whether the shape, there, has a point in common with the triangle, more than touching.
+// Whether the shape at this pose overlaps the triangle by more than touching.
 bool overlaps_triangle(const SurfaceTriangle& triangle, const Geometry& shape,
                        const SE3& T_surface_shape);
 

@@ -9,14 +9,15 @@
 namespace vp::collide {
 namespace {
 
-// Rounding of a plane's distance from a corner [share of the lengths in it].
+// Rounding error of a plane's distance from a corner [fraction of the lengths involved].
 constexpr double kRounding = 2e-6;
 
 }  // namespace
 
 TriangleCull::TriangleCull(const Geometry& shape, const SE3& T, double margin) {
   const Mat3& R = T.rotation();
-  // Of a core swept by a sphere, the planes are those of the core and the sphere is of the margin.
+  // For a core swept by a sphere, the planes are those of the core; the sphere's radius is part of
+  // the margin.
   const double radius = core_radius(shape);
   margin_ = static_cast<float>(margin + radius);
   centre_ = T.position();
@@ -103,7 +104,7 @@ bool TriangleCull::is_beyond_a_plane(const float q[3][3], float slack) const {
   return beyond != 0;
 }
 
-// Whether the shape lies on one side of the triangle's plane.
+// Whether the shape is entirely on one side of the triangle's plane.
 bool TriangleCull::is_off_its_plane(const float q[3][3], float slack) const {
   if (corners_ == 0) return false;
   float e[2][3];
@@ -115,7 +116,7 @@ bool TriangleCull::is_off_its_plane(const float q[3][3], float slack) const {
                       e[0][0] * e[1][1] - e[0][1] * e[1][0]};
   const float size = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
   const float height = n[0] * q[0][0] + n[1] * q[0][1] + n[2] * q[0][2];
-  // Of thin triangles the normal itself is off: by rounding of the longer edges.
+  // For thin triangles the normal itself is inaccurate: by rounding errors of the longer edges.
   const float longest = std::max(e[0][0] * e[0][0] + e[0][1] * e[0][1] + e[0][2] * e[0][2],
                                  e[1][0] * e[1][0] + e[1][1] * e[1][1] + e[1][2] * e[1][2]);
   const float far = size * (margin_ + slack) + slack * longest;

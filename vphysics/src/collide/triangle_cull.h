@@ -1,5 +1,6 @@
-// Which triangles a convex shape is surely too far from, told cheaply, so that few are left for the
-// narrow phase: by separating planes, those of the shape's faces or of its box, and the triangle's.
+// A cheap conservative test that rejects triangles too far from a convex shape, so that few are
+// left for the narrow phase. It uses separating planes: of the shape's faces or of its box, and of
+// the triangle.
 #pragma once
 
 #include "collide/geometry.h"
@@ -8,10 +9,11 @@ namespace vp::collide {
 
 class TriangleCull {
  public:
-  // Precondition: is_convex_body(shape). margin: what is farther apart need not be found [m].
+  // Precondition: is_convex_body(shape). margin: pairs with a larger separation need not be found
+  // [m].
   TriangleCull(const Geometry& shape, const SE3& T_surface_shape, double margin);
 
-  // False: they are farther apart than the margin. p: corners in the surface's frame.
+  // Returns false if they are separated by more than the margin. p: corners in the surface's frame.
   bool may_overlap(const Vec3 p[3]) const;
 
  private:
@@ -23,13 +25,14 @@ class TriangleCull {
   bool is_beyond_a_plane(const float q[3][3], float slack) const;
   bool is_off_its_plane(const float q[3][3], float slack) const;
 
-  // In single precision and about the shape's middle, in the surface's axes.
+  // In single precision, relative to the shape's centre, in the surface's axes.
   Vec3 centre_;
   float margin_;
-  double extent_ = 0.0;  // farthest corner or plane
+  double extent_ = 0.0;  // of the farthest corner or plane
   int planes_ = 0, corners_ = 0;
-  float plane_[4][kMaxPlanes];    // outward normal; what lies farther along it is beyond the margin
-  float corner_[3][kMaxCorners];  // of the core; none: they are too many, or there are none
+  // Outward normal and offset; points beyond it are farther than the margin.
+  float plane_[4][kMaxPlanes];
+  float corner_[3][kMaxCorners];  // of the core; empty if there are too many, or none
 };
 
 }  // namespace vp::collide

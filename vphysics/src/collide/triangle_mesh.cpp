@@ -14,10 +14,10 @@ namespace {
 using collide::MeshData;
 
 constexpr std::size_t kMaxTriangles = std::size_t{1} << 26, kMaxMeshVertices = kMaxTriangles;
-constexpr double kFarthestVertex = 1e9;  // of a coordinate [m], as everywhere in the engine
+constexpr double kFarthestVertex = 1e9;  // of a coordinate [m], the engine's limit
 constexpr double kMinFactor = 1e-6, kMaxFactor = 1e6;
-// Height over the longest edge, as a share of it, below which a triangle has no area: its normal is
-// rounding noise.
+// Triangles with a smaller height, as a fraction of the longest edge, are degenerate: their normal
+// is rounding noise.
 constexpr double kNoHeight = 1e-10;
 
 tl::unexpected<Error> invalid_mesh(std::string message) {
@@ -47,7 +47,7 @@ Expected<void> check(std::span<const Vec3> vertices,
   return {};
 }
 
-// For each vertex the first that is in the same place.
+// For each vertex, the first vertex at the same position.
 std::vector<std::uint32_t> first_at_each_position(std::span<const Vec3> vertices) {
   std::vector<std::uint32_t> order(vertices.size()), first(vertices.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -87,8 +87,8 @@ void set_tree(MeshData& mesh) {
   mesh.tree.build(items, collide::BoundingTree::Effort::careful);
 }
 
-// Tetrahedra from the middle to each triangle: of volume V, V S / 4 and V (S S^T + sum of each
-// corner's) / 20, S the sum of its corners.
+// Adds tetrahedra from the centre to each triangle: of volume V, V S / 4 and V (S S^T + the sum of
+// each corner's) / 20, S the sum of its corners.
 void set_moments(MeshData& mesh) {
   mesh.centre = 0.5 * (mesh.lower + mesh.upper);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -171,7 +171,7 @@ double TriangleMesh::volume() const {
   return scale_.x * scale_.y * scale_.z * data_->volume;
 }
 
-// x -> D x makes x x^T -> D x x^T D, and volumes det D as large.
+// The map x -> D x changes x x^T to D x x^T D, and volumes by the factor det D.
 Expected<Inertia> TriangleMesh::inertia(double density) const {
   if (!data_) return invalid_mesh("it was moved from; ask the one that it was moved to");
   if (!(density > 0.0 && density <= 1e12)) {

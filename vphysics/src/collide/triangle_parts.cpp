@@ -5,9 +5,9 @@
 namespace vp::collide {
 namespace {
 
-// Corners whose heights differ by less [share of the triangle's size] are equally far along.
+// Corners whose heights differ by less [fraction of the triangle's size] are equally far along.
 constexpr double kSameHeight = 1e-6;
-// As little above a plane [share of the distance] as directions are off by rounding.
+// Tolerance above a plane [fraction of the distance], for the rounding errors of directions.
 constexpr double kBelow = 1e-6;
 
 }  // namespace
@@ -80,7 +80,7 @@ bool may_touch_along(const Surface& surface, const SurfaceTriangle& t, const Tri
       return dot(d, t.normal) > 0.0;
     case TrianglePart::edge: {
       if (!is_active_edge(t, part.index)) return false;
-      // A border: of a solid's skin its outer side only.
+      // A border: for the surface of a solid, only its outer side.
       if (!t.has_opposite[part.index]) return surface.two_sided() || dot(d, t.normal) >= -kBelow;
       const Vec3 offset = t.opposite[part.index] - t.p[part.index];
       return dot(d, offset) <= kBelow * norm(offset);

@@ -1,11 +1,13 @@
-// Faces, edges and corners of a surface's triangles, and which of them may be touched from where.
+// Faces, edges and corners of a surface's triangles, and the directions in which they can be
+// touched.
 #pragma once
 
 #include "collide/surface.h"
 
 namespace vp::collide {
 
-// Turns the triangle's front to the point. False: it is one-sided, and the point is behind it.
+// Turns the triangle's front towards the point. Returns false if it is one-sided and the point is
+// behind it.
 bool face_towards(SurfaceTriangle& triangle, const Vec3& point, bool two_sided);
 
 struct TrianglePart {
@@ -19,14 +21,14 @@ struct NearestOnTriangle {
 };
 NearestOnTriangle nearest_on_triangle(const Vec3 p[3], const Vec3& q);
 
-// What of the triangle lies farthest along the unit vector d.
+// The part of the triangle that is farthest along the unit vector d.
 TrianglePart foremost_part(const Vec3 p[3], const Vec3& d);
 
 inline bool is_active_edge(const SurfaceTriangle& t, int edge) {
   return ((t.active >> edge) & 1u) != 0;
 }
-// Whether d, a unit vector away from the surface, may be a contact's normal at that part: an edge
-// or a corner must be felt, and the surface there lie below the plane across d.
+// Whether d, a unit vector away from the surface, may be a contact normal at that part: an edge or
+// a corner must be active, and the surface there must be below the plane perpendicular to d.
 bool may_touch_along(const Surface& surface, const SurfaceTriangle& triangle,
                      const TrianglePart& part, const Vec3& d);
 

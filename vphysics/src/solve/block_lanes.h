@@ -1,4 +1,4 @@
-// What all passes over blocks of lanes share: from rows of bodies to lanes and back.
+// Shared by all passes over blocks: gathers body rows into SIMD lanes and scatters them back.
 #pragma once
 
 #include "solve/body_row.h"
@@ -7,8 +7,9 @@
 
 namespace vp::solve {
 
-// W lanes of a block from `at` on, with the velocities of their bodies. A block has the rows of its
-// bodies, a and b, and copies of their inverse inertias, inertia_a and inertia_b.
+// W slots of a block from index `at` on, with the velocities of their bodies. A block stores the
+// row indices of its bodies, a and b, and copies of their inverse inertias, inertia_a and
+// inertia_b.
 template <int W, class BLOCK>
 class BlockLanes {
  public:
@@ -53,7 +54,7 @@ class BlockLanes {
     read_displacement(r + 8, x_b, turn_b, carried_b_, fraction_minus_one_b_);
   }
   void scatter_velocities() const { scatter_velocities(F(0.0f) < F(1.0f)); }
-  // Of those lanes.
+  // Writes only the lanes in `of`.
   void scatter_velocities(const LaneMask<W>& of) const {
     const F a[8] = {v_a.x, v_a.y, v_a.z, w_a.x, w_a.y, w_a.z, mass_a_, falls_a};
     const F b[8] = {v_b.x, v_b.y, v_b.z, w_b.x, w_b.y, w_b.z, mass_b_, falls_b};
@@ -68,7 +69,7 @@ class BlockLanes {
     scatter([this](int i) { return row_a(i).displacement; }, a, is_movable_a());
     scatter([this](int i) { return row_b(i).displacement; }, b, is_movable_b());
   }
-  // Accelerations by the forces matter to bounces alone.
+  // Linear accelerations by forces. Only the restitution pass reads them.
   void gather_accelerations(V& a, V& b) const {
     F r[8];
     lanes::gather8<W>([this](int i) { return row_a(i).rate; }, r);
@@ -77,7 +78,7 @@ class BlockLanes {
     b = {r[0], r[1], r[2]};
   }
 
-  // Impulses on both, moments about their centres of mass.
+  // Applies linear impulses and angular impulses about the centres of mass to both bodies.
   void apply_impulse(const V& linear_a, const V& angular_a, const V& linear_b, const V& angular_b) {
     v_a += mass_a_ * linear_a;
     v_b += mass_b_ * linear_b;
@@ -95,20 +96,23 @@ class BlockLanes {
 
   const F& inverse_mass_a() const { return mass_a_; }
   const F& inverse_mass_b() const { return mass_b_; }
-  // Of a push: the smaller one of the two. Precondition: ways were gathered.
+  // The fraction of the maximum bias velocity: the smaller of the two bodies' values. Precondition:
+  // the displacements were gathered.
   F fraction() const { return F(1.0f) + smaller(fraction_minus_one_a_, fraction_minus_one_b_); }
-  // Of a displacement of b against a: what a does of it, and what b does.
+  // Divides a displacement of b relative to a between the two, by inverse mass: the fraction of
+  // each.
   void split(F& by_a, F& by_b) const {
     const F both = mass_a_ + mass_b_;
     const F inverse = F(1.0f) / select(both > F(0.0f), both, F(1.0f));
     by_a = mass_a_ * inverse;
     by_b = mass_b_ * inverse;
   }
-  // Lanes whose a, or b, impulses move.
+  // Lanes in which an impulse moves a, or b.
   LaneMask<W> is_movable_a() const { return mass_a_ > F(0.0f); }
   LaneMask<W> is_movable_b() const { return mass_b_ > F(0.0f); }
 
-  // Of bodies that can be carried: those that cannot may be of several lanes.
+  // Marks both bodies as supported. Skips bodies that no impulse moves: several slots may share
+  // their row.
   void mark_carried(int i) const {
     for (BodyRow* row : {&row_a(i), &row_b(i)}) {
       if (row->velocity[kInverseMass] > 0.0f) row->displacement[kCarried] = 1.0f;
@@ -129,8 +133,8 @@ class BlockLanes {
                           &inertia.xy, &inertia.yz, &inertia.zx};
     for (int f = 0; f < 6; ++f) put(*to[f], r[f]);
   }
-  // What nothing pushes keeps its row, which several lanes, and workers, may read. Empty lanes are
-  // of the world's.
+  // Does not write rows that no impulse moves: several slots, and workers, may read them. Empty
+  // slots refer to the world's row.
   template <class ContactSlot>
   static void scatter(const ContactSlot& slot, const F* values, const LaneMask<W>& pushed) {
     const unsigned bits = lanes::bits_of(pushed);

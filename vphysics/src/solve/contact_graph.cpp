@@ -9,8 +9,8 @@
 namespace vp::solve {
 namespace {
 
-// What nothing pushes may go its way all the same, as others of its region do: it counts, but for
-// the world itself.
+// A body that no impulse moves may still move, with the others of its region. So its region counts,
+// unless it is the world itself.
 std::uint16_t region_of(const ContactGraph::End& a, const ContactGraph::End& b) {
   if (a.row == kWorldRow) return b.region;
   return b.row == kWorldRow || a.region == b.region ? a.region : kBetween;
@@ -37,8 +37,8 @@ void clear_slot(ContactBlock<P>& block, int lane) {
 
 }  // namespace
 
-// Of several regions, the contacts between them are of the bodies at their faces: of a cube of n^3,
-// some 2 n^2 where each face is of two.
+// With several regions, the contacts between regions belong to bodies on their faces: about 2 n^2
+// for a region of n^3 bodies, since two regions share each face.
 void ContactGraph::reserve(std::size_t bodies) {
   if (bodies == reserved_bodies_ && regions() == reserved_regions_) return;
   reserved_bodies_ = bodies;
@@ -52,7 +52,7 @@ void ContactGraph::reserve(std::size_t bodies) {
     const std::size_t fraction = within == 0          ? bodies
                                  : region == kBetween ? static_cast<std::size_t>(faces * all)
                                                       : bodies / within + 1;
-    if (within > 0 && fraction < 2 * kLanes) continue;  // a block of each colour would be too much
+    if (within > 0 && fraction < 2 * kLanes) continue;  // a block per colour would be too much
     const std::size_t blocks = fraction / (2 * kLanes) + 1;
     for (int c = 0; c < kFirstFixedColour + kReadyFixed; ++c) {
       if (c >= kReady && c < kFirstFixedColour) continue;
@@ -116,8 +116,9 @@ std::uint32_t ContactGraph::remove(const ContactSlot& slot, const End& a, const 
   return slot.points == 1 ? remove_slot<1>(slot) : remove_slot<4>(slot);
 }
 
-// What one region has come to need, others will: room is made in all of them at once. Not of the
-// last colour: a body with hundreds of contacts fills that where it is, with a block for each.
+// Capacity that one region needs, the others will need too: reserves it in all regions at once. Not
+// for the last colour: a body with hundreds of contacts fills it in its own region, with a block
+// per contact.
 template <int P>
 void ContactGraph::ensure_capacity(const ContactSlot& slot) {
   const std::size_t capacity = 2 * of<P>(slot.region, slot.colour).blocks.capacity() + 1;
@@ -139,7 +140,7 @@ void ContactGraph::add_slot(std::uint32_t contact, const End& a, const End& b, C
     if (block == colour.blocks.capacity()) ensure_capacity<P>(slot);
     colour.blocks.push_back(empty_block<P>());
   } else {
-    clear_slot(colour.blocks[block], lane);  // passes write into empty lanes, too
+    clear_slot(colour.blocks[block], lane);  // passes also write into empty slots
   }
   ContactBlock<P>& to = colour.blocks[block];
   to.a.lane[lane] = a.row;

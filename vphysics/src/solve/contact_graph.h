@@ -1,19 +1,19 @@
-// Where contacts live: in blocks of lanes, sorted by colour.
+// Stores contacts in blocks of slots, sorted by graph colour.
 //
-// No two contacts of a colour share a body that moves, so that a colour's contacts can be solved
-// side by side, in lanes and by several workers, with the same result in any order. A contact takes
-// the lowest colour that both its bodies have free, and keeps it while it lasts; a lane that
-// becomes empty is filled with the colour's last. So the order of solving follows from the order of
-// the calls alone. Contacts with what nothing pushes have colours of their own, solved last.
+// No two contacts of a colour share a movable body. So the contacts of a colour can be solved in
+// parallel, in SIMD lanes and by several workers, with the same result in any order. A contact
+// takes the lowest colour that is free at both its bodies, and keeps it while it exists. The last
+// slot of a colour fills a slot that becomes empty. So the order of the calls alone determines the
+// order of solving. Contacts with static bodies have colours of their own, which are solved last.
 //
-// A body with more contacts than there are colours puts the rest into the last one, where every
-// contact has a block to itself: blocks are solved one after the other.
+// A body with more contacts than there are colours puts the rest into the last colour. There every
+// contact has a block to itself, and blocks are solved one after another.
 //
-// A large world is divided into regions (world/regions.cpp): a contact of two bodies of one region,
-// or of one and the fixed world, is kept there, colour by colour, all others in kBetween. So no two
-// regions share a body, and each can be solved by itself, again and again, while it lies in the
-// caches.
-// Colours are those of the whole world: a contact that goes to another region keeps its own.
+// A large world is divided into regions (world/regions.cpp). A contact between two bodies of one
+// region, or between one of them and the fixed world, is stored in that region, colour by colour.
+// All others are stored in kBetween. So no two regions share a body, and each can be solved on its
+// own, for several iterations, while its data is in cache. Colours are global: a contact that moves
+// to another region keeps its colour.
 #pragma once
 
 #include <algorithm>
@@ -28,11 +28,11 @@
 namespace vp::solve {
 
 inline constexpr int kColours = 128;
-inline constexpr int kFirstFixedColour = 64;  // of contacts with what nothing pushes
+inline constexpr int kFirstFixedColour = 64;  // for contacts with static bodies
 inline constexpr int kLastColour = kColours - 1;
-inline constexpr int kParked = kColours;  // no colour: lanes put aside, of what is asleep
+inline constexpr int kParked = kColours;  // no colour: the slots of sleeping contacts
 
-// Some of the colours: a bit for each of those between bodies that move, then of the others.
+// A set of colours: a bit for each colour between movable bodies, then for each of the others.
 class ColourSet {
  public:
   bool has(int colour) const { return (bits_[colour / 64] >> (colour % 64) & 1u) != 0; }
@@ -41,7 +41,7 @@ class ColourSet {
   void insert(const ColourSet& other) {
     for (int half = 0; half < 2; ++half) bits_[half] |= other.bits_[half];
   }
-  // Ascending.
+  // Calls f(colour) in ascending order.
   template <class F>
   void for_each(const F& f) const {
     for (int half = 0; half < 2; ++half) {
@@ -50,8 +50,8 @@ class ColourSet {
     }
   }
   int size() const { return std::popcount(bits_[0]) + std::popcount(bits_[1]); }
-  // The lowest that is not in it, of those of contacts with what nothing pushes or of the others;
-  // the last colour if all are.
+  // The lowest colour that is not in the set, among those for contacts with static bodies (fixed)
+  // or among the others; the last colour if all are taken.
   int lowest_free(bool fixed) const {
     const int free = std::countr_one(bits_[fixed ? 1 : 0]);
     return std::min(fixed ? kFirstFixedColour + free : free < 64 ? free : kLastColour, kLastColour);
@@ -62,20 +62,21 @@ class ColourSet {
 };
 static_assert(kColours == 128 && kFirstFixedColour == 64);
 
-// Of contacts of several regions, of bodies that are in none, and of all that is put aside.
+// The region of contacts between regions, of contacts of bodies in no region, and of all parked
+// slots.
 inline constexpr std::uint16_t kBetween = 0;
 
-// Where a contact's lane is; points: 1 or 4, or 0 for nowhere.
+// The location of a contact's slot. points: 1 or 4, or 0 if it has none.
 struct ContactSlot {
   std::uint8_t points = 0, colour = 0;
   std::uint16_t region = kBetween;
-  std::uint32_t index = 0;  // of the lane, among all of its region, colour and kind
+  std::uint32_t index = 0;  // of the slot, among those of its region, colour and point count
 };
 
 template <int P>
 struct ColourBlocks {
   std::vector<ContactBlock<P>> blocks;
-  std::uint32_t lanes = 0;  // used; in the last colour one a block
+  std::uint32_t lanes = 0;  // in use; in the last colour one per block
 
   static constexpr std::uint32_t block_of(std::uint32_t index, int colour) {
     return colour == kLastColour ? index : index / kLanes;
@@ -85,7 +86,7 @@ struct ColourBlocks {
   }
 };
 
-// All of a block that is not an index.
+// All float fields of a block that persist across steps.
 template <int P>
 std::span<Field> fields_of(ContactBlock<P>& block) {
   return {reinterpret_cast<Field*>(&block.normal), kFieldsOf<P>};
@@ -97,23 +98,22 @@ std::span<const Field> fields_of(const ContactBlock<P>& block) {
 
 class ContactGraph {
  public:
-  // moves: an impulse can move it.
+  // moves: whether an impulse can move the body.
   struct End {
     std::uint32_t row;
     bool moves;
     std::uint16_t region;
   };
-  // An empty lane for the contact; all its fields are zero but the rows and the contact.
+  // Allocates a slot for the contact. All its fields are zero except the rows and the contact.
   ContactSlot add(std::uint32_t contact, const End& a, const End& b, int points);
-  // The same at the end of a given colour, as when a state is restored; false if that is not open
-  // to it.
+  // Allocates a slot at the end of a given colour, as for restoring a state. Returns false if the
+  // contact may not use that colour.
   bool append(std::uint32_t contact, const End& a, const End& b, int points, int colour,
               ContactSlot& slot);
-  // Returns the contact whose lane was moved to fill the gap, or kNoContact: its place is now this
-  // one's.
+  // Returns the contact that was moved into the freed slot, or kNoContact.
   std::uint32_t remove(const ContactSlot& slot, const End& a, const End& b);
-  // Puts a lane aside as it is, or back into a colour; place becomes its new one. Returns as
-  // remove() does, of the old place.
+  // Moves a slot unchanged into the parked slots, or back into a colour, and updates `slot`.
+  // Returns as remove() does, for the old slot.
   std::uint32_t park(ContactSlot& slot, const End& a, const End& b) {
     return slot.points == 1 ? move_slot<1>(slot, a, b, kParked) : move_slot<4>(slot, a, b, kParked);
   }
@@ -122,8 +122,8 @@ class ContactGraph {
     return slot.points == 1 ? move_slot<1>(slot, a, b, colour) : move_slot<4>(slot, a, b, colour);
   }
 
-  // To the region that its ends are in now, in its colour. Precondition: it is not put aside.
-  // Returns as remove() does, of the old place.
+  // Moves a slot to the region that its ends are in now; the colour stays. Precondition: the slot
+  // is not parked. Returns as remove() does, for the old slot.
   std::uint32_t follow(ContactSlot& slot, const End& a, const End& b);
 
   template <int P>
@@ -138,7 +138,7 @@ class ContactGraph {
   static int lane(const ContactSlot& slot) {
     return ColourBlocks<1>::lane_of(slot.index, slot.colour);
   }
-  // Of which the region has lanes of either kind.
+  // The colours in which the region has slots of either kind.
   const ColourSet& colours_in_use(std::size_t region) const { return regions_[region].in_use; }
   template <int P>
   ColourBlocks<P>& of(std::size_t region, int colour) {
@@ -151,17 +151,17 @@ class ContactGraph {
   const ColourBlocks<P>& of(std::size_t region, int colour) const {
     return const_cast<ContactGraph*>(this)->of<P>(region, colour);
   }
-  // kBetween and those behind it. Precondition of set_regions: those that go are empty. Their
-  // memory stays, for when they are back.
+  // The number of regions: kBetween and those after it. Precondition of set_regions: the regions
+  // that are removed are empty. Their memory is kept for later use.
   std::size_t regions() const { return regions_in_use_; }
   void set_regions(std::size_t count) {
     if (count > regions_.size()) regions_.resize(count);
     regions_in_use_ = count;
   }
-  // No lanes and no regions but kBetween; memory stays.
+  // Removes all slots and all regions except kBetween; keeps the memory.
   void clear();
-  // Room for rows; and for the first contacts of so many bodies, so that a busy step need not take
-  // it from the heap.
+  // resize: capacity for the rows. reserve: capacity for the first contacts of this many bodies, so
+  // that a busy step need not allocate.
   void resize(std::size_t rows) { taken_.resize(rows); }
   void reserve(std::size_t bodies);
 
@@ -183,8 +183,8 @@ class ContactGraph {
   };
   std::vector<Region> regions_{1};
   std::size_t regions_in_use_ = 1;
-  std::size_t reserved_bodies_ = 0, reserved_regions_ = 0;  // by reserve()
-  std::vector<ColourSet> taken_;                            // by a row's contacts
+  std::size_t reserved_bodies_ = 0, reserved_regions_ = 0;  // set by reserve()
+  std::vector<ColourSet> taken_;                            // by row: the colours of its contacts
 };
 
 }  // namespace vp::solve

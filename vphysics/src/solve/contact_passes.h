@@ -1,21 +1,21 @@
 // The passes over blocks of contacts, W lanes at a time.
 //
-// A sub-step h of the solver is, over all colours in turn where two stand below one another,
+// A sub-step h of the solver has these stages. Each runs over all colours before the next starts:
 //
 //   v += h a
-//   strike      what reaches its partner within h and bounces does so now, in sequence
-//   warm start  v += M^-1 J^T p          p: the impulses of the sub-step before
-//   solve       soft: penetration is pushed out at a rate, gaps may close and no more; in rounds,
-//               of which those after the first pass by what the one before has hardly changed
+//   restitution   contacts that touch within h and bounce do so now, in sequence
+//   warm start    v += M^-1 J^T p          p: the impulses of the last sub-step
+//   solve         soft: a bias velocity removes penetration, a separation may close and no more;
+//                 iterations after the first skip contacts that the last one has hardly changed
 //   x += h v
-//   relax       the same without the push, so that it leaves no velocity behind
+//   relax         the same without the bias velocity, so that no bias velocity remains
 //
-// One contact is solved as a block: what its points do to one another passes through K (see
-// contact_block.h), and only the sum is given to the bodies.
+// One contact is solved as a block: its points interact through K (contact_block.h), and only the
+// sum of their impulses is applied to the bodies.
 //
 // Sources: Catto, Soft Contact (Solver2D), 2024, for the order and the softness; Catto, Modeling
-// and Solving Constraints, GDC 2009; Tonge, Solving Rigid Body Contacts, GDC 2012, for patches of
-// friction. Bounces: docs/decisions/0019.
+// and Solving Constraints, GDC 2009; Tonge, Solving Rigid Body Contacts, GDC 2012, for friction
+// patches. Restitution: docs/decisions/0019.
 #pragma once
 
 #include "solve/block_lanes.h"
@@ -27,7 +27,7 @@ namespace vp::solve {
 template <int W, int P>
 using LanesOf = BlockLanes<W, ContactBlock<P>>;
 
-// What is common to the normal rows of a contact.
+// Data shared by the normal rows of a contact.
 template <int W, int P>
 struct Normals {
   using F = Lanes<W>;
@@ -43,7 +43,7 @@ struct Normals {
       arm_b[i] = c.get(c.block().arm[i].b);
     }
   }
-  // n . linear + (d x n) . turn_b + arm . (turn_b - turn_a), for all points.
+  // out_i = n . linear + (d x n) . turn_b + arm . (turn_b - turn_a), for all points.
   void along(const V& linear, const V& turn_a, const V& turn_b, F* out) const {
     const F common = dot(n, linear) + dot(d_n, turn_b);
     const V rotation = turn_b - turn_a;
@@ -57,7 +57,7 @@ struct Normals {
     along(c.x_b - c.x_a, c.turn_a, c.turn_b, s);
     for (int i = 0; i < P; ++i) s[i] += c.get(c.block().base[i]);
   }
-  // Gives the bodies the changes of the points' impulses.
+  // Applies the changes of the points' impulses to the bodies.
   void apply_impulse(LanesOf<W, P>& c, const F* change) const {
     F sum = change[0], moment_t = change[0] * arm_t[0], moment_b = change[0] * arm_b[0];
     for (int i = 1; i < P; ++i) {
@@ -81,13 +81,13 @@ Lanes<W> sum_of_impulses(const LanesOf<W, P>& c) {
   return sum;
 }
 
-// The points of one contact, each of which stops its own speed u_i by an impulse p_i >= 0 while the
-// others have theirs: with the masses m_i and the shares s_i = m_i K_ii,
+// Solves the points of one contact together. Each point stops its own speed u_i by an impulse p_i
+// >= 0, given those of the others. With the masses m_i and the fractions s_i = m_i K_ii,
 //   p_i' = p_i - m_i u_i - (1 - s_i) p_i,   u = u0 + K (p - p0)
-// is, since p_i cancels,
+// becomes, since p_i cancels,
 //   p_i' = e_i - sum_{j != i} m_i K_ij p_j,  e_i = s_i p0_i - m_i u0_i + sum_{j != i} m_i K_ij p0_j
-// which has a third of the operations that wait for one another. With m_i = 0 a point keeps p0_i
-// where s_i is 1, and has none where it is 0.
+// whose chain of dependent operations is a third as long. With m_i = 0 a point keeps p0_i if s_i is
+// 1, and gets 0 if s_i is 0.
 template <int W, int P>
 class Points {
  public:
@@ -104,34 +104,34 @@ class Points {
       e_[i] = e;
     }
   }
-  // Where it may also pull.
+  // The next impulse without the bound p >= 0.
   F target(int i, const F* p) const {
     F x = e_[i];
-    for (int j = 1; j < P; ++j) {  // what has changed last comes last
+    for (int j = 1; j < P; ++j) {  // the most recently changed impulse comes last
       const int other = (i + j) % P;
       x -= k_[i][other] * p[other];
     }
     return x;
   }
-  // Where no point carries anything: m_i times the speed of closing that is left.
+  // If no point has an impulse: m_i times the remaining approach speed.
   const F& approach_speed(int i) const { return e_[i]; }
 
  private:
   F e_[P], k_[P][P];
 };
 
-// What a strike need not look at; loaded: the lanes that carry something.
+// Lanes that the restitution pass may skip. loaded: the lanes with a load.
 template <int W>
 LaneMask<W> neither_bounces_nor_comes_to_touch(const LaneMask<W>& loaded, const Lanes<W>& e) {
   return both(loaded, !(e > Lanes<W>(0.0f)));
 }
 
-// Of the load: a contact that a round of pushing has changed by less is left alone by those after
-// it. Ten times as much does for piles, but a wall then takes longer to come to rest.
+// As a fraction of the load: later iterations skip a contact whose impulses an iteration has
+// changed by less. Ten times this is enough for piles, but a wall then takes longer to come to
+// rest.
 inline constexpr float kConvergedForNow = 1e-4f;
 
-// --- friction
-// -------------------------------------------------------------------------------------
+// --- friction ------------------------------------------------------------------------------------
 
 template <int W, int P>
 struct Grip {
@@ -146,9 +146,9 @@ struct Grip {
   V t, b, r_a, r_b;
 };
 
-// The impulse q + change of two tangents that stops the slip u, no longer than most: by the whole
-// 2x2 block where it sticks; where it slides by one mass, since the block would turn it away from
-// the slip.
+// Updates two tangential impulses p at the slip velocity u, at most max_value long. Sticking: the
+// full 2x2 block stops the slip. Sliding: one effective mass, since the block would rotate the
+// impulse away from the slip direction.
 template <int W, int P>
 void grip_or_slide(const LanesOf<W, P>& c, const Lanes<W>* u, const Lanes<W>& max_value,
                    Lanes<W>* p) {
@@ -176,8 +176,8 @@ Lanes<W> clamped(const Lanes<W>& x, const Lanes<W>& max_value) {
   return larger(-max_value, smaller(x, max_value));
 }
 
-// Only of the lanes `acts`. Returns the lanes of which nothing has changed by more than a share
-// kConvergedForNow of the load.
+// Changes only the lanes `acts`. Returns the lanes in which no impulse has changed by more than the
+// fraction kConvergedForNow of the load.
 template <int W, int P>
 LaneMask<W> solve_friction(LanesOf<W, P>& c, const Normals<W, P>& normals,
                            const LaneMask<W>& acts) {
@@ -229,8 +229,7 @@ LaneMask<W> solve_friction(LanesOf<W, P>& c, const Normals<W, P>& normals,
   return converged;
 }
 
-// --- the passes
-// -----------------------------------------------------------------------------------
+// --- the passes ----------------------------------------------------------------------------------
 
 template <int W, int P>
 void warm_start_lanes(LanesOf<W, P>& c) {
@@ -251,17 +250,16 @@ void warm_start_lanes(LanesOf<W, P>& c) {
   c.scatter_velocities();
 }
 
-// How often the points of one contact are gone through before the bodies are told.
+// The maximum number of sweeps over the points of one contact before the impulses are applied.
 inline constexpr int kInnerSweeps = 4;
-inline constexpr float kConverged = 1e-3f;  // of the load: the change of a point that is enough
+inline constexpr float kConverged = 1e-3f;       // change of a point, as a fraction of the load
 inline constexpr float kLargestImpulse = 1e30f;  // [N s]
 
-// first, again: of a sub-step's rounds of pushing, the first and those after it; relax: without the
-// push.
+// first, again: the first iteration of a sub-step, and later ones; relax: without bias velocity.
 enum class Pass { first, again, relax };
 
-// A contact deeper than so many of its slid_limit, a hundredth of the smaller shape's half extent,
-// is more than the solver can take out: half of that half extent.
+// A contact deeper than this many times its slid_limit is too deep for the solver. slid_limit is a
+// hundredth of the smaller shape's half extent, so the limit is half of that half extent.
 inline constexpr float kTooDeep = 50.0f;
 
 template <int W, int P>
@@ -271,9 +269,10 @@ Lanes<W> deepest_of(const Lanes<W>* s) {
   return deepest;
 }
 
-// Of lanes of which a point is deeper than the fastest push takes out; u: the speeds of separation.
-// The push is as fast with what the loss of the load takes from it; what is still lacking moves the
-// bodies apart: a velocity to which many deep contacts add would stay with them.
+// Handles lanes with a point deeper than the maximum bias velocity removes. u: the separation
+// speeds. The limit of the bias velocity is raised by the speed that softness takes from the load.
+// A position correction handles the remainder: velocities that many deep contacts add up would
+// remain.
 template <int W, int P>
 void apply_deep(LanesOf<W, P>& c, const Normals<W, P>& normals, const Soft& soft, const Lanes<W>* u,
                 const Lanes<W>* s, Lanes<W>* bias) {
@@ -299,10 +298,10 @@ void apply_deep(LanesOf<W, P>& c, const Normals<W, P>& normals, const Soft& soft
   c.scatter_displacements();
 }
 
-// What is wanted beyond the speeds of separation: of a gap, the speed that closes it, which is
-// positive; of what is not open, the push's, negative or zero. Rounds after the first take over
-// what it has found: nothing moves on between them. Returns the lanes that are too deep, of
-// relaxing in the last sub-step.
+// Computes the bias on top of the separation speeds. For a positive separation it is the speed that
+// closes it, positive; otherwise the bias velocity, negative or zero. Iterations after the first
+// reuse the stored bias: poses do not change between them. In the relax pass of the last sub-step
+// it returns the lanes that are too deep.
 template <int W, int P, Pass kPass>
 LaneMask<W> find_bias(LanesOf<W, P>& c, const Normals<W, P>& normals, const Soft& soft,
                       const Lanes<W>* u, Lanes<W>* bias) {
@@ -326,13 +325,13 @@ LaneMask<W> find_bias(LanesOf<W, P>& c, const Normals<W, P>& normals, const Soft
     const auto deep = F(soft.rate) * deepest_of<W, P>(s) < max_bias;
     if (!none(deep)) apply_deep(c, normals, soft, u, s, bias);
   } else if (soft.last) {
-    const auto there = c.get(block.inverse[0]) > F(0.0f);  // no empty lane
+    const auto there = c.get(block.inverse[0]) > F(0.0f);  // not an empty slot
     too_deep = both(there, deepest_of<W, P>(s) < F(-kTooDeep) * c.get(block.slid_limit));
   }
   return too_deep;
 }
 
-// True if one is too deep.
+// Returns true if a contact is too deep.
 template <int W, int P, Pass kPass>
 bool solve_lanes(LanesOf<W, P>& c, const Soft& soft) {
   using F = Lanes<W>;
@@ -362,7 +361,7 @@ bool solve_lanes(LanesOf<W, P>& c, const Soft& soft) {
       fraction[i] = select(acts, fraction[i], F(1.0f));
       mass[i] = select(acts, mass[i], F(0.0f));
     }
-    // Gaps that close in the next sub-step are its own affair: it may be a bounce.
+    // The next sub-step handles a separation that closes in it: it may be a bounce.
     if constexpr (!kUseBias) max_value[i] = select(open, p0[i], F(kLargestImpulse));
   }
   const Points<W, P> points(c, mass, fraction, u, p0);
@@ -380,7 +379,7 @@ bool solve_lanes(LanesOf<W, P>& c, const Soft& soft) {
   };
   auto converged = sweep([](const F& next, const F&) { return next; });
   for (int k = 1; P > 1 && k < kInnerSweeps && !all(converged); ++k) {
-    // A lane that has settled stays as it is, so that it does not matter which others it is with.
+    // A converged lane does not change, so that its result is independent of the other lanes.
     const auto before_it = converged;
     const auto more =
         sweep([&](const F& next, const F& last) { return select(before_it, last, next); });
@@ -393,7 +392,7 @@ bool solve_lanes(LanesOf<W, P>& c, const Soft& soft) {
     c.put(block.impulse[i], p[i]);
     load += p[i];
     moved = larger(moved, abs(change[i]));
-    // Of what carries nothing.
+    // Matters only for contacts without a load.
     quiet = both(quiet, points.approach_speed(i) + F(soft.idle_speed) * mass[i] <= F(0.0f));
   }
   normals.apply_impulse(c, change);
@@ -401,12 +400,13 @@ bool solve_lanes(LanesOf<W, P>& c, const Soft& soft) {
   const auto loaded = load > F(0.0f);
   if constexpr (kUseBias) {
     const auto rests = both(moved <= F(kConvergedForNow) * load, either(loaded, quiet));
-    // What was left alone stays so: whether it was looked at turns on the lanes beside it.
+    // A skipped contact stays skipped: whether it was processed depends on the other lanes of the
+    // pack.
     c.put(block.active, select(both(acts, !both(grips, rests)), F(1.0f), F(0.0f)));
   } else {
     c.put(block.given, F(soft.keeps_load) * c.get(block.given) + load);
     const auto idle = neither_bounces_nor_comes_to_touch(loaded, c.get(block.restitution));
-    const auto there = c.get(block.inverse[0]) > F(0.0f);  // no empty lane
+    const auto there = c.get(block.inverse[0]) > F(0.0f);  // not an empty slot
     c.put(block.active, select(both(!idle, there), F(1.0f), F(0.0f)));
   }
   return !none(too_deep);

@@ -9,7 +9,7 @@
 namespace vp::solve {
 namespace {
 
-// What an impulse meets on one side.
+// The solver state of the body on one side of a contact.
 struct Side {
   double mass;
   Sym3 inertia;
@@ -40,7 +40,7 @@ Vec3 any_tangent(const Vec3& n) {
   return (1.0 / norm(t)) * t;
 }
 
-// Points that are not there push nothing.
+// Absent points get no impulse: their effective mass is zero and their separation is far.
 template <int P>
 void write_normals(ContactBlock<P>& block, int lane, const NewContact& c, const Vec3& t,
                    const Side& a, const Side& b) {
@@ -77,8 +77,7 @@ void write_normals(ContactBlock<P>& block, int lane, const NewContact& c, const 
   }
 }
 
-// The weighted middle of the points: those that are apart carry nothing and do not count, unless
-// none does.
+// The mean of the points.
 Vec3 centre_of_points(const NewContact& c) {
   Vec3 sum{};
   for (int i = 0; i < c.count; ++i) sum += c.points[i].position - c.points[0].position;
@@ -123,7 +122,7 @@ void write_friction(ContactBlock<P>& block, int lane, const NewContact& c, const
   const bool rolls = c.rolling > 0.0 && turns_over > 0.0;
   put(block.roll_mass, lane, rolls ? 1.0 / turns_over : 0.0);
   put(block.roll_arm, lane, c.rolling);
-  // What resists nothing must not be handed on: no pass would ever take it back.
+  // Without rolling resistance the old impulse is dropped: no pass would ever remove it.
   put(block.roll_impulse[0], lane, rolls ? dot(t1, c.old_moment) : 0.0);
   put(block.roll_impulse[1], lane, rolls ? dot(t2, c.old_moment) : 0.0);
   put(block.slid, lane,
@@ -162,7 +161,7 @@ void rescale_impulses(ContactBlock<P>& block, float factor) {
   for (Field& p : block.tangent_impulse) rescale(p);
   for (Field& p : block.roll_impulse) rescale(p);
   rescale(block.twist_impulse);
-  for (float& active : block.active.lane) active = 1.0f;  // a load may have become none
+  for (float& active : block.active.lane) active = 1.0f;  // its load may have become zero
 }
 
 template void rescale_impulses<1>(ContactBlock<1>&, float);

@@ -1,4 +1,4 @@
-// A contact's lane made from what the narrow phase has found.
+// Fills a contact slot from the narrow phase's result.
 #pragma once
 
 #include "solve/body_row.h"
@@ -10,19 +10,19 @@ namespace vp::solve {
 struct NewPoint {
   Vec3 position;  // midway between the surfaces [m]
   double separation;
-  float impulse;  // of the point that it was before, or 0
+  float impulse;  // accumulated impulse of the matching point of the last manifold, or 0
 };
 
-// World frame; all positions against any one origin near the two.
+// World frame. All positions are relative to one arbitrary origin near the two bodies.
 struct NewContact {
   Vec3 normal;    // from a to b
-  Vec3 x_a, x_b;  // centres of mass; of the fixed world: anything
+  Vec3 x_a, x_b;  // centres of mass; any value for the fixed world
   NewPoint points[4];
   int count;
-  double friction, restitution, rolling, spinning;  // arms of the latter two [m]
-  Vec3 surface_velocity;  // of b's surface against a's, that friction wants [m/s]
-  Vec3 old_friction;      // tangent impulse so far [N s]
-  Vec3 old_moment;        // of twisting and rolling [N m s]
+  double friction, restitution, rolling, spinning;  // the last two are lever arms [m]
+  Vec3 surface_velocity;  // target velocity of b's surface relative to a's, for friction [m/s]
+  Vec3 old_friction;      // accumulated tangent impulse [N s]
+  Vec3 old_moment;        // accumulated twist and rolling impulse [N m s]
   double slid_limit;      // [m]
 };
 
@@ -30,7 +30,7 @@ template <int P>
 void write_slot(ContactBlock<P>& block, int lane, const NewContact& contact, const BodyRow& a,
                 const BodyRow& b);
 
-// All accumulated impulses of a block times a factor.
+// Multiplies all accumulated impulses of a block by a factor.
 template <int P>
 void rescale_impulses(ContactBlock<P>& block, float factor);
 

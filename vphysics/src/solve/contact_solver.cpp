@@ -1,25 +1,26 @@
 // Rows: with J the wrench of a unit impulse on both bodies and W the inverse inertia, an impulse p
-// changes the row's speed by k p, k = J W J^T; a link's share of k is (y, y), of link_side.h. Each
-// row is set right in turn (projected Gauss-Seidel):
+// changes the row's speed by k p, k = J W J^T. A link contributes (y, y) to k (link_side.h). Two
+// links of one articulation contribute the product of the sum of both y. The rows are solved in
+// sequence (projected Gauss-Seidel):
 //     normal    p_n >= 0,          speed >= target
 //     friction  |p_t| <= mu p_n,   a disc, not a box: two rows solved together
 //     rolling   |p_r| <= rho p_n,  moments
-// Of two links of one articulation the share is that of the sum of both y.
-// Restitution is a second round, in which contacts that closed faster than the threshold and
-// carried an impulse in the first get a target that leaves at e times their approach.
+// Restitution is a second solve. Contacts that approached faster than the threshold and had an
+// impulse in the first solve get a target speed of e times their approach speed.
 //
-// Approach and target are those of the true parabola: the velocities hold the forces of the whole
-// step from its start. With u the outward speed at the start of a step dt, x the height and a
-// constant acceleration -g, semi-implicit Euler conserves u^2 / 2 + g x - u g dt / 2. For a contact
-// that closes at u1 (step's forces included) with h of the step left over a gap s, this gives
+// Approach speed and target are those of the true parabola: the velocities contain the forces of
+// the whole step from its start. With u the outward speed at the start of a step dt, x the height
+// and a constant acceleration -g, semi-implicit Euler conserves u^2 / 2 + g x - u g dt / 2. For a
+// contact that approaches at u1 (the step's forces included) with h of the step left and a
+// separation s, this gives
 //     approach^2 = (u1 - early)^2 + 2 g s,    early = g (h - dt / 2),
 //     (target + early)^2 = (e approach)^2 - 2 g s,
-// but for (g dt)^2 / 4, which is left out. A body at rest closes at u1 = g dt in each step: whether
-// a contact bounces is decided by u1 - g h, the speed that the forces have given it by now.
+// neglecting (g dt)^2 / 4. A body at rest approaches at u1 = g dt in each step. So u1 - g h, the
+// speed that the forces have produced by now, decides whether a contact bounces.
 //
-// Penetration is taken out by a third set of impulses that acts on positions alone and so adds no
-// energy. Sources: Catto 2006 (sequential impulses); Moreau 1988 for the disc; Jolt and Box2D for
-// correcting positions apart.
+// A third set of impulses removes penetration. It acts on positions only and so adds no energy.
+// Sources: Catto 2006 (sequential impulses); Moreau 1988 for the disc; Jolt and Box2D for the
+// separate position correction.
 #include "solve/contact_solver.h"
 
 #include <algorithm>
@@ -32,27 +33,27 @@
 namespace vp::solve {
 namespace {
 
-// With few contacts more rounds cost little, and a light ball between heavy men needs them: the
-// error shrinks by M / (M + m) a round. The rounds asked for are multiplied by kFewContacts /
-// contacts, at most kMaxIterations times.
+// With few contacts more iterations cost little, and a light ball between heavy bodies needs them:
+// the error shrinks by M / (M + m) per iteration. The requested iterations are multiplied by
+// kFewContacts / contacts, at most by kMaxIterations.
 constexpr std::size_t kFewContacts = 32;
 constexpr std::size_t kMaxIterations = 8;
-// A small island that settles within so many, as one that stood in the last step too, needs no
-// matrix.
+// A small island that converges within this many iterations needs no matrix, for instance one that
+// also rested in the last step.
 constexpr int kIterationsWithoutMatrix = 3;
-// Share of the penetration beyond the slop that one solve takes out, the most it takes out [m], and
-// its rounds. A larger share makes stacks nervous.
+// The fraction of the penetration beyond the slop that one solve removes, the maximum correction
+// [m], and the iterations. A larger fraction makes stacks jitter.
 constexpr double kCorrectionFraction = 0.2;
 constexpr double kMaxCorrected = 0.002;
 constexpr int kCorrectionIterations = 8;
 
-// Two links of a tree of which one hardly moves without the other along their normal, as two that
-// overlap near the joints between them, would have to swing far to come apart. Where they answer an
-// impulse on both by less than this share of what they answer each alone, they are pushed out by
-// less, so that joints go no faster for it than at that share.
+// Two links of one tree can be nearly locked to each other along their contact normal, as two that
+// overlap near the joints between them: they would have to swing far to separate. If their response
+// to an impulse on both is below this fraction of the sum of their single responses, the position
+// correction is reduced, so that joints move no faster than at that fraction.
 constexpr double kMinLeverage = 0.01;
 
-// The speed along d2 that a unit impulse along d1 gives at a point; r1 and r2 are their rows.
+// The speed along d2 that a unit impulse along d1 produces at a point; r1 and r2 are their rows.
 double response(const SolverBody& a, const SolverBody& b, const ContactConstraint& c,
                 const ContactPoint& p, const Vec3& d1, const Vec3& d2, int r1, int r2) {
   double sum = 0.0;
@@ -73,8 +74,8 @@ void prepare_tangents(const SolverBody& a, const SolverBody& b, const ContactCon
   const double k12 = response(a, b, c, p, d1, d2, row, row + 1);
   const double k22 = response(a, b, c, p, d2, d2, row + 1, row + 1);
   const double determinant = k11 * k22 - k12 * k12, trace = k11 + k22;
-  // Nearly singular when only a joint can give way: then one mass for both directions, which
-  // converges for any positive semidefinite block.
+  // Nearly singular if only a joint can yield. Then one mass serves both directions: this converges
+  // for any positive semidefinite block.
   if (determinant > 1e-6 * trace * trace) {
     p.tangent_mass[0] = k22 / determinant;
     p.tangent_mass[1] = -k12 / determinant;
@@ -88,7 +89,7 @@ void prepare_tangents(const SolverBody& a, const SolverBody& b, const ContactCon
   p.slide_mass = largest > 0.0 ? 1.0 / largest : 0.0;
 }
 
-// The largest row sum bounds the largest eigenvalue; for a ball it is equal to it.
+// The largest row sum is an upper bound of the largest eigenvalue; for a ball they are equal.
 double rolling_mass(const SolverBody& a, const SolverBody& b, const ContactConstraint& c) {
   Sym3 K = a.angular + b.angular;
   const int r = row_of(c.count, 0);
@@ -108,7 +109,7 @@ void prepare_approach(const StepContext& s, const SolverBody& a, const SolverBod
   const double approach_speed = -dot(c.normal, relative_velocity(a, b, c, p));
   const double gain = -dot(c.normal, forced);  // g dt
   const double left = s.duration / s.step;
-  // A swept body is at its contact; its gap is within the tolerance.
+  // A swept body is at its contact; its separation is within the tolerance.
   const double separation = c.swept ? 0.0 : std::max(0.0, p.separation);
   p.early = gain * (left - 0.5);
   p.fall = 2.0 * gain / s.step * separation;
@@ -124,8 +125,9 @@ double correction_fraction(const ContactConstraint& c, int row, double k) {
   return k < kMinLeverage * each ? std::sqrt(k / (kMinLeverage * each)) : 1.0;
 }
 
-// What is apart may close its gap; what is deep is pushed out, in sub-steps: but for links of one
-// tree, whose joints that would jerk. Their positions are corrected.
+// A positive separation may close within the step. In sub-steps, a bias velocity removes
+// penetration. Not for two links of one tree, since it would jerk their joints: they get a position
+// correction.
 double target_of(const StepContext& s, const ContactConstraint& c, const ContactPoint& p) {
   const bool pushed = !of_one_tree(c.side_a, c.side_b);
   const double deep = pushed ? std::max(0.0, -p.separation - s.slop) : 0.0;
@@ -238,7 +240,7 @@ double solve_contact(const StepContext& s, ContactConstraint& c) {
   return change;
 }
 
-// Every other round goes the other way, so that a load runs up a stack as fast as down it.
+// Alternate iterations run in reverse order, so that a load propagates up a stack as fast as down.
 double one_iteration(const StepContext& s, std::span<const std::uint32_t> contacts,
                      std::span<const std::uint32_t> joints, bool forward) {
   double change = 0.0;
@@ -251,12 +253,12 @@ double one_iteration(const StepContext& s, std::span<const std::uint32_t> contac
   return change;
 }
 
-// An articulation that touches nothing has its rows to itself: they are settled before all else,
-// and the rounds that the contacts need pass them by. Rows of which none feels another, as of a
-// table's rod, need one round.
+// Joint rows of an articulation that is not touched are independent of the rest: they are solved to
+// convergence first, and later iterations skip them. Rows that do not affect one another, as of a
+// rod that slides and rotates, need one iteration.
 void integrate_untouched(const StepContext& s) {
   for (std::size_t begin = 0, end = 0; begin < s.joints.size(); begin = end) {
-    if (s.joints[begin].pair != kNoPair) return;  // those between bodies come last
+    if (s.joints[begin].pair != kNoPair) return;  // rows of joints between bodies come last
     const std::uint32_t own = s.joints[begin].articulation;
     bool coupled = false;
     const auto is_own = [&](const JointRow& row) {
@@ -278,8 +280,9 @@ void integrate_untouched(const StepContext& s) {
   }
 }
 
-// In sub-steps others change what has been settled: they come again soon, and rounds will do. But
-// not for joints between bodies, whose rows feel one another, unless lanes push the bodies too.
+// In sub-steps contact blocks soon change what has converged, so plain iterations suffice. Rows of
+// joints between bodies are strongly coupled and do need convergence, unless contact blocks act on
+// the bodies too.
 bool goes_to_the_end(const StepContext& s, const Island& island) {
   if (s.bias_rate == 0.0) return true;
   const Islands& islands = s.scratch.islands;
@@ -318,7 +321,7 @@ void iterate(const StepContext& s) {
   }
 }
 
-// What is the same in all rounds.
+// Preparation common to all iterations.
 void begin(const StepContext& s) {
   prepare_link_rows(s);
   for (ContactConstraint& c : s.contacts) prepare(s, c);
@@ -344,12 +347,13 @@ bool set_bounce_targets(const StepContext& s) {
   return any;
 }
 
-// Returns whether there is anything to be corrected.
+// Returns whether there was an error to correct.
 bool correct_joint(const StepContext& s, const JointRow& row) {
   if (row.pair == kNoPair || row.mass == 0.0) return false;
   JointPair& pair = s.pairs[row.pair];
   if (pair.error == 0.0) return false;
-  // At a bound it moves nothing; where it pushes one way only, nor the other way.
+  // A row at a bound moves nothing. A row that acts in one direction only does not move back
+  // either.
   if ((row.upper > 0.0 && row.impulse >= row.upper) ||
       (row.lower < 0.0 && row.impulse <= row.lower))
     return false;
@@ -361,7 +365,7 @@ bool correct_joint(const StepContext& s, const JointRow& row) {
   return true;
 }
 
-// In sub-steps what velocities push out is left to them.
+// In sub-steps bias velocities handle penetration, except between links of one tree.
 void correct_positions(const StepContext& s) {
   const bool sub_step = s.bias_rate > 0.0;
   for (int iteration = 0; iteration < kCorrectionIterations; ++iteration) {
@@ -399,7 +403,7 @@ void correct_positions(const StepContext& s) {
   }
 }
 
-// The velocity of the body's point there, with what the solve has given it through its joints.
+// The velocity of the body's contact point, including the changes by the solve through its joints.
 Vec3 velocity_at(const SolverBody& body, const Vec3& arm, const ContactConstraint& c,
                  const LinkSide& side, double sign, int point) {
   Vec3 v = body.v + cross(body.w, arm);

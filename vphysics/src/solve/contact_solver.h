@@ -1,9 +1,9 @@
-// Contacts, friction and joint rows of one instant, by sequential impulses.
+// Solves the contacts, friction and joint rows of one instant by sequential impulses.
 //
-// Every body is given by the velocity (w, v) of one point of it. A free one answers by w a moment
-// about that point, its centre of mass, with R I^-1 R^T, and by v a force through it with 1/m. A
-// link does neither: it answers through its articulation's joints (link_side.h), so
-// no joint can come apart, and its w and v stay those from before the solve.
+// Every body is represented by the velocity (w, v) of one point. For a free body this is the centre
+// of mass: a moment about it changes w by R I^-1 R^T, a force through it changes v by 1/m. A link
+// does neither: it responds through the joints of its articulation (link_side.h). So no joint can
+// come apart, and the link's w and v keep their values from before the solve.
 #pragma once
 
 #include <cstdint>
@@ -20,17 +20,17 @@ namespace vp::solve {
 struct SolverBody {
   Vec3 w, v;                // world frame; written by the solver
   Vec3 rotation, shift;     // position correction; written by the solver, applied by the world
-  Sym3 angular;             // inverse inertia, world frame; zero for links and what nothing moves
+  Sym3 angular;             // inverse inertia, world frame; zero for links and static bodies
   double inverse_mass;      // likewise
   Vec3 x;                   // the point, world frame
   Vec3 forced_w, forced_v;  // what this step's forces added to w and v
-  int articulation, link;   // of a link; articulation is negative for all else
-  bool in_blocks;           // others push it between rounds
+  int articulation, link;   // of a link; articulation is negative for any other body
+  bool in_blocks;           // contact blocks change its velocity between iterations
 };
 static_assert(sizeof(SolverBody) == 30 * sizeof(double));
 
 struct ContactPoint {
-  // Given.
+  // Input.
   Vec3 position;
   double separation;
   std::uint32_t feature;
@@ -39,19 +39,20 @@ struct ContactPoint {
   double normal_mass;
   double tangent_mass[3];  // inverse of the 2x2 tangent block: 11, 12, 22
   double slide_mass;       // inverse of the block's largest eigenvalue
-  double approach;         // speed of approach at the instant of contact, >= 0
-  double early;            // part of the approach that the step's forces add only after it
-  double fall;             // what they add to its square while the gap closes [m^2/s^2]
-  bool hits;               // faster than the threshold; what rests does not hit
+  double approach;         // approach speed at the instant of contact, >= 0
+  double early;  // part of the approach speed that the step's forces add only after the contact
+  double fall;   // what they add to its square while the separation closes [m^2/s^2]
+  bool hits;     // faster than the threshold; a resting contact does not hit
   bool bounces;
-  double target;     // least normal speed after it
+  double target;     // minimum normal speed after the solve
   double steady[3];  // speeds along the normal and the tangents, of steady contacts
-  // Impulses; what they hold before the solve is the warm start.
+  // Impulses. Their values before the solve are the warm start.
   double normal_impulse;
   double tangent_impulse[2];
-  double position_impulse;     // of the position correction
-  double correction_fraction;  // prepared: of what others are corrected by
-  // Of a step with sub-steps, over those: impulse, approach and whether it hit (note_sub_step).
+  double position_impulse;     // impulse of the position correction
+  double correction_fraction;  // prepared: the fraction of the correction of other contacts
+  // In a step with sub-steps, accumulated over them: impulse, approach speed, whether it hit
+  // (note_sub_step).
   double step_impulse = 0.0, step_approach = 0.0;
   bool step_hits = false;
 };
@@ -61,15 +62,16 @@ struct ContactConstraint {
   std::uint32_t collider_a, collider_b;
   Vec3 normal, tangent[2];
   double friction, restitution, rolling;
-  double surface_speed[2];  // wanted relative velocity along the tangents [m/s]
+  double surface_speed[2];  // target relative velocity along the tangents [m/s]
   double rolling_mass;
   Vec3 rolling_impulse;
   int count;
   bool swept;  // belongs to a continuous body
-  // By the solver: false where what it meets contradicts what others meet, as between two walls
-  // that come together. Such impulses are no guess for the next step.
+  // Set by the solver: false if this contact contradicts others, as between two walls that close on
+  // a body. Such impulses are not used as a warm start.
   bool consistent = true;
-  // Prepared. An impulse moves the body itself; the body has no velocity, and gets none.
+  // Prepared. moves: an impulse moves the body itself. stands: the body has no velocity, and gets
+  // none.
   bool moves_a, moves_b, stands_a, stands_b;
   bool is_steady() const { return !moves_a && !moves_b; }  // links alone answer
   ContactPoint points[collide::kMaxPoints];
@@ -83,34 +85,36 @@ struct InstantScratch;  // instant_scratch.h
 struct StepContext {
   std::span<SolverBody> bodies;
   std::span<ContactConstraint> contacts;
-  // Those of trees, tree by tree; then, joint by joint, those between bodies, of which each has a
-  // pair, in the same order.
+  // Rows of articulations first, articulation by articulation; then those of joints between bodies,
+  // joint by joint. Each of the latter has one pair, in the same order.
   std::span<JointRow> joints;
   std::span<JointPair> pairs;
   std::span<SolverArticulation> articulations;
-  std::vector<double>& rows;  // memory for those of links; keeps its capacity
-  InstantScratch& scratch;    // and for the islands
-  double duration;            // to the end of the step [s]
-  double step;                // all of it [s]
+  std::vector<double>& rows;  // memory for link rows; keeps its capacity
+  InstantScratch& scratch;    // memory for islands
+  double duration;            // from this instant to the end of the step [s]
+  double step;                // the full step [s]
   double slop;
   double restitution_threshold;
   int iterations;
-  // Of a sub-step: share of a penetration that is pushed out, per time [1/s]; the fastest [m/s].
+  // In a sub-step: the fraction of a penetration that the bias velocity removes, per time [1/s];
+  // the maximum bias velocity [m/s].
   double bias_rate = 0.0, max_bias_velocity = 0.0;
 };
 
 // Sets the unit normal and two tangents to it.
 void set_normal(ContactConstraint& contact, const Vec3& normal);
 
-// All of an instant.
+// Solves one instant.
 void solve(const StepContext& context);
 
-// The same in sub-steps, where others change the bodies' velocities between rounds, and where a
-// penetration is pushed out by velocities that relax() takes back once they have moved everything:
-// begin, solve as often as there are rounds, advance, relax, note_sub_step.
+// The same in sub-steps. There, contact blocks change the bodies' velocities between iterations.
+// Bias velocities remove penetration; relax_sub_step() removes the bias velocities after everything
+// has moved. Call begin_sub_step, solve_sub_step once per iteration, advance_contacts,
+// relax_sub_step, note_sub_step.
 void begin_sub_step(const StepContext& context);
 void solve_sub_step(const StepContext& context);
-// The contacts after h at the velocities of now.
+// Advances the contact points and separations by h at the current velocities.
 void advance_contacts(const StepContext& context, double h);
 void relax_sub_step(const StepContext& context);
 void note_sub_step(std::span<ContactConstraint> contacts);

@@ -10,16 +10,17 @@
 namespace vp::solve {
 namespace {
 
-// The term that holds what no row feels, as a share of the diagonal: at first, and by how much it
-// grows and shrinks.
+// e, the regularization as a fraction of the diagonal: its initial and minimum value, its growth
+// and its decay factor.
 constexpr double kAtBound = 1e-6, kAtBoundGrowth = 30.0, kAtBoundShrink = 10.0;
-// Steps of an island at most, and of those in a row that do not help.
+// The maximum number of Newton steps per island, and of consecutive rejected ones.
 constexpr int kMaxSteps = 24, kMaxRejected = 3;
-// Shares of a step that are tried: all of it, half of it, and so on.
+// The number of step fractions that are tried: 1, 1/2, and so on.
 constexpr int kFractions = 5;
-// What still changes by so much in the end [m/s] contradicts itself; and no contact makes anything
-// so many times faster than it was or is to be. Impulses that grow by so much meanwhile are no
-// guess for the next step.
+// If the last iteration still changes speeds by more than kContradicts [m/s], the rows contradict
+// one another. No contact makes anything kThrown times faster than the initial speeds and the
+// targets. If the load has meanwhile grown by more than kGrown, the impulses are not used as a warm
+// start.
 constexpr double kContradicts = 0.01;
 constexpr double kThrown = 10.0;
 constexpr double kGrown = 1.5;
@@ -112,7 +113,7 @@ void DenseIsland::write() {
 inline void DenseIsland::change(std::uint32_t row, double by) {
   if (by == 0.0) return;
   const double size = W_[row * stride_ + row] * std::fabs(by);
-  if (!(size <= max_) && !std::isnan(max_)) max_ = size;  // what is no number stays
+  if (!(size <= max_) && !std::isnan(max_)) max_ = size;  // NaN persists
   p_[row] += by;
   add_scaled(u_.data(), W_ + row * stride_, by, stride_);
 }
@@ -152,7 +153,7 @@ void DenseIsland::solve_friction(const ContactConstraint& c, const ContactPoint&
   change(r + 2, t1);
 }
 
-// Returns the largest change of a row's speed by its own impulse.
+// Returns the maximum change of a row's speed by its own impulse.
 double DenseIsland::eliminate(bool forward) {
   max_ = 0.0;
   for (std::uint32_t r = 0; r < joints_.size(); ++r) change(r, joint_after(r) - p_[r]);
@@ -197,8 +198,8 @@ void DenseIsland::add_disc(const Disc& disc, double load) {
   }
 }
 
-// The equations of the rows that are not at a bound, with their right sides. What slides comes
-// last: the equations before it are symmetric.
+// Sets up the equations of the rows that are not at a bound, with their right-hand sides. Sliding
+// rows come last: the equations before them are symmetric.
 void DenseIsland::find_equations() {
   free_count_ = sliding_count_ = 0;
   for (std::uint32_t r = 0; r < joints_.size(); ++r) {
@@ -250,7 +251,7 @@ void DenseIsland::write_equation(std::size_t i, double* A) const {
     A[i] += at_bound_ * W[e.row] + e.softness;
     return;
   }
-  // Across the direction in which it slides the point turns with it: P = 1 - d d^T.
+  // The rotation of the sliding direction: P = 1 - d d^T projects perpendicular to it.
   const Disc& disc = e.disc;
   const std::uint32_t own = e.row - disc.row;
   double P[3]{};
@@ -268,7 +269,9 @@ void DenseIsland::write_equation(std::size_t i, double* A) const {
   A[i] += e.softness;
 }
 
-// Gauss's elimination; the symmetric part is positive definite. False where there is no pivot.
+// Gaussian elimination. Of the symmetric part, which is positive definite, only the upper triangle
+// is updated. The rest uses partial pivoting. Returns false if a pivot is zero or the solution is
+// not finite.
 bool DenseIsland::solve_directly() {
   find_equations();
   const std::size_t n = free_count_, stride = in_fours(n);
@@ -284,7 +287,7 @@ bool DenseIsland::solve_directly() {
   return std::all_of(step_.begin(), step_.begin() + n, [](double x) { return std::isfinite(x); });
 }
 
-// A share of the step from where p and u are, into the bounds.
+// Adds a fraction of the step to the current impulses and projects them onto their bounds.
 void DenseIsland::go(double fraction) {
   Rows next = p_;
   for (std::size_t i = 0; i < free_count_; ++i) next[free_[i]] += fraction * step_[i];
@@ -292,8 +295,7 @@ void DenseIsland::go(double fraction) {
   for (std::uint32_t r = 0; r < size_; ++r) change(r, next[r] - p_[r]);
 }
 
-// How far the rows are from what each would do on its own: the sum of the squares of the speeds by
-// which they would change.
+// The sum of the squares of the speed changes that each row would make on its own.
 double DenseIsland::error() const {
   double sum = 0.0;
   const auto add = [&](std::uint32_t r, double by) {
@@ -324,7 +326,7 @@ double DenseIsland::error() const {
   return sum;
 }
 
-// Into their bounds.
+// Projects impulses onto their bounds.
 void DenseIsland::project(Rows& x) const {
   for (std::uint32_t r = 0; r < joints_.size(); ++r) {
     const JointRow& row = s_.joints[joints_[r]];
@@ -353,7 +355,7 @@ void DenseIsland::project(Rows& x) const {
   }
 }
 
-// All that presses.
+// The sum of the normal impulses.
 double DenseIsland::load() const {
   double sum = 0.0;
   for (std::uint32_t k = 0; k < contact_count_; ++k) sum += load(contacts_[k]);
@@ -382,8 +384,8 @@ void DenseIsland::forget() {
   for (std::uint32_t k = 0; k < contact_count_; ++k) contacts_[k].constraint->consistent = false;
 }
 
-// As large a share of Newton's step as makes the error smaller. False, and nothing has changed,
-// where none does.
+// Takes the first fraction of the Newton step that reduces the error enough. Returns false and
+// changes nothing if none does.
 bool DenseIsland::step() {
   if (!solve_directly()) return false;
   const Rows p = p_, u = u_;
@@ -398,16 +400,16 @@ bool DenseIsland::step() {
   return false;
 }
 
-// A step that does not help is followed by ever more rounds alone, and the next is a shorter one.
-// Where walls come together on what is between them no impulses are right: steps and rounds only
-// make them larger, steps by far more. Such an island goes back to before the first step and has
-// rounds alone; where its contacts carry more and more it forgets them, since they would go on to
-// grow from step to step.
+// After a rejected step, plain iterations follow, twice as many each time, and the next step is
+// shorter. Where walls close on a body between them, no impulses are consistent: steps and
+// iterations only increase them, steps by far more. Such an island returns to the state before the
+// first step and uses iterations alone. If its load still grows, its impulses are not used as a
+// warm start, since they would grow from step to step.
 void DenseIsland::iterate(int iterations) {
   read();
   const double target = std::max(fastest(), fastest_target()), load_before = load();
   Rows p_first{}, u_first{};
-  double before = 0.0;  // the change of the round before
+  double before = 0.0;  // the change in the last iteration
   int next = 1, wait = 1, steps = 0, refused = 0;
   bool converged = false;
   at_bound_ = kAtBound;

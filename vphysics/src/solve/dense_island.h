@@ -1,15 +1,16 @@
-// An island of few rows, solved with the matrix of how each row answers each.
+// Solves an island of few rows with its dense matrix W.
 //
-// With W = J M^-1 J^T, impulses p and speeds u = W p + b, a round of projected Gauss-Seidel
-// (contact_solver.cpp) costs a line of W for each row. A load that is handed to and fro, as of a
-// ball pinched between a man and the field, settles slowly in rounds: from one to the next by as
-// little as 0.5 %. So before a round comes a step of Newton's method: the rows that are within
-// their bounds are set right together,
+// With W = J M^-1 J^T, impulses p and speeds u = W p + b, an iteration of projected Gauss-Seidel
+// (contact_solver.cpp) costs one line of W per row. It converges slowly where a load passes back
+// and forth, as for a ball pinched between a link and the ground: the error may shrink by only
+// 0.5 % per iteration. So a Newton step precedes an iteration. It solves all rows within their
+// bounds together,
 //     (W + S + e D) dp = target - u - S p,     S: softness, D: the diagonal of W,
-// those that slide or roll at their bounds by their own law (Equation). e is small, so that only
-// what no row feels is held where it is: contacts have more rows than their bodies can answer. The
-// impulses are put back into their bounds; the step is halved until the rows are less wrong than
-// they were, and where that does not help, rounds go on alone for a while, and e grows.
+// and rows that slide or roll at their bounds by their own equation (Equation). e is small: it only
+// regularizes directions in which no row changes speed, since contacts have more rows than their
+// bodies have degrees of freedom. The impulses are then projected onto their bounds. The step is
+// halved until the error decreases. If no fraction decreases it, plain iterations continue for a
+// while, and e grows.
 //
 // Sources: Alart and Curnier 1991 for Newton's method on contacts with friction; Parikh and Boyd
 // 2014 for the term e D, the proximal point method.
@@ -28,16 +29,16 @@ class DenseIsland {
  public:
   static constexpr std::uint32_t kMaxRows = kMaxDenseRows;
 
-  // Prepared rows, whose matrix it writes into the scratch.
+  // Precondition: the rows are prepared. Writes their matrix into the scratch memory.
   DenseIsland(const StepContext& context, const Islands& islands, const Island& island,
               DenseScratch& scratch);
-  // From the velocities of now; impulses and velocities are then those of the end.
+  // Starts from the current velocities; writes the resulting impulses and velocities.
   void iterate(int iterations);
 
  private:
   using Rows = std::array<double, kMaxRows>;
-  // The rows of one contact, which follow one another: normal and tangents of each point, and
-  // where it resists rolling three more.
+  // The rows of one contact, in order: normal and tangents of each point, then three more if it
+  // resists rolling.
   struct Contact {
     ContactConstraint* constraint;
     std::uint32_t row;
@@ -57,8 +58,8 @@ class DenseIsland {
   void solve_friction(const ContactConstraint& c, const ContactPoint& p, std::uint32_t row);
   double load(const Contact& contact) const;
   double load() const;
-  // Rows of friction, two of them, or of what resists rolling, three: |p| <= friction * load, the
-  // load being that of some normals, three rows apart.
+  // Rows of friction (two) or of rolling resistance (three) with |p| <= friction * load. The load
+  // is the sum of some normal impulses, three rows apart.
   struct Disc {
     std::uint32_t row, size;
     std::uint32_t first_normal, normals;
@@ -71,16 +72,17 @@ class DenseIsland {
     }
     bool has(std::uint32_t other) const { return other >= row && other - row < size; }
   };
-  // Of a row that Newton's step sets right. What slides does so as its disc has it: along the
-  // direction d of q = p - m u, u the speeds and m the mass,
-  //     p = mu p_n q / |q|,   derived by p, with dq / |q| = P (dp - m du) / |q| across d.
+  // One row of the Newton step. A sliding row follows its disc: along the direction d of q = p - m
+  // u, with u the speeds and m the mass,
+  //     p = mu p_n q / |q|.
+  // Its derivative uses d(q / |q|) = P (dp - m du) / |q|, with P the projection perpendicular to d.
   struct Equation {
     std::uint32_t row;
-    Disc disc;  // of what slides; else of no rows
+    Disc disc;  // of a sliding row; else empty
     double direction[3];
     double turning;   // mu p_n / |q|
-    double softness;  // of a joint; of what slides 1 / m, by which its equation is multiplied
-    double error;     // its right side
+    double softness;  // of a joint; for a sliding row 1 / m, by which its equation is multiplied
+    double error;     // right-hand side
   };
   bool step();
   bool solve_directly();
@@ -101,14 +103,14 @@ class DenseIsland {
   std::size_t stride_;
   std::vector<double>& factor_;
   double at_bound_ = 0.0;  // e
-  double max_ = 0.0;       // of what change() has changed speeds by
+  double max_ = 0.0;       // the maximum change of speed by change()
   std::uint32_t size_ = 0, contact_count_ = 0;
   std::uint32_t free_count_ = 0, symmetric_count_ = 0, sliding_count_ = 0;
   std::array<Contact, kMaxRows / 3 + 1> contacts_;
   std::array<std::uint32_t, kMaxRows> free_;
-  std::array<Equation, kMaxRows> equations_;  // of each free row
-  std::array<Equation, kMaxRows> sliding_;    // those that will be its last
-  Rows u_, p_, start_, step_;  // step_: the equations' right sides, then what they are solved by
+  std::array<Equation, kMaxRows> equations_;  // one per free row
+  std::array<Equation, kMaxRows> sliding_;    // sliding rows, appended last
+  Rows u_, p_, start_, step_;                 // step_: the right-hand sides, then the solution
 };
 
 }  // namespace vp::solve

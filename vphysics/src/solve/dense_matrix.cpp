@@ -12,8 +12,9 @@
 namespace vp::solve {
 namespace {
 
-// y of a free body's rows, so that (y, y') is how one answers the other: an impulse f through the
-// centre of mass and a moment m about it are f / sqrt(mass) and L^T m, L L^T the inverse inertia.
+// y of a free body's rows, with (y, y') the response of one row to another. An impulse f through
+// the centre of mass and a moment m about it give f / sqrt(mass) and L^T m, with L L^T the inverse
+// inertia.
 class BodyAnswer {
  public:
   static constexpr std::size_t kSize = 8;  // six numbers and two zeros
@@ -68,13 +69,13 @@ void add_rows_of_links(const LinkSide& side, int rows, std::size_t size, double*
   }
 }
 
-// Whether an impulse of the contact pushes the articulation there.
+// Whether an impulse of the contact acts on the articulation through this body.
 bool is_of(const StepContext& s, std::uint32_t body, const LinkSide& side,
            std::uint32_t articulation) {
   return side.depth > 0 && s.bodies[body].articulation == static_cast<int>(articulation);
 }
 
-// W, mover after mover: the rows that push it, as a matrix Y, add Y Y^T.
+// Assembles W: each body or articulation adds Y Y^T, with Y the matrix of the rows that act on it.
 class Assembly {
  public:
   Assembly(const StepContext& s, const Islands& islands, const Island& island,
@@ -101,7 +102,7 @@ class Assembly {
   }
 
  private:
-  // What each joint row and each contact pushes.
+  // Lists the bodies and articulations that each joint row and each contact acts on.
   void list_ends() {
     auto& ends = scratch_.ends;
     ends.clear();
@@ -167,14 +168,15 @@ class Assembly {
     }
   }
 
-  // Of rows that follow one another, their y: zeros so far.
+  // Appends `count` consecutive rows and returns their y, initially zero.
   double* append(std::uint32_t first, int count) {
     const std::size_t before = scratch_.rows.size();
     for (int r = 0; r < count; ++r) scratch_.rows.push_back(first + static_cast<std::uint32_t>(r));
     return scratch_.answers.data() + before * size_;
   }
 
-  // To the lower half alone: rows ascend. Links of different branches share only what carries both.
+  // Adds to the lower half only: the rows ascend. Most entries of a y are zero: links of different
+  // branches share only the degrees of freedom that support both.
   void add_products() {
     const std::size_t n = scratch_.rows.size(), numbers = size_ * in_fours(n);
     if (scratch_.columns.size() < numbers) scratch_.columns.resize(numbers);
@@ -187,7 +189,7 @@ class Assembly {
   const StepContext& s_;
   std::span<const std::uint32_t> joints_, contacts_;
   DenseScratch& scratch_;
-  std::size_t n_, stride_, size_ = 0;  // size_: of a y of the mover at hand
+  std::size_t n_, stride_, size_ = 0;  // size_: the length of a y of the current unit
   double* W_;
 };
 

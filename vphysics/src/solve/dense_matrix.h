@@ -1,4 +1,4 @@
-// How each row of an island answers each: W = J M^-1 J^T, of islands of few rows.
+// The dense matrix W = J M^-1 J^T of an island of few rows.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace vp::solve {
 
 inline constexpr std::uint32_t kMaxDenseRows = 128;
 
-// A joint row, or a contact by its first row, and something that it pushes.
+// A joint row, or a contact by its first row, and a body or articulation that its impulses move.
 struct DenseEnd {
   MovingBodyKey mover;
   std::uint32_t row, contact;
@@ -22,16 +22,16 @@ struct DenseEnd {
   }
 };
 
-// Kept from instant to instant for its capacity.
+// Scratch memory, kept between instants for its capacity.
 struct DenseScratch {
-  std::vector<double> matrix;   // of the island at hand
-  std::vector<double> answers;  // y of a mover's rows
-  std::vector<double> columns;  // the same, turned
+  std::vector<double> matrix;   // of the current island
+  std::vector<double> answers;  // y of the rows of one body or articulation
+  std::vector<double> columns;  // the same, transposed
   std::vector<double> factor;
   std::vector<std::uint32_t> rows;
   std::vector<DenseEnd> ends;
 
-  // Of articulations with so many degrees of freedom at most.
+  // dofs: the maximum number of degrees of freedom of an articulation.
   void reserve(std::size_t dofs) {
     constexpr std::size_t kRows = kMaxDenseRows;
     matrix.reserve(kRows * kRows);
@@ -43,8 +43,8 @@ struct DenseScratch {
   }
 };
 
-// Into scratch.matrix, lines of in_fours(rows) numbers (fours.h). The island's rows have to be
-// prepared: joint rows first, then those of its contacts.
+// Writes W into scratch.matrix, in lines of in_fours(rows) numbers (fours.h). Precondition: the
+// island's rows are prepared. Joint rows come first, then the rows of its contacts.
 void write_dense_matrix(const StepContext& context, const Islands& islands, const Island& island,
                         DenseScratch& scratch);
 

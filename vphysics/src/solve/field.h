@@ -1,4 +1,4 @@
-// A number of each of sixteen lanes, as blocks of contacts and of joints hold them.
+// One number per slot, for sixteen slots: the storage of contact blocks and joint blocks.
 #pragma once
 
 #include <cstdint>

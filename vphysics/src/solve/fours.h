@@ -1,4 +1,5 @@
-// Sums of numbers in fours: they have the same order, and so the same bits, on every machine.
+// Sums of doubles in groups of four. The order of summation, and so every bit, is the same on every
+// machine.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// What the impulses of a contact's rows do to its bodies.
+// Effects of the impulses of contact rows and joint rows on their bodies.
 #pragma once
 
 #include <algorithm>
@@ -9,13 +9,14 @@
 
 namespace vp::solve {
 
-// Changes of speed below this [m/s] end the iteration: a twenty-thousandth of what gravity adds in
-// the step, and no less than rounding leaves.
+// The iteration ends when changes of speed are below this [m/s]: a twenty-thousandth of what
+// gravity adds in the step, with a floor at rounding error.
 inline double convergence_tolerance(const StepContext& s) {
   return std::max(1e-7, 5e-4 * s.step);
 }
 
-// Of what is no link; links as they were before the solve.
+// Relative velocity without the articulations' changes: links have their velocities from before the
+// solve.
 inline Vec3 relative_velocity(const SolverBody& a, const SolverBody& b, const ContactConstraint& c,
                               const ContactPoint& p) {
   Vec3 u;
@@ -23,7 +24,7 @@ inline Vec3 relative_velocity(const SolverBody& a, const SolverBody& b, const Co
   if (!c.stands_a) u = u - a.v - cross(a.w, p.arm_a);
   return u;
 }
-// The same along the normal and the tangents.
+// The relative speeds along the normal and the tangents.
 struct PointSpeeds {
   double along[3];
 };
@@ -32,16 +33,16 @@ inline PointSpeeds speeds_of(const SolverBody& a, const SolverBody& b, const Con
   const Vec3 u = relative_velocity(a, b, c, p);
   return {{dot(c.normal, u), dot(c.tangent[0], u), dot(c.tangent[1], u)}};
 }
-// What the solve has added to a row's speed through links.
+// The speed that the solve has added to a row through articulations.
 inline double through_links(const ContactConstraint& c, int row) {
   if (!c.has_links()) return 0.0;
   return along(c.side_a, row, c.side_a.velocity) + along(c.side_b, row, c.side_b.velocity);
 }
 
-// Friction's impulses, of those before, at tangential speeds u0 and u1 beside what the surfaces do
-// themselves. Sticking: what stops the point, by the whole block. Sliding: a gradient step,
-// projected on the disc, with one mass for both directions: only so does friction settle opposite
-// to the velocity, since the block turns what it multiplies.
+// Updates the friction impulse at tangential speeds u0 and u1 relative to the surfaces' own motion.
+// Sticking: the full tangent block stops the point. Sliding: a gradient step with one mass for both
+// directions, projected on the disc. Only one mass makes friction converge opposite to the
+// velocity, since the block rotates the vector that it multiplies.
 inline void friction_after(const ContactConstraint& c, const ContactPoint& p, double u0, double u1,
                            double normal_impulse, double (&impulse)[2]) {
   const double before0 = impulse[0], before1 = impulse[1];
@@ -56,7 +57,8 @@ inline void friction_after(const ContactConstraint& c, const ContactPoint& p, do
   impulse[0] *= max_value / size;
   impulse[1] *= max_value / size;
 }
-// That against rolling, at so fast a relative rotation, of contacts that carry so much.
+// The next rolling impulse at the relative angular velocity `rotation` of a contact with the normal
+// load `load`.
 inline Vec3 rolling_after(const ContactConstraint& c, const Vec3& before, const Vec3& rotation,
                           double load) {
   const Vec3 next = before - c.rolling_mass * rotation;
@@ -82,7 +84,7 @@ inline void apply_to_links(const ContactConstraint& c, int row, double impulse) 
 
 // --- rows of joints
 
-// What of bodies and articulations is read and changed: velocities, or the position correction.
+// The quantity that is read and changed: velocities, or the position correction.
 struct Moved {
   Vec3 SolverBody::*linear;
   Vec3 SolverBody::*angular;
@@ -118,7 +120,7 @@ inline void give(const StepContext& s, const JointRow& row, double impulse) {
   if (row.pair == kNoPair) return apply_impulse(row.side, 0, impulse, row.side.velocity);
   give(s, s.pairs[row.pair], impulse, kVelocity);
 }
-// Returns the change of speed.
+// Returns the change of the row's speed.
 inline double solve_joint(const StepContext& s, JointRow& row) {
   const double next = impulse_after(row, row.impulse, speed_of(s, row));
   const double change = next - row.impulse;

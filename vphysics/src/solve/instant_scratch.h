@@ -1,4 +1,4 @@
-// What the solve of an instant keeps from one to the next for its capacity.
+// Scratch memory of the solve of an instant, kept between instants for its capacity.
 #pragma once
 
 #include "solve/dense_matrix.h"
@@ -10,7 +10,8 @@ struct InstantScratch {
   Islands islands;
   DenseScratch dense;
 
-  // For so many contacts and joint rows, and articulations of so many degrees of freedom.
+  // Reserves memory for this many contacts and joint rows, and for articulations of this many
+  // degrees of freedom.
   void reserve(std::size_t contacts, std::size_t joints, std::size_t dofs) {
     islands.reserve(contacts, joints);
     dense.reserve(dofs);

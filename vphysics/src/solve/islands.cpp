@@ -11,7 +11,7 @@ constexpr std::uint32_t kNoIsland = 0xffffffffu;
 
 }  // namespace
 
-// The node with the least number in its island.
+// The smallest node of the island.
 std::uint32_t Islands::root_of(std::uint32_t node) {
   while (parent_[node] != node) node = parent_[node] = parent_[parent_[node]];
   return node;

@@ -1,5 +1,5 @@
-// The contacts and joint rows of an instant in islands: what is of one never feels what is of
-// another, since nothing that moves is common to both.
+// Groups the contacts and joint rows of an instant into islands. No movable body belongs to two
+// islands, so islands do not affect one another.
 #pragma once
 
 #include <algorithm>
@@ -12,13 +12,14 @@
 
 namespace vp::solve {
 
-// What answers impulses: a body, or an articulation as a whole.
+// A unit that responds to impulses: a body, or a complete articulation.
 using MovingBodyKey = std::uint64_t;
 inline MovingBodyKey key_of_articulation(std::uint32_t articulation) {
   return (MovingBodyKey{1} << 32) | articulation;
 }
 
-// f(mover) of all that an impulse of a contact, or of a row of a joint between bodies, pushes.
+// Calls f(key) for each body or articulation that an impulse of a contact, or of a row of a joint
+// between bodies, moves.
 template <class F>
 void for_moving_bodies_of(const StepContext& s, std::uint32_t body, bool moves,
                           const LinkSide& side, const F& f) {
@@ -55,13 +56,13 @@ class Islands {
     island_of_.reserve(contacts + joints);
     island_of_joint_.reserve(joints);
   }
-  // Of contacts and rows of joints between bodies, which are prepared, and of the rows of the
-  // articulations that they push.
+  // Finds the islands of contacts and of rows of joints between bodies, and of the rows of the
+  // articulations that they move. Precondition: the contacts and these rows are prepared.
   void find(const StepContext& context);
 
   std::span<Island> all() { return islands_; }
   std::span<const Island> all() const { return islands_; }
-  // Numbers in the context, ascending.
+  // Indices into the context, ascending.
   std::span<const std::uint32_t> contacts(const Island& island) const {
     return std::span(contacts_).subspan(island.first_contact,
                                         island.end_contact - island.first_contact);
@@ -79,8 +80,8 @@ class Islands {
   std::vector<Island> islands_;
   std::vector<std::uint32_t> contacts_, joints_;
   // Nodes are the contacts, then the rows of joints between bodies.
-  std::vector<std::pair<MovingBodyKey, std::uint32_t>> ends_;  // what moves, and the nodes on it
-  std::vector<std::uint32_t> parent_;                          // of each node: union and find
+  std::vector<std::pair<MovingBodyKey, std::uint32_t>> ends_;  // a unit, and a node on it
+  std::vector<std::uint32_t> parent_;                          // of each node: union-find
   std::vector<std::uint32_t> island_of_;                       // of each node
   std::vector<std::uint32_t> island_of_joint_;
 };

@@ -1,13 +1,14 @@
-// What joints measure, W lanes at a time: turns of bodies, angles between frames, swing and twist.
+// Joint coordinates, W lanes at a time: rotations of bodies, angles between frames, swing and
+// twist.
 //
-// Coordinates of a joint, with a's frame at p_a, axes R_a, b's at p_b, R_b, arms r from the centres
-// of mass, d = p_b - p_a:
+// Coordinates of a joint. a's frame has the origin p_a and the axes R_a, b's p_b and R_b. r are the
+// arms from the centres of mass, d = p_b - p_a:
 //
 //   c_i = e_i . d,  e_i a's axis                        along e_i
 //   c_i' = e_i . (v_b + w_b x r_b - v_a) - ((r_a + d) x e_i) . w_a
 //
-// Turning, in a's frame, with R = R_a^T R_b, whose third column is (sin s k_y, -sin s k_x, cos s),
-// s the swing about the unit vector k across z, r = s k, w = R_a^T (w_b - w_a):
+// Rotation, in a's frame, with R = R_a^T R_b, whose third column is (sin s k_y, -sin s k_x, cos s),
+// s the swing about the unit vector k perpendicular to z, r = s k, w = R_a^T (w_b - w_a):
 //
 //   r'     = [k k^T + s cot(s) g g^T - g r_g z^T] w,  g = (k_y, -k_x),  r_g = s
 //   twist  = atan2(R_10 - R_01, R_00 + R_11),  twist' = (z_a + z_b) . w / (1 + cos s)
@@ -20,15 +21,15 @@
 
 namespace vp::solve {
 
-// In [-pi, pi]; 0 of (0, 0).
+// atan2(y, x) in [-pi, pi]; 0 for (0, 0).
 template <int W>
 Lanes<W> angle_of(const Lanes<W>& y, const Lanes<W>& x) {
   using F = Lanes<W>;
   constexpr float kPiF = static_cast<float>(kPi);
   const F ay = abs(y), ax = abs(x);
   const F large = larger(ax, ay), small = smaller(ax, ay);
-  // atan(t) = pi / 4 + atan((t - 1) / (t + 1)): what is left is below tan(pi / 8), where the series
-  // has ended after seven terms.
+  // atan(t) = pi / 4 + atan((t - 1) / (t + 1)). The remaining argument is below tan(pi / 8), where
+  // seven terms of the series suffice.
   const LaneMask<W> far = small > F(0.41421356f) * large;
   const F top = select(far, small - large, small), bottom = select(far, small + large, large);
   const F t = select(bottom > F(0.0f), top / bottom, F(0.0f)), s = t * t;
@@ -40,21 +41,21 @@ Lanes<W> angle_of(const Lanes<W>& y, const Lanes<W>& x) {
   return select(y < F(0.0f), -angle, angle);
 }
 
-// By a unit quaternion, less u itself.
+// Rotates u by a unit quaternion (q, w) and subtracts u.
 template <class F>
 Vec3T<F> rotated_minus(const Vec3T<F>& q, const F& w, const Vec3T<F>& u) {
   const Vec3T<F> t = F(2.0f) * cross(q, u);
   return w * t + cross(q, t);
 }
 
-// The quaternion of a turn by the vector theta; its sign does not matter.
+// The quaternion of the rotation vector theta; its sign does not matter.
 template <int W>
 void quaternion_of(const Vec3T<Lanes<W>>& theta, Vec3T<Lanes<W>>& q, Lanes<W>& w) {
   using F = Lanes<W>;
-  constexpr float kPass = 12582912.0f;  // 1.5 * 2^23: adding it leaves no place for a fraction
+  constexpr float kPass = 12582912.0f;  // 1.5 * 2^23: adding it rounds to an integer
   const F size = sqrt(dot(theta, theta)), half = F(0.5f) * size;
   const F turns = (half * F(static_cast<float>(1.0 / kPi)) + F(kPass)) - F(kPass);
-  // pi as the sum of a short number and the rest, so that few turns lose nothing.
+  // pi as the sum of a short number and a remainder, so that a few revolutions lose no precision.
   const F r = (half - turns * F(3.140625f)) - turns * F(9.67653589793e-4f), s = r * r;
   const auto series = [&](int first) {  // of x^k / k!, every other k from first + 10 down
     F sum(1.0f);
@@ -82,7 +83,7 @@ struct GoneLanes {
   V rotated(const V& u) const { return u + less(u); }
 };
 
-// Axes of both frames where the bodies are now, and what is measured between them.
+// Axes of both frames at the current poses, and the measures between them.
 template <int W>
 struct Frames {
   using F = Lanes<W>;
@@ -104,7 +105,7 @@ struct Frames {
   V twist_axis() const { return (F(1.0f) / larger(F(1.0f) + dot(az, bz), F(1e-3f))) * (az + bz); }
 };
 
-// The swing's vector and its derivatives, in a's frame.
+// The swing vector and its derivatives, in a's frame.
 template <int W>
 struct Swing {
   using F = Lanes<W>;

@@ -1,5 +1,5 @@
-// The passes over joints for one instruction set; compiled once for each, with VP_JOINT_PASSES the
-// table's name and VP_LANES the width (CMakeLists.txt).
+// The joint passes for one instruction set. Compiled once per set, with VP_JOINT_PASSES the table's
+// name and VP_LANES the width (CMakeLists.txt).
 #include "solve/joint_passes.h"
 
 #include <algorithm>
@@ -39,7 +39,7 @@ void find_gone(const BodyRow* rows, const std::array<float, 6>* start, const std
   }
 }
 
-// Runs f(lanes, at) on all lanes, kWidth at a time.
+// Runs f(lanes, at) on all slots, kWidth at a time.
 template <class B, class F>
 void for_joints(const typename JointPasses<B>::Run& run, const F& f) {
   for (std::size_t i = 0; i < run.count; ++i) {

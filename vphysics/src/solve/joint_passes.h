@@ -1,7 +1,7 @@
-// The passes over blocks of joints, W lanes at a time: see joint_block.h for what is solved.
+// The passes over blocks of joints, W lanes at a time. joint_block.h states the equations.
 //
-// A sub-step prepares (where the bodies are now, K and its factor), warm starts, pushes in rounds,
-// and, once bodies have moved, prepares once more and relaxes.
+// A sub-step prepares (current poses, K and its factor), warm starts, and iterates with bias
+// velocities. After the bodies have moved, it prepares once more and relaxes.
 #pragma once
 
 #include <algorithm>
@@ -12,24 +12,25 @@
 
 namespace vp::solve {
 
-// Bounded rows are few; their sweeps are on the Schur complement and need no bodies.
+// Bounded rows are few. Their sweeps work on the Schur complement and do not access the bodies.
 inline constexpr int kBoundedSweeps = 4;
-// A drive whose spring is softer than this, in (sub-steps times natural frequency)^2, is integrated
-// so that it neither loses nor gains energy; a stiffer one ever more implicitly. Sixteen such
-// springs on one body are still stable: 4 is the limit.
+// A drive's spring softer than this, in (sub-steps times natural frequency)^2, is integrated
+// without gain or loss of energy; a stiffer one increasingly implicitly. Sixteen such springs on
+// one body are still stable: the limit is 4.
 inline constexpr float kExplicit = 0.25f;
-// A pivot below this share of its row's own K is of a row that others hold already.
+// A pivot below this fraction of its row's own K belongs to a row that depends on other rows.
 inline constexpr float kDependent = 1e-6f;
-inline constexpr float kMinResponse = 1e-30f;  // of a pivot whose inverse is a number
-// A hard row's error counts as no more than what gives it a steady load of so many times the speed
-// at which it is taken out. Larger loads pull the joint open: rows that contradict one another
-// would else hold a load that throws their bodies about.
+inline constexpr float kMinResponse = 1e-30f;  // the smallest pivot that is inverted
+// The bias of a hard row is clamped to this many times its maximum bias velocity. The clamp limits
+// the steady load of an error; larger loads pull the joint open. Without it, rows that contradict
+// one another would hold a load that throws their bodies about.
 inline constexpr float kStrongest = 2.0f;
-// In sub-steps shorter than a fifth of this [s] errors that small are taken out faster: they may be
-// what single precision leaves.
+// In sub-steps shorter than a fifth of this [s] the maximum bias velocity grows: errors up to this
+// time times that velocity are corrected at the full rate, since they may be rounding errors of
+// single precision.
 inline constexpr float kBriefly = 3.3e-4f;
 inline constexpr float kJointConverged =
-    1e-4f;  // of the load: the change of a round that is enough
+    1e-4f;  // as a fraction of the load: a smaller change by an iteration counts as converged
 
 constexpr int factor_index(int i, int j) {
   return i * (i + 1) / 2 + j;  // j <= i
@@ -51,12 +52,12 @@ class JointLanes : public BlockLanes<W, BLOCK> {
   using Base::get;
   using Base::put;
 
-  // That it is no more than there is room for is said to the compiler.
+  // The minimum tells the compiler that the count is within the arrays.
   int others() const { return std::min<int>(form_.rows, kOthers); }
   int count() const { return kPoint + others(); }
   int locked() const { return kPoint + std::min<int>(form_.locked, kOthers); }
   const JointForm& form() const { return form_; }
-  // A way, and no turn.
+  // Whether row i is linear: along an axis, not about it.
   bool is_along(int i) const { return BLOCK::kAxes && kPoint == 0 && form_.slot[i] < kSwingX; }
   V speed_of_point() const {
     const PointPart& point = block().point;
@@ -64,7 +65,7 @@ class JointLanes : public BlockLanes<W, BLOCK> {
            cross(Base::w_a, get(point.arm_a));
   }
 
-  // What the rows change by.
+  // The speeds J v of the rows.
   void speeds(F* u) const {
     if constexpr (kPoint > 0) {
       const V v = speed_of_point();
@@ -84,7 +85,7 @@ class JointLanes : public BlockLanes<W, BLOCK> {
       }
     }
   }
-  // Gives the bodies impulses of all rows.
+  // Applies impulses of all rows to the bodies.
   void apply_impulse(const F* p) {
     V linear_a, angular_a, linear_b, angular_b;
     if constexpr (kPoint > 0) {
@@ -131,7 +132,7 @@ class JointLanes : public BlockLanes<W, BLOCK> {
     }
     put(block().rows[i - kPoint].impulse, x);
   }
-  // With that of the limits.
+  // Includes the impulse of the limits.
   F all_impulse(int i) const {
     const F p = impulse(i);
     return i < locked() ? p : p + get(block().bounds[i - kPoint].stop);
@@ -159,10 +160,10 @@ class JointLanes : public BlockLanes<W, BLOCK> {
   const JointForm& form_;
 };
 
-// --- preparing -----------------------------------------------------------------------------------
+// --- preparation ---------------------------------------------------------------------------------
 
-// Arms and gap of the point, axes and coordinates of the rows, where the bodies are now. Residuals
-// of the point go to gap.
+// Computes arms and separation of the point, and axes and coordinates of the rows, at the current
+// poses. `separation` is the residual of the point's rows.
 template <int W, class B>
 void evaluate_lanes(JointLanes<W, B>& c, const Gone* gone, int at, float max_bias_velocity,
                     Vec3T<Lanes<W>>& separation) {
@@ -178,8 +179,8 @@ void evaluate_lanes(JointLanes<W, B>& c, const Gone* gone, int at, float max_bia
         c.get(point.start_separation) + (b.displacement - a.displacement) + (less_b - less_a);
     V arm_a = start_a + less_a + separation;
     if constexpr (B::kPointRows > 0) {
-      // Of a point that is farther away than the bodies are large, a part: a body is no rod of any
-      // length. Where it is pulled along the gap, that turns it as before.
+      // If the separation is larger than the bodies, the arm contains only a part of it: a body is
+      // no rod of arbitrary length. A pull along the separation rotates the body as before.
       const F pull = c.rate(0) * c.rate(0) * dot(separation, separation);
       const LaneMask<W> strong =
           pull > F(kStrongest * kStrongest * max_bias_velocity * max_bias_velocity);
@@ -198,8 +199,8 @@ void evaluate_lanes(JointLanes<W, B>& c, const Gone* gone, int at, float max_bia
     AxesPart& axes = c.block().axes;
     const Frames<W> frames(c, axes, a, b);
     const Swing<W> swing(frames);
-    // Beyond whole turns, though no row be about it: who reads it later has only half a turn a
-    // step to go by.
+    // Accumulates full revolutions even if no row is about the twist: a later reader can resolve
+    // only half a revolution per step.
     const auto counted_twist = [&] {
       constexpr float kRevolution = static_cast<float>(2.0 * kPi), kPass = 12582912.0f;
       const F twist = frames.twist(), turns = (c.get(axes.twist) - twist) * F(1.0f / kRevolution);
@@ -235,7 +236,8 @@ void evaluate_lanes(JointLanes<W, B>& c, const Gone* gone, int at, float max_bia
           c.put(axis, frames.twist_axis());
           break;
         case kCone: {
-          // The way to the cone: (1 - f) / |grad f| with f^2 = (x / cone_x)^2 + (y / cone_y)^2.
+          // The distance to the cone: (1 - f) / |grad f| with f^2 = (x / cone_x)^2 + (y /
+          // cone_y)^2.
           const F ix = F(1.0f) / c.get(axes.cone_x), iy = F(1.0f) / c.get(axes.cone_y);
           const F sx = swing.x * ix, sy = swing.y * iy;
           const F f = sqrt(sx * sx + sy * sy);
@@ -255,7 +257,7 @@ void evaluate_lanes(JointLanes<W, B>& c, const Gone* gone, int at, float max_bia
   }
 }
 
-// K without G, below and on the diagonal.
+// Computes K without G, the lower triangle with the diagonal.
 template <int W, class B>
 void find_response(const JointLanes<W, B>& c, Lanes<W> (*K)[B::kAll]) {
   using F = Lanes<W>;
@@ -315,7 +317,7 @@ void find_response(const JointLanes<W, B>& c, Lanes<W> (*K)[B::kAll]) {
   }
 }
 
-// How fast a held row takes out its error; what the user made soft is a spring.
+// The maximum bias velocity of a locked row; unlimited for rows with user-defined softness.
 template <int W, class B>
 Lanes<W> fastest_of(const JointLanes<W, B>& c, int i, float bias) {
   using F = Lanes<W>;
@@ -331,7 +333,7 @@ Lanes<W> fastest_of(const JointLanes<W, B>& c, int i, float bias) {
   return select(c.relaxes(i) > F(0.0f), fastest, F(kNowhere));
 }
 
-// True if an error of a hard row is too large to be taken out at once.
+// Returns true if the error of a hard row is too large to be corrected at its full rate.
 template <int W, class B>
 bool prepare_lanes(JointLanes<W, B>& c, const Gone* gone, int at, float max_bias_velocity) {
   using F = Lanes<W>;
@@ -360,7 +362,7 @@ bool prepare_lanes(JointLanes<W, B>& c, const Gone* gone, int at, float max_bias
     c.put(block.leak[i], leak);
     K[i][i] += leak;
   }
-  // Below the diagonal L of the held columns; the rest becomes the Schur complement.
+  // L below the diagonal of the locked columns; the rest becomes the Schur complement.
   for (int j = 0; j < kAll && j < locked; ++j) {
     const LaneMask<W> independent =
         both(K[j][j] > F(kDependent) * own[j], K[j][j] > F(kMinResponse));
@@ -378,14 +380,14 @@ bool prepare_lanes(JointLanes<W, B>& c, const Gone* gone, int at, float max_bias
   return !none(far);
 }
 
-// --- laws of bounded rows ------------------------------------------------------------------------
+// --- force laws of bounded rows ------------------------------------------------------------------
 
 template <class F>
 F clamped(const F& x, const F& min_impulse, const F& max_impulse) {
   return smaller(larger(x, min_impulse), max_impulse);
 }
 
-// The change of a drive's impulse at the speed u, with K what an impulse does to that speed.
+// The change of a drive's impulse at the speed u. K: the change of that speed by a unit impulse.
 template <int W, class B>
 Lanes<W> drive_change(const JointLanes<W, B>& c, int i, const Lanes<W>& u, const Lanes<W>& K,
                       float h) {
@@ -406,7 +408,8 @@ Lanes<W> drive_change(const JointLanes<W, B>& c, int i, const Lanes<W>& u, const
                 F(0.0f));
 }
 
-// The same of what holds within bounds. Where these let it go one way only, a gap may close.
+// The same for a row locked within bounds. If the bounds allow one sign only, a separation may
+// close.
 template <int W, class B>
 Lanes<W> hold_change(const JointLanes<W, B>& c, int i, const Lanes<W>& u, const Lanes<W>& K,
                      float h, bool pushes) {
@@ -429,7 +432,7 @@ Lanes<W> hold_change(const JointLanes<W, B>& c, int i, const Lanes<W>& u, const 
   return select(gives, clamped(target, min_impulse, max_impulse) - impulse, zero);
 }
 
-// The same of the limits. An open one lets the gap close; one that is passed is pushed out.
+// The same for the limits. A positive separation may close; a violated limit gets a bias velocity.
 template <int W, class B>
 Lanes<W> stop_change(const JointLanes<W, B>& c, int i, const Lanes<W>& u, const Lanes<W>& K,
                      float h, float max_bias_velocity, bool pushes) {
@@ -445,22 +448,22 @@ Lanes<W> stop_change(const JointLanes<W, B>& c, int i, const Lanes<W>& u, const 
   const LaneMask<W> gives = K > zero;
   const F mass = select(gives, F(1.0f) / select(gives, K, F(1.0f)), zero);
   F unbiased = p - mass * (speed + separation * F(1.0f / h));
-  if (!pushes) unbiased = smaller(unbiased, p);  // what closes next is the next sub-step's affair
+  if (!pushes) unbiased = smaller(unbiased, p);  // the next sub-step handles what closes in it
   const bool linear = !B::kAxes || c.is_along(i);
   const F bias =
       larger(c.get(row.rate) * separation, F(linear ? -max_bias_velocity : -kMaxAngularBias));
   const F passed = pushes ? p - (mass * (speed + bias) + loss * p) / (F(1.0f) + loss)
                           : p - c.get(row.relaxes) * mass * speed;
   const F next = larger(select(separation > zero, unbiased, passed), zero);
-  // Of the other limit, or of one that is not there.
+  // The other limit is the closer one, or the limit is absent.
   const LaneMask<W> lets_go = either(p < zero, !(separation < F(0.5f * kNowhere)));
   return select(lets_go, -stop, side * (next - p));
 }
 
-// --- rounds --------------------------------------------------------------------------------------
+// --- iterations ----------------------------------------------------------------------------------
 
-// On entry u: of held rows what is to become zero, of bounded ones their speeds. Returns in change
-// the changes of impulses; none in lanes that do not go on.
+// On entry, u has the speed error of each locked row and the speed of each bounded one. Returns the
+// changes of the impulses in `change`; zero in lanes outside goes_on.
 template <int W, class B>
 void solve_rows(JointLanes<W, B>& c, const LaneMask<W>& goes_on, Lanes<W>* u, Lanes<W>* change,
                 float h, float max_bias_velocity, bool pushes) {
@@ -487,7 +490,7 @@ void solve_rows(JointLanes<W, B>& c, const LaneMask<W>& goes_on, Lanes<W>* u, La
         };
         const LaneMask<W> holds = c.get(block.bounds[k].holds) > zero;
         F by_drive = drive_change(c, k, u[i], K, h);
-        // Springs are as implicit as they are: relaxing them would count them twice.
+        // Springs are already integrated implicitly: relaxation would apply them twice.
         if (!pushes) {
           by_drive = select(c.get(block.bounds[k].stiffness) > zero, zero, by_drive);
         }
@@ -517,8 +520,9 @@ void warm_start_lanes(JointLanes<W, B>& c) {
   c.scatter_velocities();
 }
 
-// A round of pushing. Those after the first of a sub-step pass by what has settled. kSomeFar:
-// some joints of the world have errors too large to be taken out at once.
+// An iteration with bias velocities. Iterations after the first of a sub-step skip converged
+// joints. kSomeFar: some joints of the world have errors too large to be corrected at their full
+// rate.
 template <bool kSomeFar, int W, class B>
 void solve_lanes(JointLanes<W, B>& c, float h, float max_bias_velocity, bool first) {
   using F = Lanes<W>;
@@ -534,7 +538,8 @@ void solve_lanes(JointLanes<W, B>& c, float h, float max_bias_velocity, bool fir
     const F lost = c.get(block.leak[i]) * c.impulse(i);
     F target = bias + lost;
     if constexpr (kSomeFar) {
-      // As fast with what the loss of the load takes from it; the loss itself stays whole.
+      // Clamps the bias so that its sum with the softness term is within the maximum bias velocity.
+      // The softness term itself is not clamped.
       const F fastest = fastest_of(c, i, max_bias_velocity);
       const F max_impulse = larger(fastest - select(bias > zero, lost, -lost), zero);
       target = select(abs(bias) > fastest, clamped(bias, -max_impulse, max_impulse) + lost, target);
@@ -544,17 +549,17 @@ void solve_lanes(JointLanes<W, B>& c, float h, float max_bias_velocity, bool fir
   solve_rows(c, goes_on, u, change, h, max_bias_velocity, true);
   c.apply_impulse(change);
   c.scatter_velocities(goes_on);
-  F moved = zero, load = zero;  // by what they do: rows are of forces and of moments
+  F moved = zero, load = zero;  // weighted by response: rows are forces or moments
   for (int i = 0; i < c.count(); ++i) {
     const F p = c.all_impulse(i), own = c.get(block.own[i]);
-    moved += (change[i] * own) * change[i];  // squares of impulses may be below what floats hold
+    moved += (change[i] * own) * change[i];  // squared impulses could underflow
     load += (p * own) * p;
   }
   const LaneMask<W> converged = moved <= F(kJointConverged * kJointConverged) * load;
   c.put(block.active, select(both(goes_on, !converged), one, zero));
 }
 
-// Takes from velocities what the push has added, and adds up what the sub-step's force was.
+// Removes the bias from the velocities, and accumulates the sub-step's force and torque.
 template <int W, class B>
 void relax_lanes(JointLanes<W, B>& c, float h) {
   using F = Lanes<W>;

@@ -1,9 +1,9 @@
-// Rows of bodies to lanes and back: what lets W contacts of W disjoint pairs of bodies be solved
-// side by side.
+// Gathers rows of bodies into SIMD lanes and scatters them back, so that W contacts of W disjoint
+// pairs of bodies are solved in parallel.
 //
-// A body's numbers are a row of memory, a lane of a pack is a body: gathering W bodies is the
-// transposition of W rows. Lanes never meet, and nothing is contracted: every W gives the same
-// bits.
+// A body's numbers are a row of memory; a lane of a pack is a body. Gathering W bodies is a
+// transposition of W rows. Lanes do not interact, and no operations are contracted: every W gives
+// the same bits.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ using LaneMask = PackMaskT<float, W>;
 
 namespace lanes {
 
-// A bit for each lane.
+// One bit per lane.
 template <int W>
 unsigned bits_of(const LaneMask<W>& m) {
 #if defined(__AVX512DQ__)
@@ -68,7 +68,7 @@ void store(float* p, const RawT<N>& r) {
   __builtin_memcpy(__builtin_assume_aligned(p, sizeof r), &r, sizeof r);
 }
 
-// One stage of a transposition of groups of 2 k lanes: low and high take turns in blocks of k.
+// One stage of a transposition of groups of 2 k lanes: alternates blocks of k lanes of a and b.
 template <int W, int K, std::size_t... I>
 RawT<W> mix_low(const RawT<W>& a, const RawT<W>& b, std::index_sequence<I...>) {
   return __builtin_shufflevector(a, b, ((I / K) % 2 == 0 ? I : I - K + W)...);
@@ -78,8 +78,7 @@ RawT<W> mix_high(const RawT<W>& a, const RawT<W>& b, std::index_sequence<I...>) 
   return __builtin_shufflevector(a, b, ((I / K) % 2 == 0 ? I + K : I + W)...);
 }
 
-// N rows of W lanes; every group of N lanes is transposed: lane g N + j of row i becomes lane
-// g N + i of row j.
+// Transposes every group of N lanes of N rows: lane g N + j of row i becomes lane g N + i of row j.
 template <int W, int N, int K = 1>
 void transpose(RawT<W>* r) {
   constexpr auto kAll = std::make_index_sequence<W>();
@@ -101,7 +100,7 @@ RawT<8> half(const RawT<16>& a, std::index_sequence<I...>) {
   return __builtin_shufflevector(a, a, (I + FROM)...);
 }
 
-// 8 floats of each of W rows, as 8 packs; p(i) is where row i's are, aligned to 32 bytes.
+// Loads 8 floats of each of W rows as 8 packs. p(i) is the address of row i, aligned to 32 bytes.
 template <int W, class Row>
 void gather8(const Row& p, Lanes<W>* out) {
   if constexpr (W == 16) {
@@ -120,7 +119,7 @@ void gather8(const Row& p, Lanes<W>* out) {
     }
   }
 }
-// Those rows of which keep(i) is true.
+// Stores the rows for which keep(i) is true.
 template <int W, class Row, class Keep>
 void scatter8(const Row& p, const Lanes<W>* in, const Keep& keep) {
   if constexpr (W == 16) {
@@ -142,7 +141,7 @@ void scatter8(const Row& p, const Lanes<W>* in, const Keep& keep) {
     }
   }
 }
-// 16 floats of each row, aligned to 64 bytes.
+// Loads 16 floats of each row, aligned to 64 bytes.
 template <int W, class Row>
 void gather16(const Row& p, Lanes<W>* out) {
   if constexpr (W == 16) {
@@ -158,7 +157,7 @@ void gather16(const Row& p, Lanes<W>* out) {
 
 }  // namespace lanes
 
-// What the generic ones of packs find, by fewer instructions.
+// As the generic functions of packs, with fewer instructions.
 template <int W>
 bool none(const LaneMask<W>& m) {
   return lanes::bits_of(m) == 0u;
@@ -172,8 +171,8 @@ LaneMask<W> either(const LaneMask<W>& a, const LaneMask<W>& b) {
   return {a.lanes | b.lanes};
 }
 
-// a > b ? a : b and a < b ? a : b: so b where they are equal or cannot be compared. g++ makes two
-// instructions of the one there is where one side is a constant.
+// a > b ? a : b and a < b ? a : b. So they return b if the two are equal or unordered. g++
+// generates two instructions instead of the single one if one operand is a constant.
 template <int W>
 Lanes<W> larger(const Lanes<W>& a, const Lanes<W>& b) {
 #if defined(__AVX512F__)
@@ -194,7 +193,7 @@ Lanes<W> smaller(const Lanes<W>& a, const Lanes<W>& b) {
 #endif
   return select(a < b, a, b);
 }
-// Without its sign.
+// Clears the sign bit.
 template <int W>
 Lanes<W> abs(const Lanes<W>& x) {
   using Words = decltype(LaneMask<W>::lanes);

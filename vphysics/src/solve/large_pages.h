@@ -1,4 +1,4 @@
-// Memory for arrays of many megabytes that are read in no order.
+// An allocator for arrays of many megabytes with random access.
 #pragma once
 
 #include <cstddef>
@@ -12,9 +12,9 @@
 
 namespace vp::solve {
 
-// Where the system has large pages an array of more than some megabytes is put into such: with
-// those of 4 KiB the processor would look up most of its accesses in tables, which themselves
-// leave its caches.
+// Where the system has large pages, arrays of 4 MiB or more are allocated in them. With 4 KiB pages
+// most accesses would need a page table lookup, and the tables themselves would not fit into the
+// caches.
 template <class T>
 struct LargePages {
   using value_type = T;
@@ -30,7 +30,7 @@ struct LargePages {
     const std::size_t rounded_up = (bytes + kPage - 1) / kPage * kPage;
     void* memory = ::operator new (rounded_up, std::align_val_t{kPage});
 #ifdef __linux__
-    (void)madvise(memory, rounded_up, MADV_HUGEPAGE);  // may be refused
+    (void)madvise(memory, rounded_up, MADV_HUGEPAGE);  // may fail
 #endif
     return static_cast<T*>(memory);
   }

@@ -5,7 +5,7 @@
 namespace vp::solve {
 namespace {
 
-// Everything but the rows themselves.
+// Sets everything except the rows themselves.
 void attach(const SolverArticulation& art, std::uint32_t first, std::uint32_t depth,
             LinkSide& side) {
   side = {nullptr, art.factor->next(), art.velocity, art.shift, first, depth};
@@ -17,13 +17,13 @@ std::size_t attach(const StepContext& s, const ContactConstraint& c, std::uint32
   const SolverBody& link = s.bodies[body];
   if (link.articulation < 0) return 0;
   SolverArticulation& art = s.articulations[static_cast<std::size_t>(link.articulation)];
-  // What touches a link that is fixed to the world moves none of its joints.
+  // A contact on a link that is fixed to the world moves no joint.
   art.touched = art.touched || art.factor->depth(link.link) > 0;
   attach(art, art.factor->first(link.link), art.factor->depth(link.link), side);
   return static_cast<std::size_t>(rows_of(c)) * side.depth;
 }
 
-// The rows of one side; its impulses are those of the other one turned round.
+// Fills the rows of one side. sign: -1 for a, whose impulses are opposite to those on b.
 double* fill(const StepContext& s, const ContactConstraint& c, std::uint32_t body, double sign,
              LinkSide& side, double* y) {
   if (side.depth == 0) return y;
@@ -44,7 +44,7 @@ double* fill(const StepContext& s, const ContactConstraint& c, std::uint32_t bod
   return y;
 }
 
-// Returns how many numbers its rows need.
+// Returns the number of doubles that its rows need.
 std::size_t attach(const StepContext& s, PairEnd& end) {
   const SolverBody& body = s.bodies[end.body];
   end.moves = moves(body);
@@ -56,7 +56,7 @@ std::size_t attach(const StepContext& s, PairEnd& end) {
   return 2 * std::size_t{end.side.depth};
 }
 
-// y of a force along end.linear through the body's point, and of a moment along end.angular.
+// Fills y of a force along end.linear through the body's point plus a moment along end.angular.
 double* fill(const StepContext& s, PairEnd& end, double* y) {
   const std::uint32_t depth = end.side.depth;
   if (depth == 0) return y;
@@ -71,7 +71,7 @@ double* fill(const StepContext& s, PairEnd& end, double* y) {
   return of_moment + depth;
 }
 
-// The speed that a unit impulse gives the row.
+// The change of the row's speed by a unit impulse.
 double response_of(const StepContext& s, const JointPair& pair) {
   double sum = response(pair.a.side, pair.b.side, 0, 0);
   for (const PairEnd* end : {&pair.a, &pair.b}) {
@@ -83,21 +83,22 @@ double response_of(const StepContext& s, const JointPair& pair) {
   return std::max(0.0, sum);
 }
 
-// What answers less [1/kg or 1/(kg m^2)] than this cannot be held by an impulse.
+// A row with a response below this [1/kg or 1/(kg m^2)] cannot be held by an impulse.
 constexpr double kNoAnswer = 1e-12;
-// A row answers, with what it gives way by, at least this share of what its ends answer in any
-// direction, and where an error is taken out by moving them, kMinMoved of it: where a tree is
-// stretched, so that its end cannot go on, joints that pull it would else throw its links about.
-// The square of the angle [rad] to which it must bend to answer as much. In sub-steps velocities
-// are relaxed, and a heavy load on such a tree needs more.
+// Minimum response of a row, including its softness, as a fraction of the maximum response of its
+// ends in any direction (in sub-steps kMinInSubSteps). The position correction uses kMinMoved
+// instead. Where a tree is stretched, so that its end cannot move further, joints that pull it
+// would otherwise throw its links about. The fraction is the square of the angle [rad] by which the
+// tree must bend to respond as much. In sub-steps velocities are relaxed, and a heavy load on such
+// a tree needs stiffer rows.
 constexpr double kMinAnswer = 1e-2, kMinInSubSteps = 1e-4, kMinMoved = 1e-3;
-// A drive's spring that is softer than this, in (steps times natural frequency)^2, is integrated so
-// that it neither loses nor gains energy; a stiffer one ever more implicitly.
+// A drive's spring softer than this, in (steps times natural frequency)^2, is integrated without
+// gain or loss of energy; a stiffer one increasingly implicitly.
 constexpr double kExplicitDrive = 0.25;
-// What changes a drive's impulse by a smaller share is none.
+// A drive whose response changes its impulse by a smaller fraction has a constant impulse.
 constexpr double kNoGain = 1e-30;
 
-// At a speed u after the step the impulse is push - gain u.
+// At a speed u after the step the impulse is drive_impulse - gain u.
 void prepare_drive(const StepContext& s, const JointPair& pair, JointRow& row) {
   const double h = s.step, stiff = h * h * pair.stiffness * row.inverse_mass;
   const double implicit = stiff > kExplicitDrive ? 1.0 - kExplicitDrive / stiff : 0.0;
@@ -117,8 +118,8 @@ bool is_about_an_axis(const JointPair& pair) {
   return pair.a.linear == Vec3{} && pair.b.linear == Vec3{};
 }
 
-// The most that a unit impulse at the row's point, or a unit moment, gives that point of the link,
-// times the square of what the row counts it.
+// The maximum response, over three axes, of the link to a unit impulse at the row's point, or to a
+// unit moment; times the squared length of the row's direction.
 double largest_answer(const StepContext& s, const PairEnd& end) {
   if (end.side.depth == 0) return 0.0;
   const SolverBody& body = s.bodies[end.body];
@@ -126,9 +127,9 @@ double largest_answer(const StepContext& s, const PairEnd& end) {
       *s.articulations[static_cast<std::size_t>(body.articulation)].factor;
   const double force = dot(end.linear, end.linear);
   const bool turns = force == 0.0;
-  // Where a force has the row's moment.
+  // The point at which a force along the row has the row's moment.
   const Vec3 at = turns ? Vec3{} : body.x + (1.0 / force) * cross(end.linear, end.angular);
-  double* const y = s.rows.data() + (s.rows.size() - end.side.depth);  // behind all rows
+  double* const y = s.rows.data() + (s.rows.size() - end.side.depth);  // after all rows
   double max_value = 0.0;
   for (const Vec3& d : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) {
     turns ? factor.moment_row(body.link, d, y) : factor.force_row(body.link, at, d, y);
@@ -139,8 +140,8 @@ double largest_answer(const StepContext& s, const PairEnd& end) {
   return (turns ? dot(end.angular, end.angular) : force) * max_value;
 }
 
-// Rows of one joint, which follow one another. largest: what one of them that is like it answers,
-// or could, a force or a moment.
+// Prepares one row of a joint. largest: the maximum response among the joint's rows of the same
+// kind, forces or moments, and of their ends in any direction.
 void prepare(const StepContext& s, JointPair& pair, double largest, JointRow& row) {
   const double min_value = s.bias_rate > 0.0 ? kMinInSubSteps : kMinAnswer;
   pair.floor = std::max(0.0, min_value * largest - row.inverse_mass);
@@ -148,7 +149,7 @@ void prepare(const StepContext& s, JointPair& pair, double largest, JointRow& ro
   row.softness = pair.loss * row.inverse_mass + pair.floor;
   if (pair.drives) prepare_drive(s, pair, row);
   const bool answers = row.inverse_mass > kNoAnswer;
-  // What hardly answers cannot follow either.
+  // A row that hardly responds cannot follow the curvature either.
   if (answers) row.target -= pair.curve * row.inverse_mass / (row.inverse_mass + pair.floor);
   row.mass = answers ? 1.0 / (row.inverse_mass + row.softness) : 0.0;
   if (!answers) row.impulse = row.lower = row.upper = 0.0;

@@ -1,9 +1,9 @@
-// Articulations as the solver sees them.
+// The solver's view of an articulation.
 //
-// An articulation is a vector z, the impulses that its joints have been given so far, in the
-// coordinates of ImpulseFactor (multibody/impulse_factor.h): there an impulse p along a row adds
-// y p to z, and the row's speed grows by (y, z). y is prepared once a solve and has entries for the
-// degrees of freedom between the link and the root only. The solver knows nothing else of a tree.
+// An articulation is represented by a vector z, the accumulated impulses on its joints in the
+// coordinates of ImpulseFactor (multibody/impulse_factor.h). An impulse p along a row adds y p to
+// z, and the row's speed grows by (y, z). y is prepared once per solve. It has entries only for the
+// degrees of freedom between the link and the root. The solver knows nothing else of a tree.
 #pragma once
 
 #include <cstdint>
@@ -16,15 +16,15 @@ namespace vp::solve {
 
 struct SolverArticulation {
   detail::ImpulseFactor* factor;
-  double* velocity;  // z: of the velocities; written by the solver
-  double* shift;     // likewise, of the position correction
-  bool touched;      // by a contact; prepared
+  double* velocity;  // z of the velocities; written by the solver
+  double* shift;     // z of the position correction; written by the solver
+  bool touched;      // a contact, or a joint between bodies, acts on it; prepared
 };
 
-// What a contact or a joint row has to do with one articulation: nothing, if depth is 0.
+// The part of a contact or a joint row that acts on one articulation; empty if depth is 0.
 struct LinkSide {
   const double* rows = nullptr;         // y of row 0, of row 1, ...
-  const std::uint32_t* next = nullptr;  // of each degree of freedom
+  const std::uint32_t* next = nullptr;  // the next degree of freedom of each, towards the root
   double* velocity = nullptr;
   double* shift = nullptr;
   std::uint32_t first = 0, depth = 0;
@@ -48,7 +48,7 @@ inline void apply_impulse(const LinkSide& side, int row, double p, double* z) {
     z[d] += y[k] * p;
   }
 }
-// The speed that a unit impulse along one row gives another: (y, y').
+// The change of one row's speed by a unit impulse along another: (y, y').
 inline double response(const LinkSide& side, int row, int other) {
   const double *y = side.row(row), *x = side.row(other);
   double sum = 0.0;
@@ -58,8 +58,8 @@ inline double response(const LinkSide& side, int row, int other) {
 inline bool of_one_tree(const LinkSide& a, const LinkSide& b) {
   return a.depth > 0 && b.depth > 0 && a.velocity == b.velocity;
 }
-// The same of rows that push two links. Of one articulation they share the degrees of freedom that
-// carry both: (y_a + y_b, y'_a + y'_b).
+// The same for rows that act on two links. Links of one articulation share the degrees of freedom
+// that support both: (y_a + y_b, y'_a + y'_b).
 inline double response(const LinkSide& a, const LinkSide& b, int row, int other) {
   if (!of_one_tree(a, b)) return response(a, row, other) + response(b, row, other);
   const double *y_a = a.row(row), *x_a = a.row(other), *y_b = b.row(row), *x_b = b.row(other);

@@ -1,4 +1,4 @@
-// The passes for one instruction set; compiled once for each, with VP_PASSES the table's name and
+// The passes for one instruction set. Compiled once per set, with VP_PASSES the table's name and
 // VP_LANES the width (CMakeLists.txt).
 #include "solve/passes.h"
 
@@ -12,7 +12,7 @@ namespace {
 
 constexpr int W = VP_LANES;
 
-// Rows are as they lie: eight floats of velocities, ways and accelerations each.
+// Eight floats of velocity, displacement or acceleration, in the memory layout of a row.
 using Row8 = lanes::RawT<8>;
 
 void accelerate(BodyRow* rows, const std::uint32_t* bodies, std::size_t count, float h) {
@@ -61,7 +61,7 @@ void move(BodyRow* rows, const std::uint32_t* bodies, std::size_t count, float h
   }
 }
 
-// Runs f(lanes, block, lane) on all lanes in use, W at a time.
+// Runs f(lanes, block, slot) on all slots in use, W at a time.
 template <int P, class F>
 void for_lanes(const typename ContactPasses<P>::Run& run, const F& f) {
   ContactBlock<P>* block = run.blocks;
@@ -103,7 +103,7 @@ template <int P>
   });
   return too_deep;
 }
-// Lanes that are not in use have no say.
+// A bit for each slot of the block that is in use.
 std::uint32_t used(std::uint32_t lanes, std::uint32_t stride, std::size_t block) {
   const std::uint32_t count = std::min(stride, lanes - static_cast<std::uint32_t>(block) * stride);
   return (1u << count) - 1u;

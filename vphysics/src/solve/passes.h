@@ -1,8 +1,8 @@
-// What a solver's stage may be asked to do, whatever the width of the machine's registers.
+// The interface of the solver's passes, independent of the SIMD width.
 //
-// passes.cpp and joint_passes.cpp are compiled once for each instruction set, with `vp` defined as
-// another name, so that no function of one set can be taken for another's. All that the sets share
-// has addresses and layouts in a namespace that keeps its name.
+// passes.cpp and joint_passes.cpp are compiled once for each instruction set. For each, `vp` is
+// defined as a different name, so that the linker cannot merge functions of two sets. Everything
+// that the sets share has its addresses and layouts in a namespace that keeps its name.
 #pragma once
 
 #include <array>
@@ -16,27 +16,28 @@
 
 namespace vphysics_solver {
 
-// How a contact answers penetration s < 0 in a sub-step h: as a spring and a damper of frequency f
-// and damping ratio z, integrated implicitly, that is by
-//   p' = p - share m (u + max(rate s, -max_bias_velocity)) - (1 - share) p
-// What a deeper one lacks of  -rate s  moves the two bodies apart without a velocity, in all by no
-// more than fastest_shift. Both limits are shared where a body has many contacts; that of the push
-// is beyond what the loss of a load takes from it.
+// A soft contact's response to penetration s < 0 in a sub-step h: an implicitly integrated spring
+// and damper of frequency f and damping ratio z,
+//   p' = p - fraction m (u + max(rate s, -max_bias_velocity)) - (1 - fraction) p
+// What a deeper one lacks of  -rate s  separates the two bodies by a position correction, at most
+// at fastest_shift in total. If a body has many contacts, each gets only a fraction of both limits.
+// The limit of the bias velocity is on top of the speed that softness takes from a load.
 struct Soft {
-  float rate;                  // [1/s]
-  float fraction;              // of the effective mass, and what stays of the accumulated impulse
-  float max_bias_velocity;     // [m/s]
-  float inverse_h;             // [1/s]
-  float keeps_load;            // 0 in the first sub-step of a step, else 1: of ContactBlock::given
+  float rate;               // [1/s]
+  float fraction;           // of the effective mass, and what remains of the accumulated impulse
+  float max_bias_velocity;  // [m/s]
+  float inverse_h;          // [1/s]
+  float keeps_load;  // factor on ContactBlock::given: 0 in the first sub-step of a step, else 1
   float fastest_shift = 0.0f;  // [m/s]
   float h = 0.0f;              // [s]
-  // A contact without a load is left alone if no impact slower than this closes its gap [m/s].
+  // A contact without a load is skipped if an additional approach speed of this [m/s] would not
+  // close its separation within the sub-step.
   float idle_speed = 1.0f;
-  bool last = false;  // the last sub-step of a step: relax tells what is too deep
+  bool last = false;  // the last sub-step of a step: relax reports contacts that are too deep
 };
 
-// The passes over the blocks of one colour, of which `lanes` are used. One block a lane: of the
-// last colour, whose contacts are solved one after the other; `stride` is then 1, else kLanes.
+// The passes over the blocks of one colour, in which `lanes` slots are in use. `stride` is kLanes.
+// In the last colour it is 1, one slot per block, since its contacts are solved one after another.
 template <int P>
 struct ContactPasses {
   using Blocks = ContactBlock<P>*;
@@ -49,30 +50,30 @@ struct ContactPasses {
   void (*load_inertias)(const Run& run);
   bool (*apply_restitution)(const Run& run, float h, float threshold);  // true: something bounced
   void (*warm_start)(const Run& run);
-  // Rounds of pushing: the first of a sub-step, and those after it.
+  // Iterations with bias velocities: the first of a sub-step, and later ones.
   void (*solve_first)(const Run& run, const Soft& soft);
   void (*solve_again)(const Run& run, const Soft& soft);
-  bool (*relax)(const Run& run, const Soft& soft);  // true: one is too deep (kTooDeep)
-  // Of all that find: a bit for each lane, a word for each block.
+  bool (*relax)(const Run& run, const Soft& soft);  // true: a contact is too deep (kTooDeep)
+  // All find functions: a bit per slot, a word per block.
   void (*find_moved)(const Run& run, float dt, float rotation, std::uint32_t* bits);
-  // Those of which there is something to tell: that they begin or end to touch, or a hit; in the
-  // upper half of the word those that push. Marks the rows that something carries.
+  // Slots with something to report: a contact that begins or ends, or a hit. The upper half of the
+  // word has the slots with a load. Marks the rows that are supported.
   void (*find_changes)(const Run& run, std::uint32_t* bits);
 };
 
-// What contacts have given a body's velocity in a sub-step, as it lies in its row; while that goes
-// on, the velocity before them.
+// The change of a body's velocity by the contacts of a sub-step, in the layout of its row. During
+// the sub-step it stores the velocity before the contacts.
 struct alignas(32) VelocityChange {
   float velocity[8];
 };
 
 struct Passes {
-  // Of bodies, whose rows are one behind their numbers.
+  // Over bodies. The row of body i is i + 1.
   void (*accelerate)(BodyRow* rows, const std::uint32_t* bodies, std::size_t count, float h);
-  // keep: before the contacts of a sub-step, keeps the velocities. find_velocity_changes: after
-  // them, leaves what they have given. repeat: before those of the next, keeps the velocities and
-  // gives it once more. This is what warm_start does, as long as Jacobians stay and contacts alone
-  // have acted.
+  // keep: stores the velocities, before the contacts of a sub-step. find_velocity_changes: stores
+  // the velocity changes, after them. repeat: before the contacts of the next sub-step, stores the
+  // velocities and applies the changes once more. This equals warm_start as long as the Jacobians
+  // are unchanged and only contacts have acted.
   void (*keep)(BodyRow* rows, VelocityChange* velocity_changes, const std::uint32_t* bodies,
                std::size_t count);
   void (*find_velocity_changes)(BodyRow* rows, VelocityChange* velocity_changes,
@@ -80,7 +81,7 @@ struct Passes {
   void (*repeat)(BodyRow* rows, VelocityChange* velocity_changes, const std::uint32_t* bodies,
                  std::size_t count);
   void (*move)(BodyRow* rows, const std::uint32_t* bodies, std::size_t count, float h);
-  // Bits of the near pairs that may go farther than they may by the end of a step dt.
+  // A bit for each speculative pair that may use up its clearance by the end of a step dt.
   void (*find_closer)(SpeculativeBlock* blocks, std::size_t count, BodyRow* rows, float dt,
                       std::uint32_t* bits);
   ContactPasses<1> one;
@@ -96,19 +97,20 @@ struct JointPasses {
     const JointForm* form;
     BodyRow* rows;
     const Gone* gone;                // by row
-    float max_bias_velocity = 3.0f;  // at which errors of hard rows are taken out [m/s]
-    bool some_far = true;  // false: prepare has found none too large to be taken out at once
+    float max_bias_velocity = 3.0f;  // for errors of hard rows [m/s]
+    bool some_far = true;            // false: prepare has returned false for all
   };
   void (*load_inertias)(const Run& run);  // before the sub-steps of a step
-  bool (*prepare)(const Run& run);        // true: an error is too large to be taken out at once
+  // Returns true if an error is too large to be corrected at its full rate.
+  bool (*prepare)(const Run& run);
   void (*warm_start)(const Run& run);
-  // Rounds of pushing: the first of a sub-step h, and those after it.
+  // Iterations with bias velocities: the first of a sub-step h, and later ones.
   void (*solve_first)(const Run& run, float h);
   void (*solve_again)(const Run& run, float h);
   void (*relax)(const Run& run, float h);
 };
 struct AllJointPasses {
-  // Of bodies: how they have gone since their rows' ways were start.
+  // Over bodies: their motion since the rows' displacements were `start`.
   void (*find_gone)(const BodyRow* rows, const std::array<float, 6>* start,
                     const std::uint32_t* bodies, std::size_t count, Gone* gone);
   JointPasses<BallBlock> ball;
@@ -119,7 +121,7 @@ struct AllJointPasses {
 
 extern const Passes kBaseline;
 extern const AllJointPasses kBaselineJoints;
-// Only in libraries built with VP_INSTRUCTION_SETS.
+// Defined only in libraries built with VP_INSTRUCTION_SETS.
 extern const Passes kAvx2, kAvx512;
 extern const AllJointPasses kAvx2Joints, kAvx512Joints;
 
@@ -128,7 +130,7 @@ extern const AllJointPasses kAvx2Joints, kAvx512Joints;
 namespace vp::solve {
 using namespace vphysics_solver;  // NOLINT(google-build-using-namespace): see passes.h
 
-// Those for this machine. All give the same bits.
+// The tables for this machine. All give the same bits.
 const Passes& passes();
 const AllJointPasses& joint_passes();
 

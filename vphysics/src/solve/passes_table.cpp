@@ -1,4 +1,4 @@
-// Which of the instruction sets this machine has.
+// Selects the instruction set for this machine.
 #include "solve/dense_passes.h"
 #include "solve/passes.h"
 

@@ -1,25 +1,26 @@
-// Bounces, and what a step wants to know of its contacts.
+// The restitution pass, and the per-step queries of contacts.
 //
-// strike: a contact that closes and reaches its partner within the sub-step h, faster than the
-// threshold, hits. What bounces does so now, one contact after another: each takes from the bodies
-// what Newton's law asks of it, so that an impact runs through a row of balls as it does in a
-// cradle. What its bodies have done by then of this sub-step's way is put right.
+// apply_restitution: a contact that approaches faster than the threshold and touches within the
+// sub-step h hits. If it has restitution, it bounces immediately, one contact after another: each
+// changes the bodies' velocities by Newton's impact law. So an impact propagates through a row of
+// balls as in Newton's cradle. The displacements of its bodies are corrected for the time of impact
+// within the sub-step.
 //
-// Velocities hold the forces of the whole sub-step, so they are those of its middle. With c the
-// closing speed, g the acceleration that closes the gap s (of what falls; what something carried in
-// the last step does not):
+// Velocities include the forces of the whole sub-step, so they are its midpoint velocities. With c
+// the approach speed, g the acceleration that closes the separation s (of bodies in free fall; 0
+// for bodies that were supported in the last step):
 //   at the surface     a = sqrt((c - g h / 2)^2 + 2 g s),       reached after t
-//   after the bounce   u = e a - g (h / 2 - t)                  again of the middle of the sub-step
+//   after the bounce   u = e a - g (h / 2 - t)                  midpoint velocity of the sub-step
 //   and at its end     s' = e a (h - t) - g (h - t)^2 / 2
-// so a ball that bounces keeps the heights of the true parabola, whatever the step.
+// So a bouncing ball keeps the heights of the true parabola, for any step.
 #pragma once
 
 #include "solve/contact_passes.h"
 
 namespace vp::solve {
 
-// The impulses of a bounce take this many rounds among the points of one contact: a box that falls
-// flat needs more than one that falls on a corner.
+// Iterations over the points of one contact for the restitution impulses: a box that falls flat
+// needs more than one that falls on a corner.
 inline constexpr int kRestitutionSweeps = 8;
 
 template <int W, int P>
@@ -36,7 +37,7 @@ struct Approaching {
       closes = either(closes, reaches[i]);
     }
   }
-  // Of those that do: when and how fast.
+  // The time and speed of the points that reach the surface within h.
   void find_approach(const LanesOf<W, P>& c, const Normals<W, P>& normals, float h) {
     Vec3T<F> a, b;
     c.gather_accelerations(a, b);
@@ -45,7 +46,7 @@ struct Approaching {
     soonest = F(h);
     fastest = F(0.0f);
     for (int i = 0; i < P; ++i) {
-      const F now = -u[i] - added;  // what the sub-step's own forces add is no approach
+      const F now = -u[i] - added;  // the forces of this sub-step alone are no approach
       reaches[i] = both(reaches[i], now > F(0.0f));
       fastest = larger(fastest, select(reaches[i], now, F(0.0f)));
       const F time = separation[i] / larger(-u[i], F(1e-30f));
@@ -53,10 +54,10 @@ struct Approaching {
     }
   }
   F u[P], s[P], separation[P], gain, soonest, fastest;
-  LaneMask<W> reaches[P], closes;  // within h; any of a lane's points does
+  LaneMask<W> reaches[P], closes;  // reaches: a point within h; closes: any point of the lane
 };
 
-// True if any lane bounced. Blocks that relaxing has found idle are passed by.
+// Returns true if any lane bounced. Skips blocks that the relax pass has found idle.
 template <int W, int P>
 bool apply_restitution_lanes(LanesOf<W, P>& c, float h, float threshold) {
   using F = Lanes<W>;
@@ -105,7 +106,7 @@ bool apply_restitution_lanes(LanesOf<W, P>& c, float h, float threshold) {
   const V v_a = c.v_a, w_a = c.w_a, v_b = c.v_b, w_b = c.w_b;
   normals.apply_impulse(c, p);
 
-  // The way of this sub-step, which will be gone at the new velocities as a whole.
+  // Corrects the displacements: the whole sub-step will be integrated with the new velocities.
   F now[P];
   normals.speeds(c, now);
   for (int i = 0; i < P; ++i) {
@@ -128,7 +129,7 @@ bool apply_restitution_lanes(LanesOf<W, P>& c, float h, float threshold) {
   c.turn_b += part * (c.w_b - w_b);
   c.scatter_displacements();
 
-  // Friction of the bounce.
+  // Friction during the bounce.
   const Grip<W, P> at(c, normals);
   const V slip = at.velocity(c);
   const F slide[2] = {dot(at.t, slip) - c.get(block.surface_speed[0]),
@@ -142,9 +143,10 @@ bool apply_restitution_lanes(LanesOf<W, P>& c, float h, float threshold) {
   return true;
 }
 
-// Bits of lanes whose geometry must be computed again: by the end of a step of dt, at their present
-// speeds, they will have slid by more than slid_limit or turned by more than `turn` [rad]. What a
-// motor turns may have long arms, and what stands on it goes out by as much as they lag behind.
+// Bits of slots whose geometry must be computed again: by the end of a step of dt, at their present
+// speeds, they will have slid by more than slid_limit or rotated by more than `rotation` [rad]. For
+// bodies that no impulse moves the limit is kDrivenRotation: a motor-driven body may have long
+// arms, and bodies on it drift outwards by as much as its geometry lags behind.
 inline constexpr float kDrivenRotation = 5e-4f;  // [rad]
 template <int W, int P>
 std::uint32_t find_moved_slots(LanesOf<W, P>& c, float dt, float rotation) {
@@ -166,8 +168,8 @@ std::uint32_t find_moved_slots(LanesOf<W, P>& c, float dt, float rotation) {
   return lanes::bits_of(!still);
 }
 
-// Bits of lanes that hit, or that push and did not touch, or the other way round; kLanes above,
-// those of lanes that push.
+// Bits of slots that hit, or whose reported touching state has changed. From bit kLanes on: the
+// slots with a load.
 template <int W, int P>
 std::uint32_t find_changed_slots(const LanesOf<W, P>& c, int at) {
   const Lanes<W> zero(0.0f), impact = c.get(c.block().impact);
@@ -183,9 +185,9 @@ std::uint32_t find_changed_slots(const LanesOf<W, P>& c, int at) {
   return bits;
 }
 
-// Bits of W near pairs: of those that may go farther than their clearance.
+// Bits of speculative pairs that may use up their clearance by the end of a step of dt.
 template <int W>
-std::uint32_t find_closer_pairs(const NearPair* pairs, BodyRow* rows, float dt) {
+std::uint32_t find_closer_pairs(const SpeculativePair* pairs, BodyRow* rows, float dt) {
   using F = Lanes<W>;
   using V = Vec3T<F>;
   F of_pair[24];
@@ -194,7 +196,7 @@ std::uint32_t find_closer_pairs(const NearPair* pairs, BodyRow* rows, float dt) 
                       of_pair + c);
   }
   const auto get3 = [&](int f) { return V{of_pair[f], of_pair[f + 1], of_pair[f + 2]}; };
-  const auto gather = [&](std::uint32_t NearPair::*row, V& x, V& rotation) {
+  const auto gather = [&](std::uint32_t SpeculativePair::*row, V& x, V& rotation) {
     F velocity[8], displacement[8];
     lanes::gather8<W>([&](int i) { return rows[pairs[i].*row].velocity; }, velocity);
     lanes::gather8<W>([&](int i) { return rows[pairs[i].*row].displacement; }, displacement);
@@ -205,15 +207,15 @@ std::uint32_t find_closer_pairs(const NearPair* pairs, BodyRow* rows, float dt) 
                step * V{velocity[3], velocity[4], velocity[5]};
   };
   V x_a, turn_a, x_b, turn_b;
-  gather(&NearPair::a, x_a, turn_a);
-  gather(&NearPair::b, x_b, turn_b);
+  gather(&SpeculativePair::a, x_a, turn_a);
+  gather(&SpeculativePair::b, x_b, turn_b);
   turn_a -= get3(3);
   turn_b -= get3(9);
   const V arm_a = get3(12), arm_b = get3(15);
   const V by_a = x_a - get3(0) + cross(turn_a, arm_a);
   const V by_b = x_b - get3(6) + cross(turn_b, arm_b);
   const auto size = [](const V& v) { return sqrt(dot(v, v)); };
-  // An arm that turns leaves its tangent by half of the square.
+  // A rotating arm leaves its tangent by half of the squared angle.
   const auto bow = [&](const V& rotation, const V& arm) {
     return F(0.5f) * dot(rotation, rotation) * size(arm);
   };

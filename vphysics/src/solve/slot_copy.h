@@ -1,4 +1,4 @@
-// Lanes of blocks as memory: every field of a block is kLanes words side by side.
+// Copies slots between blocks. In memory, every field of a block is kLanes adjacent words.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace vp::solve {
 
-// All that a block knows of a lane.
+// Copies all fields of a slot.
 template <class Block>
 void copy_slot(const Block& from, int from_slot, Block& to, int to_slot) {
   const auto* source = reinterpret_cast<const std::byte*>(&from) + sizeof(float) * from_slot;

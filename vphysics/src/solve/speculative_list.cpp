@@ -3,8 +3,8 @@
 namespace vp::solve {
 namespace {
 
-constexpr NearPair kEmptyPair = [] {
-  NearPair pair{};
+constexpr SpeculativePair kEmptyPair = [] {
+  SpeculativePair pair{};
   pair.contact = kNoContact;
   pair.clearance = kFarSeparated;
   return pair;
@@ -12,7 +12,7 @@ constexpr NearPair kEmptyPair = [] {
 
 SpeculativeBlock empty_speculative_block() {
   SpeculativeBlock block;
-  for (NearPair& pair : block.pairs) pair = kEmptyPair;
+  for (SpeculativePair& pair : block.pairs) pair = kEmptyPair;
   return block;
 }
 
@@ -22,7 +22,7 @@ std::uint32_t SpeculativeList::add(std::uint32_t contact, std::uint32_t row_a,
                                    std::uint32_t row_b) {
   const std::uint32_t index = size_++;
   if (index / kLanes == blocks_.size()) blocks_.push_back(empty_speculative_block());
-  NearPair& to = pair(index);
+  SpeculativePair& to = pair(index);
   to.a = row_a;
   to.b = row_b;
   to.contact = contact;

@@ -188,8 +188,8 @@ void ContactState::read_speculative(Reader& in, solve::SpeculativeList& speculat
     c.speculative_index =
         speculative.add(index, vp::end_of(world_.bodies, world_.colliders[c.a].body).row,
                         vp::end_of(world_.bodies, world_.colliders[c.b].body).row);
-    solve::NearPair& pair = speculative.pair(c.speculative_index);
-    for (std::size_t f = 0; f < solve::kNearFloats; f += 2) {
+    solve::SpeculativePair& pair = speculative.pair(c.speculative_index);
+    for (std::size_t f = 0; f < solve::kSpeculativeFloats; f += 2) {
       const Reader::TwoFloats both = in.two_floats();
       solve::set_near_float(pair, f, both.high);
       solve::set_near_float(pair, f + 1, both.low);

@@ -141,9 +141,9 @@ void write_contacts(Sink& sink, const ContactData& world) {
        {&world.contacts.speculative, &world.contacts.parked_speculative}) {
     sink.u64(list->size());
     for (std::uint32_t i = 0; i < list->size(); ++i) {
-      const solve::NearPair& pair = list->pair(i);
+      const solve::SpeculativePair& pair = list->pair(i);
       sink.u64(pair.contact);
-      for (std::size_t f = 0; f < solve::kNearFloats; f += 2)
+      for (std::size_t f = 0; f < solve::kSpeculativeFloats; f += 2)
         put_two(sink, solve::near_float(pair, f), solve::near_float(pair, f + 1));
     }
   }

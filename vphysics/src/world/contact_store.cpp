@@ -133,7 +133,7 @@ void ContactStore::set_speculative(std::uint32_t index, double clearance, const 
 }
 
 void ContactStore::set_clearance(const Contact& c, double clearance, const BodySet& on) {
-  solve::NearPair& pair = speculative.pair(c.speculative_index);
+  solve::SpeculativePair& pair = speculative.pair(c.speculative_index);
   const Collider &a = on.colliders[c.a], &b = on.colliders[c.b];
   const Vicinity at = vicinity_of(on.bodies, a, b);
   const auto put_end = [&](std::uint32_t row, const Body& body, float* x, float* rotation,
@@ -165,7 +165,7 @@ double ContactStore::clearance(const Contact& c) const {
 
 // The same bound as find_closer.
 void ContactStore::use_clearance(const Contact& c, const BodySet& on) {
-  solve::NearPair& pair = speculative.pair(c.speculative_index);
+  solve::SpeculativePair& pair = speculative.pair(c.speculative_index);
   const auto gone = [&](std::uint32_t row, const float* x, const float* rotation,
                         const float* arm) {
     const float* displacement = on.rows[row].displacement;
