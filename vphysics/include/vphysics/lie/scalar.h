@@ -100,7 +100,7 @@ constexpr T nearest_integer(const T& x) {
   return (x + T(Angle<base_t<T>>::kRounder)) - T(Angle<base_t<T>>::kRounder);
 }
 
-// x| < kExactBelow. Branch-free, so that packs can use it: the parities of n and of floor(n / 2)
+// |x| < kExactBelow. Branch-free, so that packs can use it: the parities of n and of floor(n / 2)
 // give the quadrant n mod 4.
 template <class T>
 constexpr SinCosT<T> sin_cos_near(const T& x) {
