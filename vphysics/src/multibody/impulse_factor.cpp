@@ -8,7 +8,8 @@
 namespace vp::detail {
 namespace {
 
-// An Omega below this share of what its terms could sum to is rounding: a joint about a point mass.
+// An Omega below this fraction of the upper bound of its terms is rounding: a joint about a point
+// mass.
 constexpr double kNoInertia = 1e-14;
 
 double largest_omega(const AInertia& J, const se3& S) {
@@ -36,7 +37,7 @@ ImpulseFactor::ImpulseFactor(const Model& model) {
         root ? kEnd
              : static_cast<std::uint32_t>(tree.nodes[static_cast<std::size_t>(node.parent)].v);
     parent_dof_.push_back(next);
-    // The last of a joint's own is the nearest to the root.
+    // Within a node, the last degree of freedom is nearest to the root.
     for (int k = node.dofs; k-- > 0;) {
       const auto dof = static_cast<std::uint32_t>(node.v + k);
       next_[dof] = next;

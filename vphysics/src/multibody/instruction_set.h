@@ -1,4 +1,4 @@
-// Which of the instruction sets that the kernels are compiled for a data uses.
+// Selects the instruction set of the kernels that a data uses.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,8 @@ namespace vp::detail {
 
 enum class InstructionSet : std::uint8_t { baseline, avx2, avx512 };
 
-// The wider sets multiply and add at once, hence round differently: not for reproducible results.
+// The wider sets use fused multiply-add and therefore round differently: not for reproducible
+// results.
 inline InstructionSet instruction_set_for([[maybe_unused]] Arithmetic arithmetic) {
 #ifdef VP_INSTRUCTION_SETS
   if (arithmetic == Arithmetic::reproducible) return InstructionSet::baseline;
