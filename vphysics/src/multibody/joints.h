@@ -90,7 +90,7 @@ QuaternionT<T> quaternion_at(Span<T> q, int i) {
   return {q[k], q[k + 1], q[k + 2], q[k + 3]};
 }
 
-// For a node that is not simple and no free root. place_columns returns its pose in its parent's
+// For a node that is neither simple nor a free root. place_columns returns its pose in its parent's
 // frame. open_columns then computes its columns in the tree's frame from its pose there.
 template <class T>
 VP_NOINLINE SE3T<T> place_columns(const Node<base_t<T>>& node, Span<T> q, Span<T> v,

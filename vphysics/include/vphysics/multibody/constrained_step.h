@@ -8,9 +8,9 @@
 //   spring, damper, motor   implicit: stable at any stiffness; the motor saturates at its bound
 //   dry friction            sticks at exactly zero, or slides against exactly its bound
 //   stop                    v+ reaches the stop and no further; no restitution
-// Newton's method solves all force laws of the tree together and exactly; it does not iterate over
-// the joints. Afterwards, q+ is projected onto the constraints and v+ onto their tangent space.
-// Joints that stick or rest at a stop keep their coordinates.
+// Newton's method solves all force laws of the tree together, exactly, instead of a fixed number of
+// Gauss-Seidel sweeps. Afterwards, q+ is projected onto the constraints and v+ onto their tangent
+// space. Joints that stick or rest at a stop keep their coordinates.
 #pragma once
 
 #include <span>
