@@ -1,4 +1,5 @@
-// An arm from a URDF file, held level against gravity. Public headers only.
+// Computes the joint forces that hold an arm from a URDF file level against gravity. Public headers
+// only.
 //
 //   vphysics_sample_arm_from_urdf FILE
 #include <algorithm>
@@ -16,7 +17,7 @@ int main(int argc, char** argv) {
   }
   const auto arm = vp::load_urdf(argv[1]);
   if (!arm) {
-    std::printf("%s\n", arm.error().message.c_str());  // the file, the line and what is wrong there
+    std::printf("%s\n", arm.error().message.c_str());  // file, line and cause
     return 1;
   }
   const vp::Model& model = arm->model;
@@ -24,7 +25,7 @@ int main(int argc, char** argv) {
               model.velocities());
   for (const std::string& note : arm->notes) std::printf("note: %s\n", note.c_str());
 
-  // The shoulder a quarter turn forwards, all else straight: the arm is level.
+  // The shoulder rotated by pi/2, all other joints at zero: the arm is level.
   const vp::UrdfJoint* shoulder = arm->find_joint("shoulder");
   const int finger = model.find_link("finger");
   if (!shoulder || finger < 0) return 1;
@@ -38,19 +39,19 @@ int main(int argc, char** argv) {
   vp::inverse_dynamics<double>(model, data, q, rest, rest, {}, hold);
   std::printf("\n%-10s %10s %10s\n", "joint", "holds", "can hold");
   for (const vp::UrdfJoint& joint : arm->joints) {
-    if (vp::velocities_of(model.link(joint.link).joint) == 0) continue;  // a fixed one
+    if (vp::velocities_of(model.link(joint.link).joint) == 0) continue;  // fixed joint
     const auto i = static_cast<std::size_t>(model.first_velocity(joint.link));
     std::printf("%-10s %10.4f %10.4g\n", joint.name.c_str(), hold[i], joint.effort);
   }
   const vp::Vec3 tip = vp::T_world_link(model, data, finger).position();
   std::printf("the finger is at (%.3f, %.3f, %.3f) m\n", tip.x, tip.y, tip.z);
 
-  // With these forces it stays where it is.
+  // With these forces the arm does not accelerate.
   if (!vp::forward_dynamics<double>(model, data, q, rest, hold, {}, a)) return 1;
   double fastest = 0.0;
   for (const double each : a) fastest = std::max(fastest, std::fabs(each));
 
-  // The shoulder carries each mass by its lever: upper arm, forearm, wrist, hand and finger.
+  // The moment at the shoulder: mass times lever of upper arm, forearm, wrist, hand and finger.
   const double moment =
       9.81 * (4.0 * 0.25 + 2.5 * (0.5 + 0.2) + 0.6 * 0.9 + 0.8 * (0.9 + 0.05) + 0.1 * (0.9 + 0.1));
   const double held = hold[static_cast<std::size_t>(model.first_velocity(shoulder->link))];

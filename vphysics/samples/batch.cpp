@@ -1,7 +1,7 @@
-// Eight states of one model at once, one in each SIMD lane: pendulums let go from eight angles, and
-// how long each swings. Public headers only.
+// Simulates eight states of one model at once, one in each SIMD lane: the periods of pendulums
+// released from eight angles. Public headers only.
 //
-// The calls and their meaning are those of one state; the scalar is a pack of eight numbers.
+// The calls are the same as for one state; the scalar is a pack of eight numbers.
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -15,7 +15,7 @@ constexpr int kLanes = 8;
 using Pack = vp::PackT<double, kLanes>;
 constexpr double kLength = 1.0, kGravity = 9.81;
 
-// Period of a pendulum let go at rest, by the arithmetic-geometric mean (Gauss).
+// Period of a pendulum released at rest, by the arithmetic-geometric mean (Gauss).
 double period(double angle) {
   double a = 1.0, b = std::cos(0.5 * angle);
   while (a - b > 1e-15) {
@@ -29,7 +29,7 @@ double period(double angle) {
 }  // namespace
 
 int main() {
-  vp::LinkSpec bob;  // 1 kg in a point, below the hinge
+  vp::LinkSpec bob;  // a point mass of 1 kg, below the hinge
   bob.joint = vp::RevoluteJoint{{0, 1, 0}};
   bob.inertia =
       vp::Inertia(1.0, {0, 0, -kLength}, {kLength * kLength, kLength * kLength, 0, 0, 0, 0});
@@ -38,7 +38,7 @@ int main() {
   const auto model = builder.build();
   if (!model) return 1;
 
-  vp::DataT<Pack> data(*model);  // the model is the same for any scalar of its precision
+  vp::DataT<Pack> data(*model);  // the model serves all scalars of its precision
   std::vector<Pack> q(1), v(1), a(1);
   const std::vector<Pack> tau(1);
   std::array<double, kLanes> let_go{}, quarter{};  // [rad], [s]
@@ -54,7 +54,7 @@ int main() {
     q[0] += Pack(dt) * v[0];
     for (int lane = 0; lane < kLanes; ++lane) {
       double& at_bottom = quarter[static_cast<std::size_t>(lane)];
-      // Within the step, where the angle was 0.
+      // Interpolates the time within the step at which the angle was 0.
       if (at_bottom == 0.0 && q[0][lane] <= 0.0)
         at_bottom = dt * (step + 1) - q[0][lane] / v[0][lane];
     }

@@ -1,4 +1,4 @@
-// A ball dropped from 1 m: how high it comes back. Public headers only.
+// Drops a ball from 1 m and measures the height of its rebound. Public headers only.
 #include <algorithm>
 #include <cstdio>
 
@@ -21,7 +21,7 @@ int main() {
   vp::BodyDesc ball_desc;
   ball_desc.T_world_body = vp::SE3(vp::Vec3{0.0, 0.0, 1.0});
   ball_desc.inertia = vp::solid_inertia(sphere.shape, 1100.0);
-  ball_desc.continuous = true;  // swept: it passes through nothing, however fast
+  ball_desc.continuous = true;  // CCD: swept, no tunneling at any speed
   const auto ball = world.create_body(ball_desc);
   if (!ball || !world.add_collider(*ball, sphere)) return 1;
 
@@ -34,5 +34,5 @@ int main() {
   }
   std::printf("back at %.3f m\n", height);
   // end: bounce
-  return height > 0.3 && height < 0.4 ? 0 : 1;  // 0.6^2 of the fall of 0.98 m
+  return height > 0.3 && height < 0.4 ? 0 : 1;  // 0.6^2 of the drop height of 0.98 m
 }

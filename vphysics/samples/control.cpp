@@ -1,6 +1,6 @@
-// Control by computed torque: an arm from a URDF file follows a motion in a world. Its own model
-// gives the joint forces of the motion that is asked for; a spring and damper of accelerations
-// takes out what differs. Public headers only.
+// Computed-torque control: an arm from a URDF file tracks a trajectory in a world. Inverse dynamics
+// of its model gives the joint forces of the target motion; a PD term in the acceleration corrects
+// the error. Public headers only.
 //
 //   vphysics_sample_control FILE
 #include <algorithm>
@@ -35,7 +35,7 @@ int main(int argc, char** argv) {
     const auto q = world.coordinates(arm->articulation), v = world.velocities(arm->articulation);
     worst = 0.0;
     for (std::size_t k = 0; k < n; ++k) {
-      // Each joint swings between zero and twice this, from rest on.
+      // Each joint oscillates between zero and twice `swing`, starting at rest.
       const double swing = k + 1 < n ? 0.3 : 0.01, rate = 2.0 + 0.3 * static_cast<double>(k);
       const double target = swing * (1.0 - std::cos(rate * t));
       wanted[k] = swing * rate * std::sin(rate * t);
@@ -46,10 +46,10 @@ int main(int argc, char** argv) {
     largest = std::max(largest, worst);
     vp::inverse_dynamics<double>(model, data, q, v, a, {}, tau);
     for (const vp::UrdfJoint& joint : arm->urdf.joints) {
-      if (vp::velocities_of(model.link(joint.link).joint) == 0) continue;  // a fixed one
+      if (vp::velocities_of(model.link(joint.link).joint) == 0) continue;  // fixed joint
       const auto k = static_cast<std::size_t>(model.first_velocity(joint.link));
-      // Dry friction is no part of the dynamics. It is overcome in the direction of the motion that
-      // is wanted: a joint that it holds has none of its own.
+      // The dynamics do not include dry friction. Compensates it in the direction of the target
+      // velocity, because a sticking joint has no velocity.
       const double force = tau[k] + std::copysign(joint.friction, wanted[k]);
       if (!world.apply_joint_force(arm->articulation, joint.link, 0, force)) return 1;
     }

@@ -1,7 +1,7 @@
-// A joint of one's own: a bead that slides along a curve, here a cycloid. Public headers only.
+// A user-defined joint: a bead that slides along a curve, here a cycloid. Public headers only.
 //
-// Huygens found in 1659 that a bead on a cycloid reaches the bottom after pi sqrt(r / g) from
-// wherever it is let go.
+// Huygens found in 1659 that a bead on a cycloid reaches the bottom after pi sqrt(r / g),
+// independent of its starting point.
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -11,10 +11,10 @@
 
 namespace {
 
-// The curve that a point of a wheel of radius r draws as it rolls along a ceiling; q is the wheel's
-// angle s, 0 at the bottom:
-//   p(s) = r (s + sin s, 0, 1 - cos s),  |dp/ds| = 2 r cos(s/2),  rising by the angle s/2
-// The link's x axis leads along the curve, so that it turns about -y by s/2.
+// The curve of a point on a wheel of radius r that rolls along a ceiling; q is the wheel's angle s,
+// 0 at the bottom:
+//   p(s) = r (s + sin s, 0, 1 - cos s),  |dp/ds| = 2 r cos(s/2),  slope angle s/2
+// The link's x axis is tangent to the curve, so it is rotated about -y by s/2.
 class OnACycloid final : public vp::UserJoint {
  public:
   explicit OnACycloid(double radius) : r_(radius) {}
@@ -28,9 +28,9 @@ class OnACycloid final : public vp::UserJoint {
     const auto [sine_half, cosine_half] = vp::sin_cos(0.5 * s);
     T_joint_link =
         vp::SE3(vp::Exp(vp::Vec3{0, -0.5 * s, 0}), {r_ * (s + sine), 0, r_ * (1.0 - cosine)});
-    // Per unit of ds/dt, in the link's frame: it turns by -1/2 about y and moves along its x.
+    // For ds/dt = 1, in the link's frame: angular velocity -1/2 about y, linear velocity along x.
     S[0] = {{0, -0.5, 0}, {2.0 * r_ * cosine_half, 0, 0}};
-    // (dS/dt) v: only the speed along the curve changes with s.
+    // (dS/dt) v: only the speed along the curve depends on s.
     rate = {{0, 0, 0}, {-r_ * sine_half * v[0] * v[0], 0, 0}};
   }
 
@@ -44,7 +44,7 @@ int main() {
   constexpr double kRadius = 0.5, kGravity = 9.81;
   vp::LinkSpec bead;
   bead.joint = std::make_shared<OnACycloid>(kRadius);
-  bead.inertia = vp::Inertia(0.1, vp::Vec3{});  // 0.1 kg in a point
+  bead.inertia = vp::Inertia(0.1, vp::Vec3{});  // a point mass of 0.1 kg
   vp::ModelBuilder builder;
   if (!builder.add(bead)) return 1;
   const auto model = builder.build();

@@ -1,10 +1,10 @@
-// A joint of one's own with several degrees of freedom: a chain of screws in one joint, as a
-// product of exponentials. Public headers only.
+// A user-defined joint with several degrees of freedom: a chain of screws, as a product of
+// exponentials. Public headers only.
 //
 //   T(q) = e^(S_1 q_1) e^(S_2 q_2) ... e^(S_n q_n)
 //
-// Seen from the link, S_k is carried through what comes after it: Ad(inverse of that product) S_k,
-// and turns with the velocity that comes after it: its rate is ad(S_k, sum of S_j v_j, j > k).
+// In the link's frame, column k is Ad(inverse of the product of the later exponentials) S_k. It
+// rotates with the velocity of the later screws: its rate is ad(S_k, sum of S_j v_j, j > k).
 // Source: Brockett, Robotic Manipulators and the Product of Exponentials Formula, 1984.
 #include <algorithm>
 #include <cmath>
@@ -27,7 +27,7 @@ class Exponentials final : public vp::UserJoint {
   void evaluate(std::span<const double> q, std::span<const double> v, vp::SE3& T_joint_link,
                 std::span<vp::se3> S, vp::se3& rate) const override {
     T_joint_link = vp::SE3();
-    vp::se3 after{};  // velocity of all that comes after screw k
+    vp::se3 after{};  // velocity of the screws after screw k
     rate = {};
     for (std::size_t k = screws_.size(); k-- > 0;) {
       S[k] = vp::InvAd(T_joint_link, screws_[k]);
@@ -43,7 +43,7 @@ class Exponentials final : public vp::UserJoint {
 
 const vp::Inertia kBody(2.0, vp::Vec3{0.3, 0.4, 0.5});
 
-// The same motions by joints of the library, with links in between that weigh nothing.
+// The same motion with joints of the library and massless links between them.
 vp::Expected<vp::Model> of_separate_joints() {
   vp::LinkSpec turn, screw, slide;
   turn.joint = vp::RevoluteJoint{{0, 0, 1}};
@@ -52,7 +52,7 @@ vp::Expected<vp::Model> of_separate_joints() {
   screw.T_parent_joint = vp::SE3(vp::Vec3{0.5, 0, 0});
   slide.parent = 1;
   slide.joint = vp::PrismaticJoint{{1, 0, 0}};
-  slide.T_parent_joint = vp::SE3(vp::Vec3{-0.5, 0, 0});  // back to where the chain began
+  slide.T_parent_joint = vp::SE3(vp::Vec3{-0.5, 0, 0});  // back to the start of the chain
   slide.inertia = kBody;
   vp::ModelBuilder builder;
   for (const vp::LinkSpec& link : {turn, screw, slide}) {
@@ -65,9 +65,9 @@ vp::Expected<vp::Model> of_one_joint() {
   const vp::Vec3 axis{0, 1, 0}, through{0.5, 0, 0};
   vp::LinkSpec link;
   link.joint = std::make_shared<Exponentials>(std::vector<vp::se3>{
-      {{0, 0, 1}, {0, 0, 0}},                         // turns about z
-      {axis, vp::cross(through, axis) + 0.1 * axis},  // a screw, beside the origin
-      {{0, 0, 0}, {1, 0, 0}},                         // slides along x
+      {{0, 0, 1}, {0, 0, 0}},                         // rotates about z
+      {axis, vp::cross(through, axis) + 0.1 * axis},  // a screw with an axis beside the origin
+      {{0, 0, 0}, {1, 0, 0}},                         // translates along x
   });
   link.inertia = kBody;
   vp::ModelBuilder builder;

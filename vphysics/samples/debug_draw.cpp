@@ -1,5 +1,5 @@
-// A stack of boxes as an SVG picture, seen from the front: shapes, contacts, and what went through
-// them in the last step. Public headers only.
+// Draws a stack of boxes as an SVG picture, in front view: shapes, contacts, and the contact
+// impulses of the last step. Public headers only.
 //
 //   vphysics_sample_debug_draw > stack.svg
 #include <cmath>
@@ -12,7 +12,7 @@ namespace {
 // begin: drawing
 class Svg : public vp::DebugDraw {
  public:
-  double upwards = 0.0;  // sum of the impulses' lines [m]
+  double upwards = 0.0;  // sum of the heights of the impulse lines [m]
 
   void line(const vp::Vec3& from, const vp::Vec3& to, vp::DebugCategory mark) override {
     std::printf("<path d='M%.4f %.4f L%.4f %.4f' stroke='#%06x' stroke-width='0.01'/>\n", from.x,
@@ -60,7 +60,7 @@ int main() {
   Svg picture;
   if (!world.debug_draw(options, picture)) return 1;
   std::printf("</svg>\n");
-  // The three contacts carry one, two and three boxes: 9.81 N s each in a step of 1 ms.
+  // The three contacts support one, two and three boxes: 9.81 N s each in a step of 1 ms.
   const double carried = picture.upwards / options.impulse_scale;
   return std::fabs(carried - 6 * 9.81) < 0.1 ? 0 : 1;
 }

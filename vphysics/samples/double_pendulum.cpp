@@ -1,4 +1,4 @@
-// Two rods, hinged one below the other and let go while they are level. Public headers only.
+// Simulates two hinged rods, released from a horizontal position. Public headers only.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -10,7 +10,7 @@
 
 namespace {
 
-// A uniform rod of 1 kg and 1 m that hangs from its frame's origin: about its end, m l^2 / 3.
+// A uniform rod of 1 kg and 1 m, below its frame's origin: m l^2 / 3 about its end.
 constexpr double kMass = 1.0, kLength = 1.0, kGravity = 9.81;
 const vp::Inertia kRod(kMass, kMass* vp::Vec3{0, 0, -kLength / 2},
                        {kMass * kLength * kLength / 3, kMass* kLength* kLength / 3, 0, 0, 0, 0});
@@ -19,12 +19,12 @@ const vp::Inertia kRod(kMass, kMass* vp::Vec3{0, 0, -kLength / 2},
 vp::Expected<vp::Model> make_pendulum() {
   vp::LinkSpec upper;
   upper.name = "upper";
-  upper.joint = vp::RevoluteJoint{{0, 1, 0}};  // turns about y
+  upper.joint = vp::RevoluteJoint{{0, 1, 0}};  // rotates about y
   upper.inertia = kRod;
 
   vp::LinkSpec lower = upper;
   lower.name = "lower";
-  lower.parent = 0;  // the first link that was added
+  lower.parent = 0;  // the first link
   lower.T_parent_joint = vp::SE3(vp::Vec3{0, 0, -kLength});
 
   vp::ModelBuilder builder;
@@ -50,17 +50,17 @@ int main() {
     std::printf("%s\n", model.error().message.c_str());
     return 1;
   }
-  vp::Data data(*model);  // the memory in which the algorithms work
+  vp::Data data(*model);  // working memory of the algorithms
 
-  std::vector<double> q{vp::kPi / 2, 0.0}, v(2), a(2);  // the second angle counts from the first
+  std::vector<double> q{vp::kPi / 2, 0.0}, v(2), a(2);  // the second angle is relative to the first
   const std::vector<double> tau(2);                     // no motors
   if (!vp::forward_dynamics<double>(*model, data, q, v, tau, {}, a)) return 1;
   std::printf("let go: %.4f and %.4f rad/s^2\n", a[0], a[1]);
-  // By Lagrange's equations of two level rods: -9/7 g/l and +12/7 g/l.
+  // By Lagrange's equations of two horizontal rods: -9/7 g/l and +12/7 g/l.
   const double wrong = std::max(std::fabs(a[0] + 9.0 / 7.0 * kGravity / kLength),
                                 std::fabs(a[1] - 12.0 / 7.0 * kGravity / kLength));
 
-  vp::IntegratorData stepper(*model);  // of an integrator, which has a data within it
+  vp::IntegratorData stepper(*model);  // memory of an integrator, with its own data
   const double at_first = energy(*model, data, q, v);
   double drift = 0.0;
   for (int step = 1; step <= 5000; ++step) {

@@ -1,8 +1,8 @@
 // A four-bar linkage: a closed loop, as a tree with a constraint. Public headers only.
 //
-// Crank and coupler are one branch, the rocker is the other; a hinge closes them at their ends. The
-// crank is turned once, and the rocker's angle compared with the one that geometry gives. Then all
-// is let go.
+// Crank and coupler form one branch, the rocker the other; a hinge connects their ends. The sample
+// rotates the crank once and compares the rocker's angle with the geometric solution. Then it
+// releases the linkage.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kCrank = 1.0, kCoupler = 3.0, kRocker = 2.5, kGround = 3.0;  // [m]
 
-// A uniform bar of 1 kg/m along x, hinged at its beginning about z.
+// A uniform bar of 1 kg/m along x, with a hinge about z at its start.
 vp::LinkSpec bar(int parent, const vp::Vec3& hinge, double length) {
   vp::LinkSpec link;
   link.parent = parent;
@@ -28,7 +28,7 @@ vp::LinkSpec bar(int parent, const vp::Vec3& hinge, double length) {
   return link;
 }
 
-// The rocker's angle by the two triangles that the diagonal makes.
+// The rocker's angle, from the two triangles on both sides of the diagonal.
 double rocker_angle(double crank) {
   const double x = kCrank * std::cos(crank) - kGround, y = kCrank * std::sin(crank);
   const double diagonal = std::hypot(x, y);
@@ -54,8 +54,8 @@ int main() {
   if (!loop) return 1;
   vp::ConstrainedData data(*model, *loop);
 
-  // A whole turn of the crank, the loop closed from where it was.
-  std::vector<double> q{0.0, 1.0, 2.0};  // crank, coupler (from the crank), rocker: a guess
+  // One revolution of the crank; each solution is the initial guess of the next.
+  std::vector<double> q{0.0, 1.0, 2.0};  // crank, coupler (relative to the crank), rocker: a guess
   const std::array<int, 1> held{0};      // the crank's velocity
   double wrong = 0.0;
   for (int degrees = 0; degrees <= 360; degrees += 10) {
@@ -72,12 +72,12 @@ int main() {
   }
   std::printf("rocker within %.1g rad of geometry\n", wrong);
 
-  // Two seconds of falling, from rest; y is up.
+  // Two seconds of free motion, from rest; y is up.
   vp::Loads loads;
   loads.gravity = {0, -9.81, 0};
   std::vector<double> v(3), a(3), half_q(3), half_v(3);
   const std::vector<double> tau(3);
-  const double dt = 1e-4, rate = 50.0;  // what opens the loop fades in 1/50 s
+  const double dt = 1e-4, rate = 50.0;  // errors of the loop decay with a time constant of 1/50 s
   const auto accelerate = [&](const std::vector<double>& at_q, const std::vector<double>& at_v) {
     return vp::constrained_forward_dynamics(*model, data, at_q, at_v, tau, loads, rate, a)
         .has_value();

@@ -1,5 +1,5 @@
-// A gate on a powered hinge: a ray meets it while it is shut, and the wall behind once it is open.
-// Public headers only.
+// A gate on a powered hinge: a ray hits the closed gate, and the wall behind the open gate. Public
+// headers only.
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -27,8 +27,8 @@ int main() {
   const auto gate = add_box(vp::Motion::dynamic, {0.02, 0.5, 0.5}, {1.0, 0.5, 0.7});
   if (!post || !wall || !gate) return 1;
 
-  // Both frames of the hinge where the gate's edge is, z up. The motor goes to its position as a
-  // spring and a damper would, with no more than 100 N m.
+  // Both joint frames are at the gate's edge, z up. The motor acts as a spring and damper towards
+  // its target position, with at most 100 N m.
   vp::JointDesc hinge;
   hinge.T_a_joint = vp::SE3(vp::Vec3{0.0, 0.1, -0.3});
   hinge.T_b_joint = vp::SE3(vp::Vec3{0.0, -0.5, 0.0});

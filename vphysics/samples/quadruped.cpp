@@ -1,5 +1,5 @@
-// A quadruped from a URDF file, with its collision geometry: it stands by springs and dampers in
-// its joints, is pushed, and stands again. Public headers only.
+// A quadruped from a URDF file, with its collision geometry: it stands with PD-controlled joints,
+// receives a push, and recovers. Public headers only.
 //
 //   vphysics_sample_quadruped FILE
 #include <cmath>
@@ -29,17 +29,17 @@ int main(int argc, char** argv) {
   options.material.friction = 0.8;
   const auto robot = vp::add_urdf(world, argv[1], options);
   if (!robot) {
-    std::printf("%s\n", robot.error().message.c_str());  // the file, the line, what helps
+    std::printf("%s\n", robot.error().message.c_str());  // file, line and remedy
     return 1;
   }
   for (const std::string& note : robot->notes) std::printf("note: %s\n", note.c_str());
 
-  // Knees bent: that is where the joints start, and where springs and dampers hold them.
+  // Knees bent: the initial configuration of the joints, and the target of their drives.
   const vp::Model& model = robot->urdf.model;
   std::vector<double> q = model.zero_coordinates();
   std::vector<vp::JointDrive> drives(static_cast<std::size_t>(model.velocities()));
   for (const vp::UrdfJoint& joint : robot->urdf.joints) {
-    if (vp::velocities_of(model.link(joint.link).joint) != 1) continue;  // a fixed one
+    if (vp::velocities_of(model.link(joint.link).joint) != 1) continue;  // fixed joint
     const bool thigh = joint.name.find("thigh") != std::string::npos;
     const bool shank = joint.name.find("shank") != std::string::npos;
     vp::JointDrive& drive = drives[static_cast<std::size_t>(model.first_velocity(joint.link))];
@@ -61,7 +61,7 @@ int main(int argc, char** argv) {
     lowest = std::fmin(lowest, world.pose(trunk).position().z);
   }
 
-  // What each foot carries.
+  // The contact force on each foot.
   double carried = 0.0;
   for (const char* leg : {"front_left", "front_right", "rear_left", "rear_right"}) {
     std::vector<vp::ContactPoint> points;
@@ -78,8 +78,8 @@ int main(int argc, char** argv) {
   const vp::SE3 T = world.pose(trunk);
   std::printf("the trunk stands at %.3f m, never below %.3f m; the feet carry %.2f N of %.2f N\n",
               T.position().z, lowest, carried, 9.81 * mass);
-  // Two equal links of 0.2 m at 0.8 rad to the vertical on a foot of 0.02 m, less what the springs
-  // give way.
+  // The height of two equal links of 0.2 m at 0.8 rad to the vertical, on a foot of 0.02 m, minus
+  // the deflection of the drives.
   const double straight = 2 * 0.2 * std::cos(0.8) + 0.02;
   const bool stands = T.rotation().cz.z > 0.999 && T.position().z < straight + 0.001 &&
                       T.position().z > straight - 0.03 && lowest > straight - 0.05;

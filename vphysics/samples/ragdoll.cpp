@@ -1,4 +1,4 @@
-// A ragdoll of bodies and joints falls down a stair and comes to rest. Public headers only.
+// A ragdoll of bodies and joints falls down stairs and comes to rest. Public headers only.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -8,7 +8,7 @@
 
 namespace {
 
-// Turns the z axis, along which a capsule lies and about which a joint twists, to another one.
+// A frame whose z axis, the axis of a capsule and of a joint's twist, is along another axis.
 vp::SE3 z_along(const vp::Vec3& axis, const vp::Vec3& at) {
   const vp::Vec3 z{0.0, 0.0, 1.0};
   const vp::Vec3 turn = vp::cross(z, axis);
@@ -21,7 +21,7 @@ vp::SE3 z_along(const vp::Vec3& axis, const vp::Vec3& at) {
 struct Joined {
   vp::JointId joint;
   vp::BodyId a, b;
-  vp::Vec3 on_a, on_b;  // where they are joined, in their own frames
+  vp::Vec3 on_a, on_b;  // the joint's point in both body frames
 };
 
 }  // namespace
@@ -47,11 +47,11 @@ int main() {
   }
 
   // begin: ragdoll
-  // A limb is a capsule from one point to another; its mass is that of its volume.
+  // A limb is a capsule from one point to another; its mass follows from its volume.
   const vp::Vec3 start{0.0, 0.0, 2.2};
   const auto limb = [&](const vp::Vec3& from, const vp::Vec3& to, double radius) {
     vp::BodyDesc body;
-    body.angular_damping = 2.0;  // flesh: what hangs comes to rest
+    body.angular_damping = 2.0;  // soft tissue: damps swinging limbs
     const vp::Vec3 along = to - from;
     body.T_world_body = z_along((1.0 / vp::norm(along)) * along, start + 0.5 * (from + to));
     vp::ColliderDesc capsule;
@@ -63,7 +63,7 @@ int main() {
     return made ? *made : vp::BodyId{};
   };
   std::vector<Joined> joints;
-  // At a point, with z of the joint's frame along an axis.
+  // A joint at a point; the z axis of its frame is along `axis`.
   const auto join = [&](vp::BodyId a, vp::BodyId b, const vp::Vec3& at, const vp::Vec3& axis,
                         const vp::JointKind& kind) {
     const vp::SE3 frame = z_along(axis, start + at);

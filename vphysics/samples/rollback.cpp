@@ -1,5 +1,6 @@
-// Rollback, as games over a network have it: steps go on with a guess of what the other player
-// does; when the truth arrives they are taken back and made again. Public headers only.
+// Rollback for networked games: the simulation advances with a predicted input of the other player;
+// when the actual input differs, it restores an earlier state and repeats the steps. Public headers
+// only.
 #include <array>
 #include <cstddef>
 #include <cstdio>
@@ -11,11 +12,11 @@
 namespace {
 
 constexpr double kTick = 1.0 / 60.0;
-constexpr int kTicks = 300, kLate = 8;  // the other's input arrives so many ticks late
+constexpr int kTicks = 300, kLate = 8;  // delay of the other player's input, in ticks
 
 struct Game {
   vp::World world;
-  std::array<vp::BodyId, 2> pucks;  // one a player
+  std::array<vp::BodyId, 2> pucks;  // one for each player
   bool ok = true;
 
   Game() {
@@ -41,7 +42,7 @@ struct Game {
     ok = ok && body && world.add_collider(*body, collider);
     return body ? *body : vp::BodyId{};
   }
-  // All that happens in a tick follows from the state and both inputs, forces [N].
+  // A tick depends only on the state and on both inputs, forces [N].
   void tick(const std::array<double, 2>& inputs) {
     for (std::size_t k = 0; k < 2; ++k) {
       ok = ok && world.apply_force(pucks[k], {inputs[k], 0.2 * inputs[k], 0.0});
@@ -50,7 +51,7 @@ struct Game {
   }
 };
 
-// What the players do: each changes its mind now and then.
+// The players' inputs, which change from time to time.
 double input_of(int player, int tick) {
   const int phase = (tick + 37 * player) / 45 % 3;
   return (player == 0 ? 1.0 : -1.0) *
@@ -62,17 +63,17 @@ double input_of(int player, int tick) {
 int main() {
   // begin: rollback
   Game game;
-  std::deque<std::vector<std::byte>> saved;  // of the last kLate ticks, the oldest first
-  std::deque<double> guessed;                // what the other was taken to do in them
+  std::deque<std::vector<std::byte>> saved;  // of the last kLate ticks, oldest first
+  std::deque<double> guessed;                // predicted inputs of the other player in these ticks
   int taken_back = 0;
   for (int tick = 0; tick < kTicks + kLate; ++tick) {
-    if (tick >= kLate) {  // what the other did kLate ticks ago arrives
+    if (tick >= kLate) {  // the other player's input of kLate ticks ago arrives
       const int then = tick - kLate;
       const double truth = input_of(1, then);
       if (guessed.front() != truth) {
         ++taken_back;
         if (!game.world.restore(saved.front())) return 1;
-        for (auto& guess : guessed) guess = truth;  // until something else is known
+        for (auto& guess : guessed) guess = truth;  // prediction until the next input
         for (int again = then; again < tick && again < kTicks; ++again) {
           const auto slot = static_cast<std::size_t>(again - then);
           saved[slot].clear();
@@ -83,7 +84,7 @@ int main() {
       saved.pop_front();
       guessed.pop_front();
     }
-    if (tick >= kTicks) continue;  // the game is over; what is late still arrives
+    if (tick >= kTicks) continue;  // the game is over; late inputs still arrive
     saved.emplace_back();
     game.world.snapshot(saved.back());
     guessed.push_back(guessed.empty() ? 0.0 : guessed.back());
@@ -91,7 +92,7 @@ int main() {
   }
   // end: rollback
 
-  // Who knew everything in time comes to the same bits.
+  // A simulation with all inputs in time has the same bits.
   Game reference;
   for (int tick = 0; tick < kTicks; ++tick) reference.tick({input_of(0, tick), input_of(1, tick)});
   const bool same = game.world.state_hash() == reference.world.state_hash();

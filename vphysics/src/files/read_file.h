@@ -1,4 +1,4 @@
-// A file as bytes, never more of them than a limit.
+// Reads a file into memory, up to a size limit.
 #pragma once
 
 #include <cstddef>
@@ -8,8 +8,8 @@
 
 namespace vp::detail {
 
-// Errc::bad_data where it cannot be read; Errc::unsupported where it has more than so many bytes.
-// The message begins with the path.
+// Errc::bad_data if it cannot be read; Errc::unsupported if it has more than max_bytes bytes. The
+// message begins with the path.
 Expected<std::string> read_file(const std::string& path, std::size_t max_bytes);
 
 }  // namespace vp::detail

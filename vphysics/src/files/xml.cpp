@@ -27,9 +27,9 @@ std::string reason(const tinyxml2::XMLDocument& document) {
   }
 }
 
-// Where an element has more attributes than any needs, or npos: tinyxml2 compares each of them with
-// each, and a stranger's million would take hours. As far as tinyxml2 reads without an error, this
-// finds the same elements.
+// Finds an element with more attributes than any needs, or npos: tinyxml2 compares them pairwise,
+// so a million attributes in untrusted input would take hours. This function finds the same
+// elements as tinyxml2, as far as tinyxml2 reads without an error.
 std::size_t overfull_element(std::string_view text) {
   constexpr int kMax = 200;
   const auto after = [&](std::string_view end, std::size_t from) {

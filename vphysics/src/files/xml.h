@@ -1,4 +1,4 @@
-// tinyxml2 on text from outside: bounded in depth, in attributes and in time.
+// tinyxml2 for untrusted text: bounded in depth, attributes and time.
 #pragma once
 
 #include <tinyxml2.h>
@@ -9,8 +9,8 @@
 
 namespace vp::detail {
 
-// An error's message begins with the line: "line 12: ...". Zero bytes at the end, of strings
-// written by programs in C, are left out.
+// An error's message begins with the line: "line 12: ...". Ignores zero bytes at the end, which C
+// programs write after strings.
 Expected<void> parse_xml(std::string_view text, tinyxml2::XMLDocument& document);
 
 }  // namespace vp::detail

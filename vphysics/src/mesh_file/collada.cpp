@@ -1,6 +1,6 @@
-// COLLADA 1.4 and 1.5, as far as a shape needs it: the geometries (triangles, polylist, polygons)
-// and where the scene's nodes place them. The unit of length is taken into account; which axis is
-// up is not, as RViz has it. Without a scene every geometry is taken as it is.
+// COLLADA 1.4 and 1.5, as far as collision shapes need it: the geometries (triangles, polylist,
+// polygons) and their placement by the scene's nodes. The unit of length is applied. The up axis is
+// ignored, as in RViz. Without a scene, every geometry is used without a transform.
 //
 //   <mesh> <source id="p"><float_array>x y z ...</float_array></source>
 //          <vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
@@ -34,7 +34,7 @@ std::string_view text_of(const XMLElement* e) {
 bool is(const XMLElement& e, const char* name) {
   return std::strcmp(e.Name(), name) == 0;
 }
-// What a "#name" of an attribute names.
+// The id in an attribute "#id".
 std::string_view reference(const XMLElement* e, const char* attribute) {
   const char* value = e ? e->Attribute(attribute) : nullptr;
   return value && *value == '#' ? value + 1 : "";
@@ -93,7 +93,7 @@ class Collada {
     if (m > 0.0 && std::isfinite(m)) unit_.A = {{m, 0, 0}, {0, m, 0}, {0, 0, m}};
   }
 
-  // Nodes name nodes of a library, so that few lines may ask for endlessly many.
+  // Nodes may instance nodes of a library, so a few lines could request an unbounded number.
   void node(const XMLElement& n, const Affine& parent, int depth) {
     constexpr int kDeepest = 50, kMaxNodes = 10000;
     if (depth > kDeepest || ++visited_ > kMaxNodes || builder_.full()) return;
@@ -135,7 +135,7 @@ class Collada {
       const Vec3 axis = take_vec3(text);
       const double degrees = to_number(take_token(text));
       const double length = norm(axis);
-      // Not of what is no number: Exp asks for numbers.
+      // Excludes non-finite and huge numbers, which Exp does not accept.
       if (length > 0.0 && length < 1e9 && std::fabs(degrees) < 1e9) {
         T.A = Exp((degrees * kPi / 180.0 / length) * axis).matrix();
       }
@@ -143,8 +143,8 @@ class Collada {
     return T;
   }
 
-  // The text, or nothing once more than any file has was asked for: nodes may place a geometry any
-  // number of times.
+  // Returns the text, or nothing once the total exceeds what any real file needs: nodes may
+  // instance a geometry any number of times.
   std::string_view asked(std::string_view text) {
     constexpr std::size_t kMax = std::size_t{256} << 20;
     asked_ += text.size();
@@ -186,7 +186,7 @@ class Collada {
     }
   }
 
-  // Each corner has as many indices as there are offsets, of which one is the vertex's.
+  // Each corner has one index for each offset; one of them is the vertex index.
   void faces(const XMLElement& e, std::int64_t first) {
     const XMLElement* vertex = input(e, "VERTEX");
     if (!vertex) return;

@@ -45,7 +45,7 @@ Expected<MeshFile> MeshBuilder::finish(const char* format) {
                                " triangles, or three times as many vertices; simplify the mesh, or "
                                "allow more by MeshLimits"});
   }
-  // Triangles name finite vertices alone; with the others taken out they are numbered again.
+  // Triangles refer only to finite vertices. Removes the other vertices and renumbers.
   std::vector<std::uint32_t> number(mesh.vertices.size());
   std::size_t kept = 0;
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
@@ -110,7 +110,7 @@ std::optional<MeshFormat> mesh_format(std::string_view path) {
 }
 
 Expected<MeshFile> parse_mesh(std::string_view bytes, MeshFormat format, const MeshLimits& limits) {
-  // Indices have 32 bits, and STL three vertices for each triangle.
+  // Indices have 32 bits, and STL has three vertices for each triangle.
   constexpr std::size_t kMaxTriangles = std::size_t{1} << 26;
   if (bytes.size() > limits.max_bytes) {
     return tl::make_unexpected(

@@ -1,6 +1,6 @@
-// Wavefront OBJ: one statement a line. Read are v (a vertex), f (a face: its corners as i, i/t,
-// i//n or i/t/n, counted from 1, or backwards from the last vertex by -1), o and g (an object
-// begins). A backslash at the end of a line joins it to the next.
+// Wavefront OBJ: one statement for each line. Supported: v (a vertex); f (a face, with corners i,
+// i/t, i//n or i/t/n, counted from 1, or negative, counted back from the last vertex); o and g
+// (start of an object). A backslash at the end of a line continues it on the next.
 #include <vector>
 
 #include "mesh_file/reader.h"
@@ -8,7 +8,7 @@
 namespace vp::detail {
 namespace {
 
-// Below 0: no index.
+// Returns a negative number if there is no valid index.
 std::int64_t take_index(std::string_view token, std::size_t vertices) {
   std::int64_t index = 0;
   const auto [end, failed] = std::from_chars(token.data(), token.data() + token.size(), index);

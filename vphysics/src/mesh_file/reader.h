@@ -1,4 +1,4 @@
-// What the readers of mesh files share: the mesh as it grows, and text as words and numbers.
+// Shared by the readers of mesh files: a mesh builder, and text as words and numbers.
 #pragma once
 
 #include <algorithm>
@@ -14,23 +14,23 @@
 
 namespace vp::detail {
 
-// Takes a mesh together, within a limit of triangles, and of three times as many vertices.
+// Builds a mesh, with a limit of triangles and of three times as many vertices.
 class MeshBuilder {
  public:
   explicit MeshBuilder(std::size_t max_triangles) : max_triangles_(max_triangles) {}
 
-  // The index of the vertex, which may have any numbers.
+  // Adds a vertex, finite or not, and returns its index.
   std::uint32_t vertex(const Vec3& v) {
     full_ = full_ || mesh.vertices.size() >= 3 * max_triangles_;
     mesh.vertices.push_back(v);
     return static_cast<std::uint32_t>(mesh.vertices.size() - 1);
   }
-  // A polygon, cut into triangles from its first corner. Its indices are checked.
+  // Adds a polygon as a fan of triangles from its first corner. Checks its indices.
   void polygon(std::span<const std::int64_t> corners);
-  // What follows is another object.
+  // Starts another object.
   void begin_object();
   bool full() const { return full_; }
-  // Vertices that are not finite go, with the triangles that they had taken with them before.
+  // Removes vertices that are not finite; their triangles were never added. Returns the mesh.
   Expected<MeshFile> finish(const char* format);
 
   MeshFile mesh;
@@ -44,7 +44,7 @@ class MeshBuilder {
 
 inline constexpr std::string_view kSpace = " \t\r\n\f\v";
 
-// The next word, and off the front of the text with it; empty at the end.
+// Returns the next word and removes it from the front of the text; empty at the end.
 inline std::string_view take_token(std::string_view& text) {
   text.remove_prefix(std::min(text.find_first_not_of(kSpace), text.size()));
   const std::string_view token = text.substr(0, text.find_first_of(kSpace));
@@ -52,7 +52,7 @@ inline std::string_view take_token(std::string_view& text) {
   return token;
 }
 
-// Unlike strtod it asks no locale. Not a number where the word is none.
+// Unlike strtod, it ignores the locale. NaN if the word is not a number.
 inline double to_number(std::string_view token) {
   if (token.size() > 1 && token[0] == '+' && token[1] != '-') token.remove_prefix(1);
   double value = 0.0;

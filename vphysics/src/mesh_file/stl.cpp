@@ -1,7 +1,7 @@
-// STL. Binary: 80 bytes of anything, the number of triangles, and for each of them 50 bytes: a
-// normal and three corners as float, and two bytes more, all little-endian. Text: words, of which
-// "vertex" with three numbers and "endloop" make the triangles. Binary files that begin with
-// "solid" as text does are common, so that the length decides.
+// STL. Binary: 80 arbitrary bytes, the number of triangles, and 50 bytes for each: a normal and
+// three corners as float, and two more bytes, all little-endian. Text: words; "vertex" with three
+// numbers and "endloop" define the triangles. Many binary files begin with "solid" as text files
+// do, so the length decides.
 #include <bit>
 #include <vector>
 

@@ -1,18 +1,18 @@
-// The first pass, from the roots outwards: where the links are, how they move, what they weigh.
+// The first pass, base to tip: poses, velocities, accelerations and bias forces of the links.
 //
 //   X_i = X_parent T_parent,i e^(S_i q_i)
 //   S_i = Ad_X of the joint's own subspace: (z, p x z) for a revolute, (0, z) for a prismatic joint
 //   V_i = V_parent + S_i q'_i
 //   A_i = A_parent + ad_(V_i) (S_i q'_i) + S'_i q'_i + S_i q''_i
 //
-// S is fixed in the link, hence turns with V_i; S' is the rate of a user's joint in its own frame.
-// Where the joints' accelerations are what is asked for, A is without them. Of each body, about the
+// S is fixed in the link, hence rotates with V_i. S' is the rate of a user joint's subspace in the
+// joint's own frame. Forward dynamics omits the term S_i q''_i from A. For each body, about the
 // origin of the tree, with its centre of mass at c:
 //   h = m c,  I = I_c + m (|c|^2 - c c^T)
 //   f = m (A.v + A.w x c + w x (v + w x c)),  n = I_c A.w + w x I_c w,  F = (n + c x f, f)
-// F is the bias force J A - dad_V (J V), written for the centre of mass, where it is shorter.
+// F is the bias force J A - dad_V (J V), in the shorter form about the centre of mass.
 //
-// A group of slots goes through all of it before the next.
+// The pass completes a group of slots before it starts the next.
 #pragma once
 
 #include "multibody/joints.h"
@@ -20,11 +20,11 @@
 
 namespace vp::detail {
 
-// How far the pass goes.
+// The results that the pass computes.
 enum class PassDepth { poses, velocities, accelerations };
 
-// A body in the axes of the tree. Its central inertia comes as kSpin 1 + a a^T + b b^T: two axes
-// are less to turn than a matrix.
+// A body in the axes of the tree. Its central inertia is stored as kSpin 1 + a a^T + b b^T:
+// rotating two vectors is cheaper than rotating a matrix.
 template <class N>
 struct Body {
   N mass;
@@ -44,7 +44,7 @@ struct BodyInTree {
              a.z * a.x + b.z * b.x}};
   }
 };
-// Its inertia about the origin of the tree, of its first moment h.
+// The body's inertia about the origin of the tree, from its first moment h.
 template <class N>
 Sym3T<N> rotational(const Body<N>& body, const Vec3T<N>& h) {
   const Vec3T<N>& c = body.centre;
@@ -61,7 +61,7 @@ dse3T<N> body_force(const Body<N>& body, const se3T<N>& V, const se3T<N>& A) {
   return {n + cross(c, f), f};
 }
 
-// Groups of slots, one after the other from the first: what each step of the pass makes of one.
+// The steps of the pass for one group of slots. Groups are processed in order.
 template <class T>
 class SlotMotion {
  public:
@@ -72,7 +72,7 @@ class SlotMotion {
     W sine, cosine, slide;
   };
 
-  // a: of the joints, or empty: none.
+  // a: the joint accelerations, or empty.
   SlotMotion(const Tree<B>& tree, Work<T>& work, Span<T> q, Span<T> v, Span<T> a)
       : tree_(tree), layout_(layout_of<T>(tree)), work_(work), q_(q), v_(v), a_(a) {}
 
@@ -83,7 +83,7 @@ class SlotMotion {
   bool has_accelerations() const { return !a_.empty(); }
   W accelerations(int g, const Group& group) const { return velocities(a_, g, group); }
 
-  // An angle is so large that it has to be taken modulo 2 pi first.
+  // True if an angle is so large that it must first be reduced modulo 2 pi.
   bool far() const { return !reduce_ && !all(near_); }
   void reduce_angles() { reduce_ = true; }
 
@@ -109,7 +109,7 @@ class SlotMotion {
 
   const Slot& slot(int i) const { return tree_.slots[static_cast<std::size_t>(i)]; }
 
-  // Of each slot of a group its number in an array; others where it has none.
+  // Gathers the number of each slot of a group from an array; zero for slots that have none.
   W coordinates(int g, const Group& group) const {
     return along(q_, g, group, group.first_q, [](const Slot& s) { return s.q; });
   }
@@ -134,7 +134,7 @@ class SlotMotion {
     }
   }
 
-  // e^(S q) behind the pose at zero: two columns mix, and z leads along.
+  // The pose at zero coordinates times e^(S q): rotates two columns and translates along z.
   SE3T<W> turned(int g, const Group& group, const Angles& angles) const {
     const auto k = group_constants<T>(tree_, g);
     const Vec3T<W> x = k.vec(kRotation0), y = k.vec(kRotation0 + 3), z = k.vec(kRotation0 + 6);
@@ -144,7 +144,7 @@ class SlotMotion {
             p};
   }
 
-  // Behind the parents' poses, from the poses in the parents' frames.
+  // Poses in the tree's frame, from the poses in the parents' frames.
   SE3T<W> placed(int g, const Group& group, const SE3T<W>& local) {
     if constexpr (kByRows<T>) {
       const SE3T<W> X = multiplied_in_group(layout_, group, local);
@@ -171,7 +171,8 @@ class SlotMotion {
   }
   bool has_parent(int i) const { return slot(i).parent != kWorld; }
 
-  // A slot of a node that is not simple: the first places the node, the others are with it.
+  // Handles a slot of a node that is not simple. Its first slot has the node's pose, the others the
+  // identity.
   VP_NOINLINE void take_general(int i, int k, SE3T<W>& local) {
     if (slot(i).kind == SlotKind::simple) return;
     const auto n = static_cast<std::size_t>(slot(i).node);
@@ -211,7 +212,7 @@ class SlotMotion {
     return {turn * z, turn * s + slide * z};
   }
 
-  // In lane k of a group what slot i, which is not simple, has there instead.
+  // Replaces lane k of a group by the value of slot i, whose node is not simple.
   static void set(se3T<W>& to, [[maybe_unused]] int k, const se3T<T>& V) {
     if constexpr (kSlots<T> == 1) {
       to = V;
@@ -227,7 +228,7 @@ class SlotMotion {
     if (i == node.slot) open_columns<T>(node, work_.slot(i).pose(kX), columns(n));
     set(S, k, columns(n).S[static_cast<std::size_t>(i - node.slot)]);
   }
-  // Six numbers of a free root, from its axes to the tree's.
+  // Rotates six components of a free root from the link's axes to the tree's axes.
   se3T<T> of_root(int i, Span<T> x) const {
     const Mat3T<T> R = work_.slot(i).mat(kX);
     const auto k = static_cast<std::size_t>(slot(i).v);
@@ -242,8 +243,8 @@ class SlotMotion {
     if (!a_.empty()) A = A + of_root(i, a_);
     set(own, k, A);
   }
-  // The columns of a node turn with its link, all of them: ad_V of what they make together is due
-  // at the last. That is V less the parent's, and ad_V V = 0.
+  // All columns of a node rotate with its link. The last slot therefore adds ad_V of the joint's
+  // total velocity, which is V - V_parent, and ad_V V = 0.
   VP_NOINLINE void take_bias(int i, int k, se3T<W>& own) {
     const Slot& s = slot(i);
     if (s.kind != SlotKind::column) return;
@@ -261,7 +262,7 @@ class SlotMotion {
     set(own, k, bias);
   }
 
-  // Of each slot its own and its parent's, of a root its own, at one of the fields kV and kA.
+  // Adds the parent's value to each slot's value, in field kV or kA. A root keeps its own value.
   se3T<W> summed(int g, const Group& group, const se3T<W>& own, int field) {
     const auto fields = work_.group(g);
     if constexpr (kByRows<T>) {
@@ -303,17 +304,16 @@ class SlotMotion {
   typename W::Mask near_ = W(0) == W(0);
 };
 
-// body_of(k, X) makes of a group's constants and poses what is due of its bodies, and then
-// take(g, body, V, A) has that, with what the reach reaches: in this order little has to be kept at
-// a time.
+// body_of(k, X) computes the bodies from a group's constants and poses. take(g, body, V, A) then
+// receives them, with V and A as far as kDepth goes. This order keeps few values live at a time.
 template <class T, PassDepth kDepth, class BodyOf, class Take>
 class BaseToTip {
  public:
   BaseToTip(SlotMotion<T>& motion, const BodyOf& body_of, const Take& take)
       : motion_(motion), body_of_(body_of), take_(take) {}
 
-  // Of all groups, the first first. The sine and cosine of a joint are a long chain of operations:
-  // those of the next group are begun before this one's poses.
+  // Processes the groups in order. The sine and cosine of a joint are a long dependency chain:
+  // those of the next group start before the poses of the current group.
   void begin() { angles_ = motion_.open_angles(0); }
   void move(int g) {
     const auto& groups = motion_.layout().groups;
@@ -332,7 +332,8 @@ class BaseToTip {
   using Angles = typename SlotMotion<T>::Angles;
   using Group = typename SlotMotion<T>::Group;
 
-  // Apart, so that simple joints' numbers need not be in memory for what others call.
+  // Not inlined, so that the values of simple joints need not be in memory for the calls that other
+  // joints make.
   VP_FLATTEN VP_NOINLINE void move_any(int g, const Group& group, const Angles& angles) {
     move_as<false>(g, group, angles);
   }
@@ -385,7 +386,7 @@ class BaseToTip {
   Angles angles_;
 };
 
-// Runs a pass over all groups.
+// Runs a pass over all groups. Repeats it with reduced angles if an angle is too large.
 template <class T, PassDepth kDepth, class BodyOf, class Take>
 void outwards(const Tree<base_t<T>>& tree, Work<T>& work, Span<T> q, Span<T> v, Span<T> a,
               const BodyOf& body_of, const Take& take) {
@@ -401,7 +402,7 @@ void outwards(const Tree<base_t<T>>& tree, Work<T>& work, Span<T> q, Span<T> v, 
   }
 }
 
-// The loads' forces on the links, from the bodies' bias forces.
+// Subtracts the external loads on the links from the bodies' bias forces.
 template <class T, bool kInRows>
 VP_NOINLINE void subtract_external(const Tree<base_t<T>>& tree, Work<T>& work,
                                    Span<dse3T<T>> external) {

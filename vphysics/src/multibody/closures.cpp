@@ -2,9 +2,10 @@
 //
 //   T = T_a_b = T_world_a^-1 T_world_b,   T' = T [W],   W = V_b - Ad_(T^-1) V_a   in frame b
 //
-// A constraint has phi(T) and its rate f(T, W), linear in W. The rows of J are f for each unit W,
-// carried to the two links. Evaluated in dual numbers, T with T' and W with its rate while no joint
-// accelerates, f has the bias for its slope: no second derivative is written by hand.
+// A constraint has the residual phi(T) and its rate f(T, W), linear in W. The rows of J are f for
+// each unit W, transformed to the two links. With dual numbers, T with derivative T' and W with its
+// rate at zero joint accelerations, the derivative of f is the bias: no second derivatives are
+// coded by hand.
 #include <array>
 #include <cmath>
 #include <string>
@@ -35,7 +36,7 @@ struct BallLoop {
   }
 };
 
-// With c the z axis of b seen from a: the stereographic image 2 (-c_y, c_x) / (1 + c_z) of the
+// With c the z axis of b in frame a: the stereographic image 2 (-c_y, c_x) / (1 + c_z) of the
 // rotation from one axis to the other.
 struct HingeLoop {
   static constexpr std::size_t kRows = 5;
@@ -53,7 +54,7 @@ struct HingeLoop {
   }
 };
 
-// Log(T)' = J_r^-1(Log T) W; the slope of Log T is that rate itself.
+// Log(T)' = J_r^-1(Log T) W, which is the derivative of the residual Log T.
 struct WeldLoop {
   static constexpr std::size_t kRows = 6;
   template <class T>

@@ -1,8 +1,9 @@
-// q [+] delta and q1 [-] q0. The rotation of a ball or a free joint is its quaternion, multiplied:
+// q [+] delta and q1 [-] q0. The rotation of a ball or free joint is updated by quaternion
+// multiplication:
 //
 //   r [+] w = r exp(w / 2),   r1 [-] r0 = 2 log(conj(r0) r1)
 //
-// and a free joint's position goes along the screw: p + R (J_l(w) v).
+// The position of a free joint moves along the screw: p + R (J_l(w) v).
 #include "vphysics/multibody/configuration.h"
 
 #include "multibody/instantiate.h"
@@ -35,7 +36,7 @@ void put(std::span<T> out, std::size_t at, const QuaternionT<T>& r) {
   out[at + 3] = r.w;
 }
 
-// Where the coordinates of a node's quaternion and its velocities begin.
+// Index of the first coordinate of a node's quaternion.
 template <class B>
 std::size_t quaternion_at(const Node<B>& node) {
   return static_cast<std::size_t>(node.kind == NodeKind::free ? node.q + 3 : node.q);

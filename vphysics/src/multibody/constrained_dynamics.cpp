@@ -2,10 +2,10 @@
 //
 //   forward dynamics   a = a_free + Y^T lambda,  G lambda = -(b + 2 r phi' + r^2 phi) - J a_free
 //   velocities         v <- v + Y^T p,           G p = -J v
-//   positions          q <- q [+] Y^T x,         G x = -phi, again until phi = 0
+//   positions          q <- q [+] Y^T x,         G x = -phi, iterated until phi = 0
 //
-// Rows that depend on others have no lambda of their own; what the others leave of their equations
-// must vanish, or the constraints contradict each other.
+// Dependent rows have no lambda of their own. The residual of their equations must vanish, or the
+// constraints contradict each other.
 #include "vphysics/multibody/constrained_dynamics.h"
 
 #include <algorithm>
@@ -21,11 +21,11 @@
 namespace vp {
 namespace detail {
 
-// Below this share of the largest term in its sums a row is zero. Rounding leaves 1e-15, a loop
-// that is closed to 1e-12 as much in rows that ought to be zero; by the row's own terms, so that
-// neither its unit nor the mechanism's size matters.
+// A row below this fraction of the largest term in its sums is zero. Rounding leaves 1e-15; a loop
+// closed to 1e-12 leaves as much in rows that should be zero. The measure is the row's own terms,
+// so neither its unit nor the mechanism's size matters.
 constexpr double kZeroRow = 1e-11;
-// What redundant rows may leave of their equations, of the largest term in them.
+// The residual allowed in redundant rows, relative to their largest term.
 constexpr double kContradiction = 1e-6;
 
 ConstraintWork::ConstraintWork(const Model& model, ConstraintSet constraints)
@@ -77,7 +77,7 @@ double ConstraintWork::along(std::size_t i, std::span<const double> x) const {
 
 namespace {
 
-// The rate of a user's joint's subspace, S' v, in its node's own frame.
+// The rate of a user joint's subspace, S' v, in its node's own frame.
 se3 subspace_rate(const Node<double>& node, std::span<const double> q, std::span<const double> v) {
   if (node.kind != NodeKind::user) return {};
   const auto dofs = static_cast<std::size_t>(node.dofs);
@@ -90,7 +90,7 @@ se3 subspace_rate(const Node<double>& node, std::span<const double> q, std::span
   return rate;
 }
 
-// V' of every node while no velocity changes, as kinematics.h has it.
+// V' of each node at zero joint accelerations, in the tree's frame.
 void bias_of_links(const Tree<double>& tree, ConstraintWork& work, std::span<const double> q,
                    std::span<const double> v) {
   const Work<double>& links = work.data.work();
@@ -171,8 +171,8 @@ void solve_rows(ConstraintWork& work, std::span<double> p) {
   }
 }
 
-// The measure is the largest term in any row of the same constraint: in a row of zeros all terms
-// are rounding.
+// The scale is the largest term in any row of the same constraint: in a row of zeros all terms are
+// rounding.
 bool contradicted(const ConstraintWork& work) {
   std::size_t first = 0;
   for (const ConstraintPtr& constraint : work.set.constraints()) {
@@ -202,8 +202,8 @@ void add_response(const ConstraintWork& work, std::span<const double> p, std::sp
 
 namespace {
 
-// Whether every residual is as small as asked; with a size, the mechanism's [m], as rounding lets
-// it be.
+// Whether every residual is within the tolerance. size > 0, the mechanism's size [m], also accepts
+// residuals at the level of rounding.
 bool closed(const ConstraintWork& work, double tolerance, double size) {
   for (std::size_t i = 0; i < work.rows; ++i) {
     const double rounding = 1e-14 * size * std::max(1.0, work.magnitude[i]);
@@ -231,8 +231,8 @@ void evaluate_at(const Model& model, ConstraintWork& work, std::span<const doubl
   evaluate_rows(model, work, q, work.v_zero);
 }
 
-// Goes along the step as far as the residuals become smaller, at most all of it; where they do not,
-// all of it: a residual may have to grow on the way. phi and J are then those of q.
+// Line search: halves the step until the residuals decrease. If they do not decrease, takes the
+// full step: a residual may have to grow temporarily. phi and J are then those of q.
 void take_step(const Model& model, ConstraintWork& work, std::span<double> q) {
   const double before = square_of(work.phi);
   const auto go = [&](double fraction) {
@@ -273,7 +273,7 @@ Expected<int> close(const Model& model, ConstraintWork& work, std::span<double> 
     solve_rows(work, work.lambda);
     std::fill(work.step.begin(), work.step.end(), 0.0);
     add_response(work, work.lambda, work.step);
-    for (const std::size_t i : work.joints) work.step[i] = 0.0;  // to the bit
+    for (const std::size_t i : work.joints) work.step[i] = 0.0;  // exactly zero
     if (!std::isfinite(largest_of(work.step)) || !(largest_of(work.step) < 1e100)) break;
     take_step(model, work, q);
   }

@@ -1,15 +1,16 @@
-// With v* = v + h a_free, G = J M^-1 J^T over the constraints (e) and the joints with a law (j):
+// With v* = v + h a_free, G = J M^-1 J^T over the constraints (e) and the joints with a force law
+// (j):
 //
-//   constraints  J v+ = -h b, as J a + b = 0 has it:  G_ee p_e + G_ej p_j = -h b - J v*
+//   constraints  J v+ = -h b, from J a + b = 0:  G_ee p_e + G_ej p_j = -h b - J v*
 //   eliminated   G' = G_jj - G_je G_ee^+ G_ej,  w' = v*_j + G_je G_ee^+ (-h b - J v*)
-//   laws         w = w' + G' p_j, each on its law (force_law_solver.h)
+//   force laws   w = w' + G' p_j, each on its force law (force_law_solver.h)
 //   then         v+ = v* + Y^T p
 //
-// The laws, with x = q - lower and so on:
+// The force laws, with x = q - lower and so on:
 //   spring and damper  slope h (h k + d),  zero at  k (rest - q) / (h k + d)
-//   motor              the same towards its targets, cut off at h max_force
+//   motor              the same towards its targets, clamped at h max_force
 //   friction           a step at 0, between -h f and h f
-//   stop               a step at (lower - q) / h, from 0 up;  a soft limit a slope from there
+//   stop               a step at (lower - q) / h, from 0 up;  a soft limit is a slope from there
 #include "vphysics/multibody/constrained_step.h"
 
 #include <algorithm>
@@ -25,10 +26,10 @@ namespace detail {
 
 namespace {
 
-// A coordinate that begins beyond its stop is brought back by this share in each step, without a
-// velocity: it must neither jump nor fly off.
+// A coordinate that starts beyond its stop moves back by this fraction in each step, as a position
+// correction without velocity: it must neither jump nor gain speed.
 constexpr double kBack = 0.2;
-// Laws that are missed by more contradict each other.
+// Force laws with a larger residual contradict each other.
 constexpr double kMissed = 1e-3;
 
 tl::unexpected<Error> bad_step(const char* why) {
@@ -44,7 +45,7 @@ bool is_fine(const Motor& m) {
          m.stiffness < 1e300 && m.damping >= 0.0 && m.damping < 1e300 && m.max_force >= 0.0;
 }
 
-// k (target - q) + d (v_target - v), at the step's end.
+// k (target - q) + d (v_target - v), at the end of the step.
 Ramp pull(double k, double d, double away, double target_rate, double h) {
   const double slope = h * k + d;
   return {h * slope, slope > 0.0 ? (k * away + d * target_rate) / slope : 0.0};
@@ -57,7 +58,7 @@ Ramp motor_ramp(const Motor& m, const JointForces& f, double q, double h) {
   return ramp;
 }
 
-// A limit that is `away` [m, rad] ahead; pushing upwards at the lower one.
+// A limit at distance `away` [m, rad]. The lower limit acts in the positive direction.
 Ramp limit_ramp(const JointForces& f, double away, bool lower, double h) {
   Ramp ramp{kUnbounded, away / h};
   const bool beyond = lower ? away > 0.0 : away < 0.0;
@@ -66,14 +67,14 @@ Ramp limit_ramp(const JointForces& f, double away, bool lower, double h) {
   } else {
     const double slope = h * f.limit_stiffness + f.limit_damping;
     ramp.slope = h * slope;
-    // Damping begins where the limit is passed.
+    // Damping starts where the coordinate passes the limit.
     if (beyond) ramp.w0 = f.limit_stiffness * away / slope;
   }
   (lower ? ramp.lowest : ramp.highest) = 0.0;
   return ramp;
 }
 
-// The law of one velocity; its motor's ramp, if it has one, is the first.
+// The force law of one velocity. The motor's ramp, if any, comes first.
 struct ForceLawOf {
   const JointForces* forces;
   double damping;
@@ -102,7 +103,7 @@ struct ForceLawOf {
   }
 };
 
-// Which velocities have a law, and what each is at q.
+// Collects the velocities that have a force law, and makes the laws at q.
 void make_force_laws(const Model& model, ConstraintWork& work, std::span<const double> q,
                      std::span<const Motor> motors, double h) {
   work.joints.clear();
@@ -124,7 +125,8 @@ void make_force_laws(const Model& model, ConstraintWork& work, std::span<const d
   }
 }
 
-// v* in v; the joints' viscous damping is in their laws, so that it is taken out here.
+// Writes v* to v. Viscous damping is part of the joints' force laws, so its explicit force is
+// removed here.
 Expected<void> free_velocities(const Model& model, ConstraintWork& work, std::span<const double> q,
                                std::span<double> v, std::span<const double> tau, const Loads& loads,
                                double h) {
@@ -145,7 +147,7 @@ Expected<void> free_velocities(const Model& model, ConstraintWork& work, std::sp
   return {};
 }
 
-// The laws' system, with the constraints eliminated.
+// Sets up the system of the force laws, with the constraints eliminated.
 void eliminate_constraints(ConstraintWork& work, std::span<const double> v) {
   ForceLawSolver& force_laws = work.force_laws;
   const std::size_t e = work.rows, n = work.joints.size(), stride = work.capacity();
@@ -167,7 +169,7 @@ void eliminate_constraints(ConstraintWork& work, std::span<const double> v) {
       force_laws.G[i * force_laws.capacity + j] = sum;
     }
   }
-  // Symmetric to the bit, as the sums above are only to rounding.
+  // Makes G symmetric to the bit; the sums above are symmetric only to rounding.
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = 0; j < i; ++j)
       force_laws.G[j * force_laws.capacity + i] = force_laws.G[i * force_laws.capacity + j];
@@ -175,8 +177,8 @@ void eliminate_constraints(ConstraintWork& work, std::span<const double> v) {
   for (std::size_t j = 0; j < n; ++j) force_laws.p[j] = work.warm[work.joints[j]];
 }
 
-// The constraints' impulses beside the laws'; in lambda, the laws' after the constraints'. What the
-// rows that depend on others leave is in left.
+// Computes the constraint impulses from those of the force laws. lambda contains both: constraints
+// first. left contains the residual of dependent rows.
 void find_impulses(ConstraintWork& work) {
   const std::size_t e = work.rows, n = work.joints.size(), stride = work.capacity();
   for (std::size_t i = 0; i < e; ++i) {
@@ -191,8 +193,9 @@ void find_impulses(ConstraintWork& work) {
   for (std::size_t j = 0; j < n; ++j) work.lambda[e + j] = work.force_laws.p[j];
 }
 
-// All impulses. Without a solution for J v+ = -h b, J v+ = 0 may have one (h = 0 here): where
-// joints lock or meet their stops while the loops move, the velocities of which b is made are gone.
+// Solves for all impulses. If J v+ = -h b has no solution, J v+ = 0 may have one (called with h =
+// 0): where joints lock or reach their stops while the loops move, the velocities from which b was
+// computed no longer exist.
 bool solve_step(ConstraintWork& work, std::span<const double> v, double h, StepReport& report) {
   for (std::size_t i = 0; i < work.rows; ++i) {
     const double speed = work.along(i, v), bias = h * work.bias[i];
@@ -206,7 +209,7 @@ bool solve_step(ConstraintWork& work, std::span<const double> v, double h, StepR
   return work.force_laws.off() < kMissed && !contradicted(work);
 }
 
-// Impulses as forces, and kept for the next step.
+// Stores impulses as forces, and for the warm start of the next step.
 void tell_forces(ConstraintWork& work, std::span<const Motor> motors, double h) {
   std::fill(work.force_law_force.begin(), work.force_law_force.end(), 0.0);
   std::fill(work.motor_force.begin(), work.motor_force.end(), 0.0);
@@ -222,8 +225,8 @@ void tell_forces(ConstraintWork& work, std::span<const Motor> motors, double h) 
   }
 }
 
-// v+ in v. A joint at a step of its law has its velocity to the bit, so that one that sticks does
-// not creep.
+// Writes v+ to v. A joint at a step of its force law gets exactly the law's velocity, so that a
+// sticking joint does not creep.
 void apply_impulses(ConstraintWork& work, std::span<double> v) {
   add_response(work, work.lambda, v);
   for (std::size_t j = 0; j < work.joints.size(); ++j) {
@@ -231,7 +234,7 @@ void apply_impulses(ConstraintWork& work, std::span<double> v) {
   }
 }
 
-// q+ in q; what began beyond a stop is on its way back.
+// Writes q+ to q. Moves coordinates beyond a stop back towards it.
 void move(const Model& model, ConstraintWork& work, std::span<double> q, std::span<const double> v,
           double h) {
   for (std::size_t i = 0; i < v.size(); ++i) work.step[i] = h * v[i];
@@ -248,8 +251,8 @@ void move(const Model& model, ConstraintWork& work, std::span<double> q, std::sp
   }
 }
 
-// q and v back onto the constraints, from h^2 away. Joints at a step of their law stay there, as
-// long as the loops can be closed with them.
+// Projects q and v onto the constraints, from an error of O(h^2). Joints at a step of their force
+// law keep their coordinates if the loops can be closed with them.
 Expected<void> return_to_constraints(const Model& model, ConstraintWork& work, std::span<double> q,
                                      std::span<double> v) {
   constexpr double kTolerance = 1e-12;

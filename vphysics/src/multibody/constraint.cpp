@@ -18,7 +18,7 @@ tl::unexpected<Error> invalid_constraint(std::string why) {
 const detail::LinkFrame<double>& place_of(const Model& model, int link) {
   return model.tree().frames[static_cast<std::size_t>(link)];
 }
-// In the frame of the tree that the link's node is in.
+// Pose of a link in its tree's frame.
 SE3 pose_in_tree(const Data& data, const detail::LinkFrame<double>& frame) {
   return detail::pose_of(data.work(), frame.node) * frame.T_node_link;
 }

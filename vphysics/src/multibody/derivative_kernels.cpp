@@ -1,4 +1,5 @@
-// One instruction set's passes of the derivatives. The build names the set as for kernels.cpp.
+// The passes of the derivatives for one instruction set. The build names the set as for
+// kernels.cpp.
 #include "multibody/derivative_kernels.h"
 
 #include "multibody/differentiate.h"
@@ -37,7 +38,7 @@ struct DerivativeCall {
     if (args.external == nullptr) return {};
     return {static_cast<const dse3T<T>*>(args.external), tree.frames.size()};
   }
-  // One of the results, zeroed.
+  // A result matrix, filled with zeros.
   T* zeros(void* at) const {
     T* const out = static_cast<T*>(at);
     std::fill_n(out, size() * size(), T(0));
@@ -61,7 +62,7 @@ Differentiated run_inverse(const DerivativeArguments& args) {
              : Differentiated::no_derivatives;
 }
 
-// A pack of states is solved where its results go.
+// A pack of states is solved in place, in the result matrices.
 template <class T>
 Differentiated forward_of_states(const DerivativeCall<T>& c) {
   const std::size_t n = c.size();
@@ -82,7 +83,7 @@ Differentiated forward_of_states(const DerivativeCall<T>& c) {
   return Differentiated::done;
 }
 
-// One state in rows of whole registers.
+// A single state is solved in rows of whole registers, then copied to the results.
 template <class T>
 Differentiated forward_of_one(const DerivativeCall<T>& c) {
   constexpr auto kGroup = static_cast<std::size_t>(kSlots<T>);

@@ -1,22 +1,22 @@
-// The passes of the derivatives, compiled for several instruction sets as those of kernels.h are:
-// with the same bits from each but for fused multiply-add, and nothing but addresses between the
-// namespaces.
+// The passes of the derivatives, compiled for several instruction sets like those of kernels.h.
+// Each set gives the same bits, except for fused multiply-add. Only addresses are passed between
+// the namespaces.
 #pragma once
 
 #include "multibody/kernels.h"
 
 namespace vphysics_kernels {
 
-// tree, work and memory: Tree, Work and DerivativesWork, the work as inverse or forward dynamics
-// of the same state has left it; the others as in derivatives.h. The results by q, by v, and by a
-// or tau.
+// tree, work and memory: Tree, Work and DerivativesWork; the work has the results of inverse or
+// forward dynamics at the same state. The others as in derivatives.h. Results: derivatives with
+// respect to q, v, and a or tau.
 struct DerivativeArguments {
   const void* tree;
   void* work;
   void* memory;
   const void *q, *v, *a;
   const void* gravity;
-  const void* external;  // of each link, or null
+  const void* external;  // one for each link, or null
   void *by_q, *by_v, *by_force;
 };
 enum class Differentiated { done, no_derivatives, singular };

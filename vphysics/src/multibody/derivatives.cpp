@@ -1,4 +1,4 @@
-// The memory of the derivatives and the public calls; the passes are in differentiate.h and
+// The working memory of the derivatives and the public calls. The passes are in differentiate.h and
 // solve_rows.h.
 #include "multibody/derivatives.h"
 
@@ -34,7 +34,7 @@ void lay_out_branches(const Tree<base_t<T>>& tree, DerivativesWork<T>& memory) {
       }
     }
   }
-  // A parent's velocities have lower numbers.
+  // Parents have lower indices.
   for (std::size_t i = 0; i < memory.branches.size(); ++i) {
     Branch& branch = memory.branches[i];
     const int own = static_cast<int>(i);
@@ -77,7 +77,7 @@ const vphysics_kernels::DerivativeKernels& derivative_kernels_of(const DataT<T>&
   }
 }
 
-// What both calls hand to their kernels, but for the accelerations and the results.
+// The common arguments of both calls, without the accelerations and the results.
 template <class T>
 DerivativeArguments start(const ModelT<base_t<T>>& model, DataT<T>& data,
                           DerivativesDataT<T>& memory, Span<T> q, Span<T> v,

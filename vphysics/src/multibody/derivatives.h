@@ -1,8 +1,8 @@
-// The memory of the derivatives, and what its passes share.
+// Working memory and shared definitions of the derivatives.
 //
-// Each velocity has a record of numbers, in groups of kSlots as a data's slots are (lanes.h): of
-// one state a pass computes eight velocities at once, of a pack of states one velocity of all
-// states.
+// Each velocity has a record of numbers. Records are in groups of kSlots, like the slots of a data
+// (lanes.h): for one state a pass computes eight velocities at once, for a pack of states one
+// velocity of all states.
 #pragma once
 
 #include <algorithm>
@@ -14,23 +14,23 @@
 
 namespace vp::detail {
 
-// Velocities by their numbers first to end - 1, all on one path to the root.
+// Consecutive velocities, from first to end - 1, all on one path to the root.
 struct Run {
   int first, end;
 };
 
-// A velocity's place in the tree of velocities.
+// A velocity's entry in the tree of velocities.
 struct Branch {
-  int parent;              // the velocity before it on the path to the root, or -1
-  int node, column;        // whose it is, and which of the node's
-  bool last;               // of its node: the body is there
-  int first_run, end_run;  // of itself and all before it, in `runs`
-  int first, end;          // the least number on the path, one more than the largest that it moves
-  int tree_end;            // one more than the largest of its tree
+  int parent;              // the previous velocity on the path to the root, or -1
+  int node, column;        // its node, and its column of the node
+  bool last;               // of its node: has the body
+  int first_run, end_run;  // of itself and its ancestors, in `runs`
+  int first, end;          // lowest index on the path, one past the highest index that it moves
+  int tree_end;            // one past the highest index of its tree
 };
 
 // Numbers of a velocity: S, S1, S2, Sv, then J, F, B and p (differentiate.h), first of the body,
-// then of the body and all that hangs on it.
+// then of the body and its descendants.
 enum VelocityField : int {
   kColumnS = 0,
   kColumnS1 = 6,
@@ -45,8 +45,8 @@ enum VelocityField : int {
   kCompositeEnd = 52,
   kVelocityFields = 52
 };
-// Numbers of which only the group at work needs any: V_p, A_p, V and A on the way outwards; on the
-// way inwards what the loop along the path multiplies with, dF^/dq, dF^/dv, dF^/da and B^* S.
+// Scratch of the current group. Base to tip: V_p, A_p, V and A. Tip to base: the factors of the
+// loop along the path, dF^/dq, dF^/dv, dF^/da and B^* S.
 enum ScratchField : int {
   kParentV = 0,
   kParentA = 6,
@@ -59,8 +59,9 @@ enum ScratchField : int {
   kScratchFields = 24
 };
 
-// Lanes of the loops along a matrix's rows: a register of the target's, or a pack of states. Rows
-// of one state are padded to 64 bytes, so that registers may be read and written past their end.
+// SIMD lanes of the loops along a matrix row: one register of the target, or a pack of states. Rows
+// of one state are padded to 64 bytes, so that whole registers may be read and written past the
+// end.
 #if defined(__AVX512F__)
 inline constexpr int kRegister = 64;
 #elif defined(__AVX__)
@@ -88,12 +89,12 @@ std::size_t padded(std::size_t n) {
   return (n + kPadding - 1) / kPadding * kPadding;
 }
 
-// A matrix by rows, each in groups of kSlots columns.
+// A matrix by rows, each row in groups of kSlots columns.
 template <class T>
 struct MatrixView {
   T* at;
-  std::size_t stride;                                              // from row to row
-  std::size_t group_stride = static_cast<std::size_t>(kSlots<T>);  // from group to group
+  std::size_t stride;                                              // between rows
+  std::size_t group_stride = static_cast<std::size_t>(kSlots<T>);  // between groups
 
   T* group(std::size_t row, std::size_t g) const { return at + row * stride + g * group_stride; }
   T& operator()(std::size_t row, std::size_t column) const {
@@ -101,8 +102,8 @@ struct MatrixView {
     return group(row, column / kGroup)[column % kGroup];
   }
 };
-// By q, by v, and the mass matrix; of forward dynamics the factor L below its diagonal
-// (solve_rows.h) takes the place of that.
+// Derivatives with respect to q and v, and the mass matrix. For forward dynamics, `a` is the factor
+// L below the diagonal (solve_rows.h).
 template <class T>
 struct InverseMatrices {
   MatrixView<T> q, v, a;
@@ -113,7 +114,7 @@ struct DerivativesWork {
   explicit DerivativesWork(const Tree<base_t<T>>& tree);
 
   std::size_t velocities() const { return branches.size(); }
-  // All on the path from the root to a velocity, with itself as the last.
+  // The path from the root to a velocity, including itself.
   std::span<const Run> path(const Branch& branch) const {
     return std::span(runs).subspan(static_cast<std::size_t>(branch.first_run),
                                    static_cast<std::size_t>(branch.end_run - branch.first_run));
@@ -134,17 +135,17 @@ struct DerivativesWork {
   Fields<T, T> lane(int k) { return Fields<T, T>(scratch.data() + k); }
   Fields<T, Wide<T>> lanes() { return Fields<T, Wide<T>>(scratch.data()); }
 
-  std::vector<Branch> branches;  // of each velocity
+  std::vector<Branch> branches;  // one for each velocity
   std::vector<Run> runs;
-  std::vector<se3T<T>> A;                       // of each node: acceleration on top of gravity's
-  std::vector<UserDerivatives<T>> derivatives;  // of each user's node, in the tree's frame
-  std::vector<int> derivatives_of;              // a node's, or -1
+  std::vector<se3T<T>> A;                       // of each node: acceleration including gravity
+  std::vector<UserDerivatives<T>> derivatives;  // of each user node, in the tree's frame
+  std::vector<int> derivatives_of;              // of each node, or -1
   AlignedArray<T> records, scratch;
-  // Of forward dynamics. Of one state dtau/dq and dtau/dv share rows, a group of one after a group
-  // of the other: twice as many sums go on at once.
+  // For forward dynamics. For one state dtau/dq and dtau/dv share rows, in alternating groups: this
+  // doubles the number of independent sums.
   MatrixView<T> L{};
   std::vector<T> D_inverse;
-  std::size_t row_size;  // of L and of `inverse`
+  std::size_t row_size;  // of L and `inverse`
   AlignedArray<T> factor, both, inverse;
 };
 

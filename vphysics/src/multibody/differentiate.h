@@ -1,35 +1,35 @@
 // Derivatives of inverse dynamics, in the tree's frame (work.h).
 //
-// Velocity i moves the bodies of its own node n and of all nodes after it by the twist S_i. With
-// the node before n called p, V and A (gravity as an acceleration on top) of the nodes, J of the
-// bodies:
+// Velocity i moves the bodies of its own node n and of all descendants by the twist S_i. Let p be
+// the parent of n, V and A (including gravity) the twists and accelerations of the nodes, J the
+// inertias of the bodies:
 //
 //   S1_i = ad_(V_p) S_i                                   so that dV/dq_i = ad_(S_i) V + S1_i
 //   S2_i = ad_(A_p) S_i + ad_(V_p) S1_i                   dA/dq_i = ad_(S_i) A + ad_(S1_i) V + S2_i
 //   Sv_i = S1_i + ad_(V_n) S_i                            dA/dv_i = ad_(S_i) V + Sv_i
 //   B X  = -dad_V (J X) - dad_X (J V) - J ad_V X          of a body, linear in X
 //
-// Whatever is fixed to a moved body turns with it, so of the force F = J A - dad_V (J V) - load
+// Quantities fixed to a moved body rotate with it, so the force F = J A - dad_V (J V) - load has
 //
 //   dF/dq_i = -dad_(S_i) F + J S2_i + B S1_i,   dF/dv_i = B S_i + J Sv_i,   dF/da_i = J S_i.
 //
-// These are linear in J, B and F, whose sums over a node and all after it are J^, B^, F^
-// (VelocityField). For a velocity j on the path from i to the root, all bodies that i moves hang on
-// j too:
+// These are linear in J, B and F, whose sums over a node's subtree are J^, B^, F^ (VelocityField).
+// For a velocity j on the path from i to the root, all bodies that i moves are descendants of j
+// too:
 //
-//   dtau_j/dq_i = <S_j, -dad_(S_i) F^ + J^ S2_i + B^ S1_i>   all sums of i's node
-//   dtau_i/dq_j = <S2_j, J^ S_i> + <S1_j, B^* S_i>           what turns S_i turns F^ too: no term
+//   dtau_j/dq_i = <S_j, -dad_(S_i) F^ + J^ S2_i + B^ S1_i>   sums over the subtree of i's node
+//   dtau_i/dq_j = <S2_j, J^ S_i> + <S1_j, B^* S_i>           S_i and F^ rotate together: no term
 //   dtau_j/dv_i = <S_j, B^ S_i + J^ Sv_i>
 //   dtau_i/dv_j = <S_j, B^* S_i> + <Sv_j, J^ S_i>
 //   M_ij        = <S_j, J^ S_i>
 //
-// If j and i are of one node, its columns turn with the body as well, for either order:
-// dtau_j/dq_i has <ad_(S_i) S_j, F^> besides.
+// If j and i belong to one node, its columns rotate with the body as well, in either order:
+// dtau_j/dq_i has the additional term <ad_(S_i) S_j, F^>.
 //
-// With w the angular part of X, E = tr(I)/2 1 - I, h the first moment and p the linear momentum,
-// B X = (-2 (V.w x E w + h x (V.v x w)), 2 w x p): twelve numbers, not thirty-six.
+// With w the angular part of X, E = tr(I)/2 1 - I, h the first moment and p the linear momentum, B
+// X = (-2 (V.w x E w + h x (V.v x w)), 2 w x p): twelve numbers instead of thirty-six.
 //
-// A joint of one's own has columns that move in its link: D_ki = Ad_X dS_k/dq_i. Then
+// A user joint has columns that move in its link: D_ki = Ad_X dS_k/dq_i. Then
 //   S1_i += d,  Sv_i += d + sum_l D_il v_l,  d = sum_k D_ki v_k
 //   S2_i += ad_(V_p) d (by S1_i) + ad_(V_n) d + Ad_X d rate/dq_i + sum_k D_ki a_k
 //   dtau_k/dq_i += <D_ki, F^>
@@ -40,7 +40,7 @@
 
 namespace vp::detail::derivatives {
 
-// --- from the roots outwards
+// --- base to tip
 
 template <class T>
 Mat3T<T> velocity_product(const InertiaT<T>& J, const se3T<T>& V) {
@@ -64,7 +64,7 @@ InertiaT<N> inertia_at(const F& fields) {
   return {fields.get(kCompositeMass), fields.vec(kCompositeMoment), fields.sym(kCompositeInertia)};
 }
 
-// What the state says of a velocity's group: S1, S2, Sv, and F, K and p of the bodies.
+// Computes, for a group of velocities, S1, S2 and Sv, and F, K and p of the bodies.
 template <class T>
 VP_FLATTEN void open_group(const Records<T>& fields, const Records<T>& joints) {
   using N = Wide<T>;
@@ -84,7 +84,7 @@ VP_FLATTEN void open_group(const Records<T>& fields, const Records<T>& joints) {
   fields.set(kCompositeP, momentum.f);
 }
 
-// S1, S2 and Sv of column i of a user's joint: what its derivatives add.
+// Adds the derivatives of a user joint to S1, S2 and Sv of its column i.
 template <class T>
 VP_NOINLINE void add_derivatives(const Node<base_t<T>>& node, const UserDerivatives<T>& derivatives,
                                  Span<T> v, Span<T> a, std::size_t i, const Fields<T, T>& fields,
@@ -102,7 +102,7 @@ VP_NOINLINE void add_derivatives(const Node<base_t<T>>& node, const UserDerivati
   fields.set(kColumnSv, fields.twist(kColumnSv) + d + self);
 }
 
-// False where the joint does not say them.
+// Returns false if the joint does not provide its derivatives.
 template <class T>
 VP_NOINLINE bool open_user(const Node<base_t<T>>& node, const SE3T<T>& X, Span<T> q, Span<T> v,
                            UserDerivatives<T>& derivatives) {
@@ -132,7 +132,8 @@ se3T<T> acceleration_before(const State<T>& state, const DerivativesWork<T>& mem
   return node.parent == kWorld ? state.A_root : memory.A[static_cast<std::size_t>(node.parent)];
 }
 
-// Of a node, at its first velocity. False where a user's joint does not say its derivatives.
+// Prepares a node, at its first velocity. Returns false if a user joint does not provide its
+// derivatives.
 template <class T>
 bool open_node(const State<T>& state, DerivativesWork<T>& memory, int number) {
   const auto n = static_cast<std::size_t>(number);
@@ -153,7 +154,7 @@ bool open_node(const State<T>& state, DerivativesWork<T>& memory, int number) {
   return true;
 }
 
-// The bodies' inertias, into the fields of their slots.
+// Writes the bodies' inertias to the fields of their slots.
 template <class T>
 VP_FLATTEN void place_bodies(const Tree<base_t<T>>& tree, Work<T>& work) {
   for (int g = 0; g < static_cast<int>(layout_of<T>(tree).groups.size()); ++g) {
@@ -165,7 +166,7 @@ VP_FLATTEN void place_bodies(const Tree<base_t<T>>& tree, Work<T>& work) {
   }
 }
 
-// What open_group computes with.
+// Gathers the inputs of open_group.
 template <class T>
 void gather(const State<T>& state, DerivativesWork<T>& memory, const Branch& branch,
             const Fields<T, T>& fields, const Fields<T, T>& joints) {
@@ -186,7 +187,7 @@ void gather(const State<T>& state, DerivativesWork<T>& memory, const Branch& bra
   fields.set(kCompositeInertia, body.sym(kI));
 }
 
-// False where a user's joint does not say its derivatives.
+// Returns false if a user joint does not provide its derivatives.
 template <class T>
 bool open(const State<T>& state, DerivativesWork<T>& memory) {
   const int velocities = static_cast<int>(memory.branches.size());
@@ -212,7 +213,7 @@ bool open(const State<T>& state, DerivativesWork<T>& memory) {
   return true;
 }
 
-// The loads' forces on the links, from F of their nodes' bodies.
+// Subtracts the external loads on the links from F of their nodes' bodies.
 template <class T>
 void take_loads(const State<T>& state, DerivativesWork<T>& memory, Span<dse3T<T>> external) {
   for (std::size_t l = 0; l < external.size(); ++l) {
@@ -225,7 +226,7 @@ void take_loads(const State<T>& state, DerivativesWork<T>& memory, Span<dse3T<T>
   }
 }
 
-// --- from the leaves inwards
+// --- tip to base
 
 template <class T>
 void add_to_parent(DerivativesWork<T>& memory, int i) {
@@ -235,7 +236,7 @@ void add_to_parent(DerivativesWork<T>& memory, int i) {
   for (int f = kCompositeMass; f < kCompositeEnd; ++f) sum.set(f, sum.get(f) + part.get(f));
 }
 
-// dF^/dq_i, dF^/dv_i, dF^/da_i = J^ S_i, and B^* S_i, which is an angular part alone.
+// dF^/dq_i, dF^/dv_i, dF^/da_i = J^ S_i, and B^* S_i, which has only an angular part.
 template <class T>
 VP_FLATTEN void close_group(const Records<T>& fields, const Records<T>& forces) {
   using N = Wide<T>;
@@ -253,10 +254,11 @@ VP_FLATTEN void close_group(const Records<T>& fields, const Records<T>& forces) 
 
 // --- the matrices
 
-// A group of the path: dtau_i/dq_j, dtau_i/dv_j, M_ij or L_ij, dtau_j/dq_i, dtau_j/dv_i for its j.
+// Sums of a group of velocities j on the path: dtau_i/dq_j, dtau_i/dv_j, M_ij or L_ij, dtau_j/dq_i,
+// dtau_j/dv_i.
 enum PathSum : int { kRowQ, kRowV, kRowA, kColumnQ, kColumnV, kPathSums };
 
-// forces: those of velocity i, W: J^ S_i, or what L has of it.
+// forces: of velocity i; W: J^ S_i, or the wrench W_i of L.
 template <class T>
 VP_FLATTEN void sum_along(const Records<T>& along, const Fields<T, T>& forces, const T* W,
                           Wide<T> (&sum)[kPathSums]) {
@@ -295,7 +297,7 @@ void put_column(const MatrixView<T>& to, std::size_t first_row, std::size_t colu
   }
 }
 
-// Row and column i as far as velocity i: those before it, then itself.
+// Fills row and column i up to velocity i: the velocities on its path, then itself.
 template <class T>
 void fill_velocity(DerivativesWork<T>& memory, int number, const Fields<T, T>& forces, const T* W,
                    bool symmetric, const InverseMatrices<T>& out) {
@@ -317,7 +319,7 @@ void fill_velocity(DerivativesWork<T>& memory, int number, const Fields<T, T>& f
   }
 }
 
-// Between velocities of one node.
+// Adds the terms between velocities of one node.
 template <class T>
 VP_NOINLINE void rotate_columns(DerivativesWork<T>& memory, const Node<base_t<T>>& node,
                                 const UserDerivatives<T>* derivatives, const MatrixView<T>& tau_q) {
@@ -335,9 +337,9 @@ VP_NOINLINE void rotate_columns(DerivativesWork<T>& memory, const Node<base_t<T>
   }
 }
 
-// Adds to zeros in out, from what a call with the same q and v has left in the data's work: of
-// inverse dynamics M, else L, from the factors that forward dynamics has left there too. False
-// where a joint of one's own does not say its derivatives.
+// Adds to out, which must be zero, from the results of a call with the same q and v in the data's
+// work. inverse: after inverse dynamics, with M; otherwise after forward dynamics, with L from its
+// factors. Returns false if a user joint does not provide its derivatives.
 template <class T>
 bool differentiate(const State<T>& state, DerivativesWork<T>& memory, Span<dse3T<T>> external,
                    bool inverse, const InverseMatrices<T>& out) {

@@ -1,4 +1,4 @@
-// The public calls: each finds its kernel, for its scalar and for this machine's instruction set.
+// The public calls: each selects the kernel for its scalar and for this machine's instruction set.
 #include "vphysics/multibody/dynamics.h"
 
 #include <string>
@@ -38,7 +38,7 @@ const Kernels& kernels_of(const DataT<T>& data) {
   }
 }
 
-// Whether the data has room for the model: then it was made for that or for one of its shape.
+// Whether the data was made for the model, or for one of the same dimensions.
 template <class T>
 [[maybe_unused]] bool is_of(const ModelT<base_t<T>>& model, const DataT<T>& data) {
   const Work<T>& work = data.work();
@@ -53,7 +53,7 @@ Arguments start(const ModelT<base_t<T>>& model, DataT<T>& data, std::span<const 
   args.q = q.data();
   return args;
 }
-// Those numbers of which there is one for each velocity.
+// An array with one number for each velocity.
 template <class T>
 const void* checked([[maybe_unused]] const ModelT<base_t<T>>& model, std::span<const T> x) {
   VP_ASSERT(x.size() == static_cast<std::size_t>(model.velocities()));

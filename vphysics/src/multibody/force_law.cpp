@@ -17,7 +17,7 @@ void ForceLaw::add(Ramp ramp) {
   ramps_[count_++] = ramp;
 }
 
-// Just left or right of w.
+// The value just left or right of w.
 double ForceLaw::sum(double w, bool from_left) const {
   double total = 0.0;
   for (std::size_t i = 0; i < count_; ++i) {
@@ -28,7 +28,7 @@ double ForceLaw::sum(double w, bool from_left) const {
   return total;
 }
 
-// The straight piece that has `inside` in its inside.
+// The linear piece that contains `inside`.
 ForceLaw::Line ForceLaw::line_at(double inside) const {
   Line line{0.0, 0.0};
   for (std::size_t i = 0; i < count_; ++i) {
@@ -72,7 +72,8 @@ double ForceLaw::Corners::inside(std::size_t i) const {
   return 0.5 * (w[i - 1] + w[i]);
 }
 
-// Along the law from left to right, w - D p rises: the first corner that is not left of z.
+// Along the law from left to right, w - D p increases: finds the first corner that is not left of
+// z.
 ForceLawPoint ForceLaw::intersect(double z, double D) const {
   const Corners at = corners();
   for (std::size_t i = 0; i < at.count; ++i) {
@@ -111,7 +112,7 @@ double ForceLaw::fraction_of_first(double w, double p) const {
   const Ramp& r = ramps_[0];
   const bool free = r.slope == kUnbounded && w == r.w0;
   const double high = free ? r.highest : r.at(w), low = free ? r.lowest : r.at(w);
-  // The others' part lies between these two.
+  // The part of the other ramps lies between these two values.
   const double max_value = sum(w, true) - high, min_value = sum(w, false) - low;
   return std::clamp(std::clamp(std::clamp(0.0, low, high), p - max_value, p - min_value), r.lowest,
                     r.highest);

@@ -1,12 +1,12 @@
-// What a joint's springs, dampers, friction, limits and motor can do within a step, as a relation
-// of the impulse p to the velocity w at the step's end. Each is a ramp, cut off at what it can do:
+// The force law of a joint: the relation of the impulse p of its springs, dampers, friction, limits
+// and motor in a step to the velocity w at the end of the step. Each is a clamped ramp:
 //
 //   p = min(highest, max(lowest, slope (w0 - w)))
 //
-// Of infinite slope it is a step at w0, where p may be anything between: dry friction (w0 = 0), a
-// stop (w0 is the velocity that just reaches it). Their sum never rises with w, so that it meets
-// any line w = z + D p, D > 0, exactly once: there is one answer to whatever the rest of the tree
-// does.
+// A ramp of infinite slope is a step at w0, where p may have any value in between: dry friction (w0
+// = 0), or a stop (w0 is the velocity that just reaches it). The sum of the ramps does not increase
+// with w, so it intersects any line w = z + D p, D > 0, exactly once: the solution is unique for
+// any response of the rest of the tree.
 #pragma once
 
 #include <array>
@@ -21,10 +21,10 @@ struct Ramp {
   double slope, w0;
   double lowest = -kUnbounded, highest = kUnbounded;
 
-  double at(double w) const;  // w != w0 where the slope is infinite
+  double at(double w) const;  // w != w0 if the slope is infinite
 };
 
-// Where the law is on the line: at a velocity (of a step), or on p = alpha - beta w.
+// A point on the force law: at a step, with a given velocity, or on the line p = alpha - beta w.
 struct ForceLawPoint {
   double w, p;
   bool at_step;
@@ -34,15 +34,15 @@ struct ForceLawPoint {
 class ForceLaw {
  public:
   void clear() { count_ = 0; }
-  // At most kMax. A ramp steeper than its velocities' rounding counts as a step.
+  // At most kMax. A ramp steeper than the rounding of velocities allows counts as a step.
   void add(Ramp ramp);
-  // The point with w = z + D p; D > 0.
+  // The intersection with w = z + D p; D > 0.
   ForceLawPoint intersect(double z, double D) const;
-  // The velocity at which the law has p; p cut off at what the law can do at all.
+  // velocity_for: the velocity at which the law has p; cut_off: p clamped to the law's range.
   double velocity_for(double p) const;
   double cut_off(double p) const;
-  // What the first ramp does of p at w; where friction or a stop could do the same, what it would
-  // by itself.
+  // The part of p from the first ramp at w. Where friction or a stop could supply the same impulse,
+  // what the ramp would supply by itself.
   double fraction_of_first(double w, double p) const;
 
  private:
@@ -51,7 +51,7 @@ class ForceLaw {
   struct Corners {
     std::array<double, 2 * kMax> w;
     std::size_t count;
-    double inside(std::size_t i) const;  // of the piece before corner i
+    double inside(std::size_t i) const;  // an inner velocity of the piece before corner i
   };
   struct Line {
     double alpha, beta;

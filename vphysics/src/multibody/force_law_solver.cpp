@@ -6,15 +6,14 @@
 namespace vp::detail {
 namespace {
 
-// A diagonal of G below this share of what it was before the constraints is rounding: the joint
-// cannot move by itself.
+// A diagonal entry of G below this fraction of its value before the constraints is rounding: the
+// joint cannot move by itself.
 constexpr double kNoFreedom = 1e-12;
 constexpr double kExact = 1e-13;  // relative to the terms in a velocity, whose sums round at 1e-16
 constexpr int kMaxIterations = 100;
 constexpr int kHalvings = 40;
-// How cautious to be after a step of Newton that did not do: in turns, as one that is too bold
-// picks the same wrong pieces again, and one that is too cautious corrects few
-// (docs/decisions/0015).
+// Factors of caution after a failed Newton step, in a cycle: a bold step may select the same wrong
+// pieces again, and a cautious step corrects few of them (docs/decisions/0015).
 constexpr double kCaution[8] = {1, 1, 16, 1, 256, 1, 4096, 1};
 
 }  // namespace
@@ -53,8 +52,8 @@ void ForceLawSolver::find_w() {
   }
 }
 
-// Where each joint would go by itself, all others as they are; how far the worst is from there. The
-// more cautious, the less a joint leaves the p that it has: all of them change at once.
+// Finds the piece of each joint with all other joints fixed. Returns the largest relative change of
+// p. More caution keeps each joint closer to its current p, since all change at once.
 double ForceLawSolver::find_pieces(double caution) {
   double worst = 0.0;
   for (std::size_t i = 0; i < size; ++i) {
@@ -66,7 +65,7 @@ double ForceLawSolver::find_pieces(double caution) {
   return worst;
 }
 
-// All joints on the pieces that they are on now.
+// Solves with all joints on their current pieces.
 void ForceLawSolver::newton() {
   active_.clear();
   for (std::size_t i = 0; i < size; ++i) {
@@ -95,7 +94,8 @@ void ForceLawSolver::newton() {
   for (std::size_t a = 0; a < n; ++a) p[active_[a]] = rhs_[a];
 }
 
-// From best_ to where E is least on the way to p. E' rises along it.
+// Line search from best_ towards p, to the minimum of the energy E. The derivative E' increases
+// along it.
 void ForceLawSolver::go_towards_newton() {
   for (std::size_t i = 0; i < size; ++i) direction_[i] = force_laws[i].cut_off(p[i]) - best_[i];
   for (std::size_t i = 0; i < size; ++i) {

@@ -1,11 +1,11 @@
-// Impulses p of several joints, each under its own law (force_law.h), with
+// Solves for the impulses p of several joints, each with its own force law (force_law.h):
 //
 //   w = w_free + G p,   (w_i, p_i) on law i,   G symmetric positive semidefinite
 //
-// It is the minimum of a convex function, so that one w solves it. Newton: with each law replaced
-// by the straight piece that it is on, one set of linear equations; where the pieces stay, that is
-// the answer, exact to rounding. Where Newton's step makes it worse, sweeps joint by joint
-// (Gauss-Seidel), which always converge.
+// The solution minimises a convex function, so w is unique. Newton's method replaces each law by
+// its current linear piece and solves one linear system. If the pieces do not change, this solution
+// is exact to rounding. If Newton's step fails, a line search and Gauss-Seidel sweeps over the
+// joints follow, which always converge.
 #pragma once
 
 #include <span>
@@ -19,17 +19,17 @@ namespace vp::detail {
 struct ForceLawSolver {
   explicit ForceLawSolver(std::size_t capacity);
 
-  // What is to be solved: size joints; G's rows are `most` apart. Each self is the diagonal of G
-  // before constraints took their share, which tells a diagonal from rounding.
+  // The problem: `size` joints; the row stride of G is `capacity`. self is the diagonal of G before
+  // the elimination of constraints, which distinguishes a diagonal entry from rounding.
   std::size_t capacity, size = 0;
   std::vector<double> G, w_free, self;
   std::vector<ForceLaw> force_laws;
-  // The answer, and where each is on its law; a good guess of p makes it quick.
+  // The solution, and each joint's point on its law. A good initial p speeds up convergence.
   std::vector<double> p, w;
   std::vector<ForceLawPoint> on;
 
-  // How many rounds it took; off() then says how far the worst law is missed, relative to the terms
-  // in its velocity.
+  // Returns the number of iterations. off() is then the largest residual of a law, relative to the
+  // terms in its velocity.
   int solve();
   double off() const { return off_; }
 

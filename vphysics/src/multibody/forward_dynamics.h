@@ -1,14 +1,14 @@
 // Forward dynamics: the articulated body algorithm, paper, appendix A, in the tree's frame.
 //
-//   outwards   X, S, V, A, and each body's J_i and F_i (base_to_tip.h)
-//   inwards    U_i = J^_i S_i, Omega_i = <S_i, U_i> + armature
-//              J^_parent += J^_i - U_i (x) U_i / Omega_i
-//              u_i = tau_i - damping q'_i - <S_i, p^_i>,  p^_parent += p^_i + U_i u_i / Omega_i
-//   outwards   q''_i = (u_i - <U_i, a_parent>) / Omega_i,  a_i = a_parent + S_i q''_i
+//   base to tip   X, S, V, A, and each body's J_i and F_i (base_to_tip.h)
+//   tip to base   U_i = J^_i S_i, Omega_i = <S_i, U_i> + armature
+//                 J^_parent += J^_i - U_i (x) U_i / Omega_i
+//                 u_i = tau_i - damping q'_i - <S_i, p^_i>,  p^_parent += p^_i + U_i u_i / Omega_i
+//   base to tip   q''_i = (u_i - <U_i, a_parent>) / Omega_i,  a_i = a_parent + S_i q''_i
 //
-// A_i has all that the velocities and the field of gravity do, so the inward pass needs no J^ c;
-// a_i is what the joints add. In one frame the congruence of the paper's equation (6) is the
-// identity.
+// A_i contains the effects of the velocities and of gravity, so the tip-to-base pass needs no J^ c.
+// a_i is the part due to the joint accelerations. In one common frame the congruence of the paper's
+// equation (6) is the identity.
 #pragma once
 
 #include "multibody/base_to_tip.h"
@@ -17,7 +17,7 @@
 
 namespace vp::detail {
 
-// Whether each of many numbers is above what may be rounding of it, looked at once at the end.
+// Whether each of many numbers exceeds its rounding bound; tested once at the end.
 template <class T>
 class AllPositive {
  public:
@@ -28,7 +28,7 @@ class AllPositive {
   decltype(T(1) > T(0)) fine_ = T(1) > T(0);
 };
 
-// One slot's factor, and the articulated inertia that it leaves to its parent.
+// Factors one slot. Returns the articulated inertia for its parent.
 template <class T>
 AInertiaT<T> factor_out(const AInertiaT<T>& J, const se3T<T>& S, const Constants<T, T>& k,
                         Factor<T>& factor, AllPositive<T>& positive) {
@@ -47,7 +47,7 @@ AInertiaT<T> factor_out(const AInertiaT<T>& J, const se3T<T>& S, const Constants
           {H.cx - W.f.x * U.m, H.cy - W.f.y * U.m, H.cz - W.f.z * U.m},
           less(J.linear(), U.f, W.f)};
 }
-// What is left of the joint's force x, and the force that it leaves to its parent.
+// Computes the remaining part of the joint force x. Returns the force for its parent.
 template <class T>
 dse3T<T> force_out(const dse3T<T>& p, const se3T<T>& S, const T& x, Factor<T>& factor) {
   const T u = x - S * p;
@@ -118,7 +118,7 @@ bool factor_by_rows(const Tree<T>& tree, Work<T>& work, Span<T> v, Span<T> tau) 
   return positive.fine();
 }
 
-// Without the velocities' part, for factors alone, bodies' forces are not needed.
+// Without forces, for the factors alone, the bodies' bias forces are not needed.
 template <class T, bool kForces>
 bool factor_by_slots(const Tree<base_t<T>>& tree, Work<T>& work, Span<T> v, Span<T> tau) {
   ChildSum<Articulated<T>> child_sum(work.articulated_flow);
@@ -155,7 +155,7 @@ bool factor(const Tree<base_t<T>>& tree, Work<T>& work, Span<T> v, Span<T> tau) 
   return factor_by_slots<T, kForces>(tree, work, v, tau);
 }
 
-// x <- the joints' accelerations that the factors have left.
+// x <- the joint accelerations, from the factors.
 template <class T>
 void expand(const Tree<base_t<T>>& tree, Work<T>& work, std::span<T> x) {
   se3T<T> a{};
@@ -183,7 +183,7 @@ void set_inertia(const Work<T>& work, int g, const Body<Wide<T>>& body) {
   fields.set(kH, h);
   fields.set(kI, rotational(body, h));
 }
-// A group's inertias and forces, as `factor` takes them.
+// Stores a group's inertias and forces as the input of `factor`.
 template <class T>
 void put_body(const Work<T>& work, int g, const Body<Wide<T>>& body) {
   if constexpr (kByRows<T>) {

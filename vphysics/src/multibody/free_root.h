@@ -1,10 +1,9 @@
 // A free root: six velocities in one slot.
 //
-// Its velocities are those of the link in its own axes. For the factors they are turned into the
-// axes of the tree, where the subspace is the identity: the articulated inertia itself is what is
-// to be inverted, as L D L^T with the last slot first. Turning changes neither damping nor
-// armature, of which the joint has one number, nor is there a bias: nothing moves the origin but
-// the root.
+// Its velocities are those of the link in its own axes. The factors are in the axes of the tree,
+// where the motion subspace is the identity: the articulated inertia itself is factored as L D L^T,
+// last velocity first. The rotation leaves damping and armature unchanged, because the joint has
+// one value of each. There is no bias acceleration, because the origin moves with the root.
 #pragma once
 
 #include <limits>
@@ -49,7 +48,7 @@ class FreeRoot {
         k_(constants_of<T>(tree, slot)),
         R_(work.slot(slot).mat(kX)) {}
 
-  // Factors of J; false where one is not positive.
+  // Factors J. Reports a pivot that is not positive to `positive`.
   template <class Positive>
   void factor(Triangle<T> J, Positive& positive) const {
     const T armature = k_.get(kArmature), turns = k_.get(kMin);
@@ -69,7 +68,8 @@ class FreeRoot {
       f.W = {{w[0], w[1], w[2]}, {w[3], w[4], w[5]}};
     }
   }
-  // What the joint's forces tau, less damping, and the bias force p leave in the factors.
+  // Computes the forces in the factors, from the joint forces tau, minus damping, and the bias
+  // force.
   void take_forces(Span<T> tau, Span<T> v, const dse3T<T>& bias) const {
     Six<T> u = numbers(tau);
     if (!v.empty()) {
@@ -87,7 +87,7 @@ class FreeRoot {
       for (int i = 0; i < k; ++i) p.x[i] = p.x[i] + left * w.x[i];
     }
   }
-  // BaseToTip: the acceleration, of which the joint's part goes to x.
+  // Base to tip: returns the acceleration, and writes it in the link's axes to x.
   se3T<T> expand(std::span<T> x) const {
     Six<T> a;
     for (int k = 0; k < 6; ++k) {
@@ -107,7 +107,7 @@ class FreeRoot {
     for (int k = 0; k < 6; ++k) out.x[k] = from[static_cast<std::size_t>(first_ + k)];
     return out;
   }
-  // R^-T.
+  // R^-T a, with one refinement step.
   Vec3T<T> out_of_link(const Vec3T<T>& a) const {
     const Vec3T<T> b = R_ * a;
     return b + R_ * (a - transposed_times(R_, b));

@@ -1,11 +1,11 @@
-// Impulses through the articulated recursion, in the tree's frame.
+// Impulses through the articulated body recursion, in the tree's frame.
 //
-// A joint k between a link and its parent lets pass, of a velocity V outwards and of an impulse F
-// inwards,
+// A joint k between a link and its parent transmits a velocity V from base to tip and an impulse F
+// from tip to base as
 //   P_k V = V - S_k <U_k, V> / Omega_k        P_k^T F = F - U_k <S_k, F> / Omega_k
-// and so, with L the inverse inertia of the link that the recursion has reached,
+// and therefore, with L the inverse inertia of a link,
 //   L_child = P_k L_parent P_k^T + S_k (x) S_k / Omega_k
-//   L_ab    = P_(c->a) L_c P_(c->b)^T         c: the last link that a and b hang on together
+//   L_ab    = P_(c->a) L_c P_(c->b)^T         c: the last common ancestor of a and b
 #include "vphysics/multibody/impulse.h"
 
 #include <algorithm>
@@ -35,7 +35,7 @@ InverseInertiaT<T> through(const InverseInertiaT<T>& L, const se3T<T>& S, const 
           L.C + symmetric(S.v, z.v)};
 }
 
-// An impulse on a node, as its parent feels it.
+// Transmits an impulse on a node to its parent.
 template <class T>
 dse3T<T> inwards_through(const Tree<base_t<T>>& tree, const Work<T>& work, int node, dse3T<T> F) {
   for (int k = tree.nodes[static_cast<std::size_t>(node)].dofs; k-- > 0;) {
@@ -45,7 +45,7 @@ dse3T<T> inwards_through(const Tree<base_t<T>>& tree, const Work<T>& work, int n
   return F;
 }
 
-// The impulse at a link's origin, from its frame to the tree's.
+// The link's frame in its tree's frame, to transform impulses at the link's origin.
 template <class T>
 SE3T<T> T_tree_link(const Tree<base_t<T>>& tree, const Work<T>& work, int link) {
   const auto& frame = tree.frames[static_cast<std::size_t>(link)];
@@ -119,7 +119,7 @@ ResponseT<T> InverseInertiasT<T>::between(const ModelT<base_t<T>>& model, const 
   if (i == kWorld || j == kWorld) return out;
   auto at_a = detail::unit_impulses<T>(detail::T_tree_link(tree, work, a));
   auto at_b = detail::unit_impulses<T>(detail::T_tree_link(tree, work, b));
-  while (i != j) {  // the later of the two is no ancestor of the other
+  while (i != j) {  // the node with the higher index is not an ancestor of the other
     const bool a_is_later = i > j;
     int& later = a_is_later ? i : j;
     for (dse3T<T>& F : a_is_later ? at_a : at_b) {

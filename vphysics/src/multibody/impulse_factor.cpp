@@ -59,7 +59,7 @@ ImpulseFactor::ImpulseFactor(const Model& model) {
         root ? kEnd
              : static_cast<std::uint32_t>(tree.nodes[static_cast<std::size_t>(node.parent)].v);
     parent_dof_.push_back(next);
-    // The last of a joint's own is the nearest to the root.
+    // Within a node, the last degree of freedom is nearest to the root.
     for (int k = node.dofs; k-- > 0;) {
       const auto dof = static_cast<std::uint32_t>(node.v + k);
       next_[dof] = next;

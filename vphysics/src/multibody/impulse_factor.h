@@ -1,20 +1,21 @@
-// How the velocities of a tree answer impulses: the inverse of its mass matrix as a square.
+// The response of a tree's velocities to impulses, with the inverse of the mass matrix in factored
+// form.
 //
 //   M^-1 = H^T H,   so an impulse p along a row J changes v by  dv = M^-1 J^T p = H^T (y p),
 //   and the speed of a row J' by  J' dv = (y', y) p,   where  y = H J^T
 //
-// H is the articulated recursion's inward pass and has the tree's pattern: y has entries only for
-// the joints between the link that is pushed and its root. An iterative solver therefore keeps one
-// vector z, the sum of all y p; a row costs it two products as short as the link is deep. At the
-// end dv = H^T z, one outward pass.
+// H is the tip-to-base pass of the articulated body recursion and has the tree's sparsity: y has
+// entries only for the joints between the loaded link and its root. An iterative solver keeps one
+// vector z, the sum of all y p. A row then costs two dot products whose length is the link's depth.
+// At the end one base-to-tip pass gives dv = H^T z.
 //
-// With the equations of forward_dynamics.cpp, in the tree's frame, and g = 1 / sqrt(Omega),
-// s = g S, G = g J^ S:
-//   inwards    y = g tau + (s, r),  r_next = r - G y        r: the impulse on all that is further
-//   out outwards   t = z - (G, a),  dv = g t,  a = a_next + s t  a: the change of twist
+// With the equations of forward_dynamics.h, in the tree's frame, and g = 1 / sqrt(Omega), s = g S,
+// G = g J^ S:
+//   tip to base   y = g tau + (s, r),  r_next = r - G y       r: the impulse on all descendants
+//   base to tip   t = z - (G, a),  dv = g t,  a = a_next + s t   a: the change of twist
 //
-// Each degree of freedom is taken as a joint of its own; `next` is the one it hangs on. Source:
-// Featherstone 2008, chapter 7, for the recursion; the square root of its factors is ours.
+// Each degree of freedom is treated as a joint; `next` is its parent. Source: Featherstone 2008,
+// chapter 7, for the recursion; the square root of its factors is our own.
 #pragma once
 
 #include <cstdint>
@@ -33,16 +34,17 @@ class ImpulseFactor {
 
   explicit ImpulseFactor(const Model& model);
 
-  // The inertias of the bodies in the configuration that the last call has left in the data.
+  // Computes the inertias of the bodies in the configuration of the last call on the data.
   void find_inertias(const Model& model, const Data& data);
-  // From that configuration, whose inertias are found unless they have been. With a time h the
-  // joints' viscous damping D is in it: M + h D in the place of M, for implicit steps. False if a
-  // joint moves no inertia; what is computed with the factors then is unspecified.
+  // Factors M in that configuration; computes the inertias first unless inertias_are_found.
+  // damping_time h > 0 factors M + h D instead of M, with the joints' viscous damping D, for
+  // implicit steps. Returns false if a joint moves no inertia; results with the factors are then
+  // unspecified.
   bool factor(const Model& model, const Data& data, double damping_time = 0.0,
               bool inertias_are_found = false);
 
-  // The degrees of freedom that a link's rows have entries for: the first, those next to it, and
-  // how many they are. None for a link that is fixed to the world.
+  // The degrees of freedom for which a link's rows have entries: the first, the parent of each
+  // (next), and their number (depth). None for a link fixed to the world.
   std::uint32_t first(int link) const { return links_[static_cast<std::size_t>(link)].first; }
   std::uint32_t depth(int link) const { return links_[static_cast<std::size_t>(link)].depth; }
   std::uint32_t depth_of_dof(std::uint32_t dof) const { return depth_[dof]; }
@@ -50,27 +52,28 @@ class ImpulseFactor {
   std::uint32_t deepest() const { return deepest_; }
   std::size_t dofs() const { return columns_.size(); }
 
-  // y of a unit impulse: a force through a point of the link, or a moment, in world axes. It has as
-  // many entries as the link is deep.
+  // y of a unit impulse in world axes: a force through a point of the link, or a moment. It has
+  // depth(link) entries.
   void force_row(int link, const Vec3& point, const Vec3& direction, double* y) const;
   void moment_row(int link, const Vec3& direction, double* y) const;
-  // Three of either, one behind the other.
+  // Three rows of either kind, one after the other.
   void force_rows(int link, const Vec3& point, const Vec3 (&directions)[3], double* y) const;
   void moment_rows(int link, const Vec3 (&directions)[3], double* y) const;
-  // Of a force of one joint coordinate: y, as long as the coordinate is deep, kept until the next
-  // factor(); and (y, y), what a unit impulse gives the coordinate's own speed.
+  // Row of a force of one joint coordinate: y, with depth_of_dof(dof) entries, valid until the next
+  // factor(); and (y, y), the velocity change of the coordinate due to a unit impulse.
   struct JointRow {
     const double* y;
     double response;
   };
   JointRow joint_row(std::uint32_t dof);
 
-  // x <- H^T x and x <- M^-1 x, for all degrees of freedom.
+  // x <- H^T x and x <- M^-1 x, over all degrees of freedom.
   void to_velocities(std::span<double> x);
   void solve(std::span<double> x);
 
-  // With the velocities v, of the configuration of the last factor(): the angular velocity of a
-  // link and the velocity of a point of it, in the world. twists() comes first.
+  // twists() computes all twists from the velocities v, in the configuration of the last factor().
+  // twist_at() then returns the angular velocity of a link and the velocity of a point of it, in
+  // the world.
   void twists(std::span<const double> v);
   se3 twist_at(int link, const Vec3& point) const {
     const LinkPath& path = links_[static_cast<std::size_t>(link)];
@@ -78,8 +81,8 @@ class ImpulseFactor {
     const se3& V = a_[path.first];
     return {V.w, V.v + cross(V.w, point - path.origin)};
   }
-  // Of some nodes' bodies, ascending, together, in the tree's frame: the inertia, once
-  // find_inertias() has been called, and the momentum at the data's twists or at those of twists().
+  // Sums over the bodies of some nodes, ascending, in the tree's frame: the inertia, after a call of
+  // find_inertias(), and the momentum at the data's twists or at those of twists().
   struct Momentum {
     Inertia inertia;
     dse3 momentum{};
@@ -90,24 +93,24 @@ class ImpulseFactor {
   Momentum momentum_of_twists(std::span<const int> nodes, const Data& data) const {
     return momentum_at(nodes, data, a_.data());
   }
-  // What forward_kinematics() makes of these, to the same bits, where poses have changed by the
-  // places of free roots alone since it was called last. Not of users' joints.
+  // Equals forward_kinematics(), to the same bits, if only the poses of free roots have changed
+  // since its last call. Not for user joints.
   static void kinematics_of(const Model& model, Data& data, std::span<const double> q,
                             std::span<const double> v);
 
-  // The joints' forces that keep the velocities that twists() was given last: those of the
-  // velocities, and those against gravity. Without damping; of models whose joints' subspaces are
-  // constant, in the frame of the joint's one side or the other: all but users' joints. Recursive
-  // Newton-Euler: with V the twists, A = A_parent + ad(V_parent, V) and F = J A - dad(V, J V) of a
-  // body, S times the sum of F of all that hangs on a joint.
+  // The bias forces of the joints, for the velocities of the last twists(): velocity-product terms
+  // and gravity, without damping. Valid for joints whose subspace is constant in the frame of one
+  // side of the joint: all but user joints. Recursive Newton-Euler: with the twists V, A = A_parent
+  // + ad(V_parent, V) and F = J A - dad(V, J V) of a body, S times the sum of F over the joint's
+  // subtree.
   void bias(const Vec3& gravity, std::span<double> force);
-  // Adds what a load on a link, about a point of it and in world axes, does along the joints.
+  // Adds the joint forces of a wrench on a link, about a point of it and in world axes.
   void add_load(int link, const Vec3& point, const dse3& load, std::span<double> force) const;
 
  private:
   using Column = FactorColumn;
   struct CachedRow {
-    std::uint32_t begin = 0;  // in cached_
+    std::uint32_t begin = 0;  // into cached_
     bool valid = false;
     double response = 0.0;
   };
@@ -118,22 +121,21 @@ class ImpulseFactor {
   void row(std::uint32_t dof, dse3 impulse, double* y) const;
   Momentum momentum_at(std::span<const int> nodes, const Data& data, const void* twists) const;
 
-  std::vector<Column> columns_;              // of each degree of freedom
-  std::vector<std::uint32_t> next_, depth_;  // likewise
-  std::vector<std::uint32_t> inwards_;       // all of them, from the leaves to the roots
+  std::vector<Column> columns_;              // one for each degree of freedom
+  std::vector<std::uint32_t> next_, depth_;  // one for each degree of freedom
+  std::vector<std::uint32_t> inwards_;       // all degrees of freedom, tip to base
   std::vector<LinkPath> links_;
-  std::vector<CachedRow> joint_rows_;  // of each degree of freedom
+  std::vector<CachedRow> joint_rows_;  // one for each degree of freedom
   std::vector<double> cached_;
-  std::vector<std::uint32_t> body_dof_;  // of each node: that which carries its body
-  std::vector<std::uint32_t>
-      parent_dof_;  // of each node: that which carries its parent's body, or kEnd
+  std::vector<std::uint32_t> body_dof_;    // of each node: the one with its body
+  std::vector<std::uint32_t> parent_dof_;  // of each node: the one with its parent's body, or kEnd
   // Inertias of the slots' bodies, by groups of slots (lanes.h): in the nodes' own frames, and in
-  // the tree's; where each node's begins.
+  // the tree's frame; where each node's begins.
   AlignedArray<double> bodies_, inertias_;
   std::vector<std::uint32_t> inertia_at_;
   AlignedArray<double> J_;  // of each node: scratch
   std::vector<se3> A_;      // of each degree of freedom: scratch
-  std::vector<se3> a_;      // likewise: what twists() leaves
+  std::vector<se3> a_;      // of each degree of freedom: the result of twists()
   std::vector<dse3> r_;     // scratch
   std::uint32_t deepest_ = 0;
 };

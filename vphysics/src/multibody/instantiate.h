@@ -1,4 +1,4 @@
-// The scalars for which the algorithms are compiled, once, into the library.
+// The scalars for which the library instantiates the algorithms, once.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@ using Float8 = PackT<float, 8>;
 using Float16 = PackT<float, 16>;
 }  // namespace vp::detail
 
-#ifdef VP_FEW_SCALARS  // builds that look for faults: the packs are one source
+#ifdef VP_FEW_SCALARS  // builds for fault detection: the packs share one source
 #define VP_FOR_EACH_SCALAR(X) \
   X(double)                   \
   X(float)                    \
@@ -30,7 +30,7 @@ using Float16 = PackT<float, 16>;
 
 namespace vp::detail {
 
-// Where T stands in VP_FOR_EACH_SCALAR.
+// Index of T in VP_FOR_EACH_SCALAR.
 template <class T>
 constexpr std::size_t scalar_index() {
   std::size_t index = 0, found = 0;

@@ -1,4 +1,4 @@
-// Which of the instruction sets that the kernels are compiled for a data uses.
+// Selects the instruction set of the kernels that a data uses.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,8 @@ enum class InstructionSet : std::uint8_t {
   avx512_same_bits
 };
 
-// The wider sets multiply and add at once, hence round differently: not for reproducible results.
-// Those of the same bits have the passes of one state in double alone.
+// The wider sets use fused multiply-add and therefore round differently: not for reproducible
+// results.
 inline InstructionSet instruction_set_for([[maybe_unused]] Arithmetic arithmetic) {
 #ifdef VP_INSTRUCTION_SETS
   const bool same_bits = arithmetic == Arithmetic::reproducible;

@@ -1,10 +1,10 @@
 // Semi-implicit Euler and the classical Runge-Kutta method of order 4 in Munthe-Kaas form.
 //
-// The state (q, v) lies on G x R^n. Within a step q = q0 [+] u, and u is a vector:
+// The state (q, v) lies on G x R^n. Within a step q = q0 [+] u, with a vector u:
 //   u' = J_r^-1(u) v     Exp(u)' = Exp(u) [J_r(u) u'], which must be Exp(u) [v]
 //   v' = a(q0 [+] u, v, t)
-// with u(0) = 0 is a differential equation on R^2n, to which any Runge-Kutta method applies; with
-// J_r^-1 exact the order is the method's. For all joints but ball and free, J_r = 1.
+// with u(0) = 0 is a differential equation on R^2n, to which any Runge-Kutta method applies. With
+// exact J_r^-1 the order is that of the method. For all joints except ball and free, J_r = 1.
 // Source: Munthe-Kaas, High order Runge-Kutta methods on manifolds, Appl. Num. Math. 29 (1999).
 #include "multibody/integrators.h"
 
@@ -81,7 +81,7 @@ Expected<void> step_rk4(const ModelT<base_t<T>>& model, IntegratorDataT<T>& data
   detail::IntegratorWork<T>& work = data.work();
   const std::size_t n = v.size();
 
-  // Stage s is reached from the start by a share c of the step along the rates of stage s - 1.
+  // Stage s is at a fraction c of the step from the start, along the rates of stage s - 1.
   constexpr double kStageFraction[4] = {0.0, 0.5, 0.5, 1.0};
   for (std::size_t s = 0; s < 4; ++s) {
     const B fraction = step.h * B(kStageFraction[s]);

@@ -1,4 +1,4 @@
-// What the integrators share: their memory, the rates of a state, and the checks of their inputs.
+// Shared by the integrators: their memory, the rates of a state, and the checks of their inputs.
 #pragma once
 
 #include <array>
@@ -12,8 +12,8 @@
 
 namespace vp::detail {
 
-// A motion of space, x -> R x + d, with R as a unit quaternion: its vector part u, and c. Unlike a
-// matrix it holds a small motion with the precision of its own size.
+// A rigid displacement x -> R x + d. R is a unit quaternion: its vector part u, its real part c.
+// Unlike a matrix, it represents a small displacement with full relative precision.
 template <class T>
 struct Displacement {
   Vec3T<T> u;
@@ -21,13 +21,13 @@ struct Displacement {
   Vec3T<T> d;
 };
 
-// A node in the variational step (integrators_variational.cpp).
+// A node's data in the variational step (integrators_variational.cpp).
 template <class T>
 struct VariationalNode {
   InertiaT<T> J;
   Displacement<T> D;
   dse3T<T> momentum;
-  SE3T<T> link, joint;  // a user's joint: poses of its link and of its own frame
+  SE3T<T> link, joint;  // of a user joint: poses of its link and of its own frame
 };
 
 inline constexpr std::size_t kMaxStages = 7;
@@ -50,13 +50,13 @@ struct IntegratorWork {
 
   DataT<T> data;
   std::vector<T> q, v;  // of a stage
-  std::vector<T> u;     // the way to it, q = q0 [+] u
+  std::vector<T> u;     // tangent vector to it, q = q0 [+] u
   std::vector<T> tau;
   std::array<std::vector<T>, kMaxStages> u_rate, v_rate;
-  std::vector<T> scale;                   // magnitudes of the coordinates, one a velocity
+  std::vector<T> scale;                   // magnitude of the coordinate of each velocity
   std::vector<T> rest;                    // zeros
-  std::vector<se3T<T>> S;                 // columns, one a velocity
-  std::vector<VariationalNode<T>> nodes;  // of the tree
+  std::vector<se3T<T>> S;                 // columns, one for each velocity
+  std::vector<VariationalNode<T>> nodes;  // one for each node
 };
 
 inline tl::unexpected<Error> invalid_argument(const char* call, const char* why) {
@@ -87,7 +87,7 @@ Expected<void> check_step(const char* call, const ModelT<base_t<T>>& model,
   return {};
 }
 
-// v' at a state.
+// Computes v' at a state.
 template <class T>
 Expected<void> acceleration(const ModelT<base_t<T>>& model, IntegratorWork<T>& work,
                             std::span<const T> q, std::span<const T> v, base_t<T> t,
@@ -96,8 +96,8 @@ Expected<void> acceleration(const ModelT<base_t<T>>& model, IntegratorWork<T>& w
                              a);
 }
 
-// u' = J_r^-1(u) v for ball and free joints, v for all others. False where u is a full turn or
-// more, beyond which J_r has no inverse.
+// u' = J_r^-1(u) v for ball and free joints, v for all others. Returns false if u is a full turn or
+// more: J_r has no inverse there.
 template <class T>
 bool rate_on_group(const Tree<base_t<T>>& tree, std::span<const T> u, std::span<const T> v,
                    std::span<T> rate);

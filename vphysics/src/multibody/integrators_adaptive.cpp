@@ -1,13 +1,14 @@
-// The pair of Dormand and Prince, orders 5 and 4, in Munthe-Kaas form (integrators.cpp), with a
-// step that follows the error.
+// The Dormand-Prince pair, orders 5 and 4, in Munthe-Kaas form (integrators.cpp), with step size
+// control.
 //
 //   k_s = rates at (u, v) = h sum_r a_sr k_r,   x1 = h sum b_s k_s,   error = h sum e_s k_s
 //   E = root of the mean square of error_i / (absolute + relative |x_i|)
 //   accepted if E <= 1; then h *= 0.9 E^-(5/32) E_before^(1/16), else h *= 0.9 E^-(3/16)
 //
 // The last stage is at the new state, so its acceleration is the first of the next step. The
-// exponents are those of a PI controller for order 5 (alpha = 1/5 - 3/4 beta, beta = 1/16, and 1/5
-// alone after a refusal) made of square roots, which give the same bits everywhere; pow does not.
+// exponents approximate those of a PI controller for order 5 (alpha = 1/5 - 3/4 beta, beta = 1/16;
+// 1/5 alone after a rejected step). They are products of square roots, which give the same bits
+// everywhere; pow does not.
 //
 // Source: Dormand, Prince, J. Comp. Appl. Math. 6 (1980); Hairer, Norsett, Wanner, Solving Ordinary
 // Differential Equations I, 1993, II.4, IV.2 of volume II for the controller.
@@ -22,7 +23,7 @@ namespace detail {
 namespace {
 
 constexpr double kDormandPrinceFraction[7] = {0, 1.0 / 5, 3.0 / 10, 4.0 / 5, 8.0 / 9, 1, 1};
-// Row s: the weights by which stage s is reached. The last are those of order 5 too.
+// Row s: the weights of stage s. The last row is also the weights of order 5.
 constexpr double kDormandPrince[7][6] = {
     {},
     {1.0 / 5},
@@ -31,11 +32,11 @@ constexpr double kDormandPrince[7][6] = {
     {19372.0 / 6561, -25360.0 / 2187, 64448.0 / 6561, -212.0 / 729},
     {9017.0 / 3168, -355.0 / 33, 46732.0 / 5247, 49.0 / 176, -5103.0 / 18656},
     {35.0 / 384, 0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84}};
-// Order 5 less order 4.
+// Order 5 minus order 4.
 constexpr double kDormandPrinceError[7] = {
     71.0 / 57600, 0, -71.0 / 16695, 71.0 / 1920, -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
 
-// A step grows and shrinks at most so much: the estimate holds only near the step it was made at.
+// Bounds of the change of the step size: the error estimate is valid only near its step size.
 constexpr double kLargestGrowth = 5.0, kLargestShrinking = 0.2, kSafety = 0.9;
 
 template <class B>
@@ -43,7 +44,7 @@ B sixteenth_root(B x) {
   return std::sqrt(std::sqrt(std::sqrt(std::sqrt(x))));
 }
 
-// Magnitudes of the coordinates, one a velocity.
+// Magnitude of the coordinate of each velocity.
 template <class T>
 void coordinate_scale(const Tree<T>& tree, std::span<const T> q, std::span<T> scale) {
   for (const auto& node : tree.nodes) {
@@ -67,13 +68,14 @@ class DormandPrince {
                 const AdaptiveT<T>& options)
       : model_(model), work_(work), step_(step), options_(options) {}
 
-  // The first stage's rates at (q, v).
+  // Computes the first stage's rates at (q, v).
   Expected<void> start(std::span<const T> q, std::span<const T> v, T t) {
     std::copy(v.begin(), v.end(), work_.u_rate[0].begin());
     return acceleration<T>(model_, work_, q, v, t, step_, work_.v_rate[0]);
   }
 
-  // A step that should change the state by a hundredth of itself or of the tolerated error's root.
+  // Initial step: it should change the state by a hundredth of its size, both measured in
+  // tolerances.
   T first_step(std::span<const T> q, std::span<const T> v) {
     coordinate_scale<T>(model_.tree(), q, work_.scale);
     T size = 0, rate = 0;
@@ -86,7 +88,7 @@ class DormandPrince {
     return std::min(step_.h, T(0.01) * std::sqrt(size / rate));
   }
 
-  // All stages; E, or infinity where a stage is no state: then the new state is none either.
+  // Evaluates all stages. Returns E, or infinity if a stage or the new state is not valid.
   Expected<T> attempt(std::span<const T> q, std::span<const T> v, T t, T h) {
     for (std::size_t s = 1; s < kMaxStages; ++s) {
       reach(v, h, s);
@@ -102,7 +104,7 @@ class DormandPrince {
     return std::isfinite(E) ? E : kNoState;
   }
 
-  // The state that the attempt reached, and its rates.
+  // Accepts the state of the last attempt, and its rates.
   void accept(std::span<T> q, std::span<T> v) {
     std::copy(work_.q.begin(), work_.q.end(), q.begin());
     std::copy(work_.v.begin(), work_.v.end(), v.begin());
@@ -110,7 +112,7 @@ class DormandPrince {
     work_.v_rate[0] = work_.v_rate[6];
   }
 
-  // By how much the next step is longer.
+  // The growth factor of the next step.
   T factor_after_success(T E) {
     const T e = std::max(E, T(1e-4)), root = sixteenth_root(e);
     const T factor = T(kSafety) * sixteenth_root(before_) / (root * root * std::sqrt(root));
@@ -166,7 +168,7 @@ class DormandPrince {
   IntegratorWork<T>& work_;
   const StepT<T>& step_;
   const AdaptiveT<T>& options_;
-  T before_ = T(1e-4);  // E of the step before; so small that the first step is not held back
+  T before_ = T(1e-4);  // E of the previous step; small, so that the first step is not limited
   bool rejected_ = false;
 };
 
@@ -200,7 +202,8 @@ Expected<void> advance(DormandPrince<T>& method, const StepT<T>& step, const Ada
       return not_converged("advance_adaptive",
                            "max_steps are taken; allow more, or a larger tolerance");
     }
-    // The rest is taken whole, also where it is a little longer: no sliver is left for the end.
+    // The last step takes all of the remaining time, even if slightly longer than h, so that no
+    // tiny step remains.
     const bool last = done + T(1.01) * h >= step.h;
     const T trial = last ? step.h - done : h;
     const auto E = method.attempt(q, v, step.t + done, trial);

@@ -3,35 +3,36 @@
 // The action of a step from q0 to q1 is approximated by
 //   L_d(q0, q1) = sum_i  h/2 <V_i, J_i V_i>  -  h/2 (U(q0) + U(q1)),
 //   V_i = Log(Inv(T_i0) T_i1) / h,      T_i0, T_i1 the poses of link i at q0 and q1,
-// the links moving along a screw meanwhile. Its slopes are the momenta at the two ends; making
-// those of neighbouring steps equal, and adding the impulses of forces without a potential
-// (discrete d'Alembert), is one step (q0, v0) -> (q1, v1):
+// with each link moving along a screw. Its derivatives are the momenta at the two ends. Setting the
+// momenta of adjacent steps equal, and adding the impulses of forces without a potential (discrete
+// d'Alembert), gives one step (q0, v0) -> (q1, v1):
 //   M(q0) v0 = -D1 L_d(q0, q1) - h/2 f0                                  (1)  to solve for q1
 //   M(q1) v1 =  D2 L_d(q0, q1) + h/2 f1                                  (2)
-// It is symplectic, since L_d generates it; reversible and of order 2, since L_d(q1, q0) of -h is
-// -L_d(q0, q1); and it keeps momentum, since L_d does not change when the world is moved.
+// The step is symplectic, since L_d generates it; reversible and of order 2, since L_d(q1, q0) of
+// -h is -L_d(q0, q1); and it conserves momentum, since L_d is invariant under rigid motions of the
+// world.
 //
-// The slopes. Everything is in the tree's frame, held fixed where it is at q0, as in the other
+// The derivatives. Everything is in the tree's frame, fixed at its pose for q0, as in the other
 // passes. Link i is displaced by D_i = T_i1 Inv(T_i0); then W_i = Log(D_i) = Ad_T_i0 (h V_i), and
-// q1 = q0 [+] delta means, S_i being its columns at q0,
-//   D_i = D_parent Exp(S_i delta_i)                                      outwards
-// Exp(W + d) = Exp(J_l(W) d) Exp(W) gives for variations eta0, eta1 of the two poses
+// q1 = q0 [+] delta means, with S_i the columns at q0,
+//   D_i = D_parent Exp(S_i delta_i)                                      base to tip
+// Exp(W + d) = Exp(J_l(W) d) Exp(W) gives, for variations eta0, eta1 of the two poses,
 //   d W_i = J_l^-1(W_i) (Ad_D_i eta1 - eta0),   eta0, eta1 in the frames of q0, carried by D_i
-// so that both ends have one and the same momentum of the link, seen from the world:
+// so that the link has the same momentum at both ends, in the world:
 //   pi_i = J_l^-1(W_i)^T  J_i W_i / h,   J_i the inertia in the tree's frame at q0
-//   Pi_i = pi_i + sum of the children's Pi                               inwards
+//   Pi_i = pi_i + sum of the children's Pi                               tip to base
 //   -D1 L_d = <S_i, Pi_i> + h/2 dU/dq0,   D2 L_d = <Ad_D_i S_i, Pi_i> - h/2 dU/dq1
-// (a free body: the Moser-Veselov step). An armature adds armature * delta / h to both; a user's
-// joint has D_i = D_parent X(q1) Inv(X(q0)) with X its link's pose, the parent standing still, and
-// at q1 the columns it has there.
+// (for a free body: the Moser-Veselov step). An armature adds armature * delta / h to both. A user
+// joint has D_i = D_parent X(q1) Inv(X(q0)), with X its link's pose for a fixed parent, and at q1
+// it uses its columns at q1.
 //
-// Solving (1): with x = M^-1 r of its residual r, from the factors of M(q0), delta += h x. M(q0) /
-// h is the slope of -D1 L_d up to O(h), so each round gains a factor of about h |v'| / |v|; three
-// to five rounds of O(links).
+// Solving (1): with its residual r and x = M^-1 r, from the factors of M(q0), delta += h x. M(q0) /
+// h is the derivative of -D1 L_d up to O(h), so each iteration reduces the error by a factor of
+// about h |v'| / |v|; three to five iterations of O(links).
 //
 // Source: Marsden, West, Discrete mechanics and variational integrators, Acta Numerica 10 (2001);
-// Lee, Liu, Park, Srinivasa, A linear-time variational integrator for multibody systems, WAFR 2016,
-// whose discrete Newton-Euler recursion in the links' frames this is, in one frame.
+// Lee, Liu, Park, Srinivasa, A linear-time variational integrator for multibody systems, WAFR 2016.
+// This is their discrete Newton-Euler recursion, in one frame instead of the links' frames.
 #include <algorithm>
 #include <limits>
 
@@ -56,7 +57,7 @@ Displacement<T> operator*(const Displacement<T>& A, const Displacement<T>& B) {
   return {A.c * B.u + B.c * A.u + cross(A.u, B.u), A.c * B.c - dot(A.u, B.u),
           A.d + rotated_by(A, B.d)};
 }
-// dAd_D F - F, with the precision of its own size.
+// dAd_D F - F, accurate relative to the size of the difference.
 template <class T>
 dse3T<T> change_of(const Displacement<T>& D, const dse3T<T>& F) {
   const auto change = [&](const Vec3T<T>& x) {  // R^T x - x
@@ -66,7 +67,7 @@ dse3T<T> change_of(const Displacement<T>& D, const dse3T<T>& F) {
   const Vec3T<T> moved = cross(D.d, F.f);
   return {change(F.m) - (moved + change(moved)), change(F.f)};
 }
-// With h the half angle, A = sin(h) cos(h) / h and B = (sin(h) / h)^2 / 2 (so3.h).
+// With the half angle h, A = sin(h) cos(h) / h and B = (sin(h) / h)^2 / 2 (so3.h).
 template <class T>
 Displacement<T> displacement(const se3T<T>& W) {
   const auto k = exp_coefficients(W.w);
@@ -83,18 +84,18 @@ template <class T>
 SE3T<T> pose(const Displacement<T>& D) {
   return {from_quaternion(QuaternionT<T>{D.u.x, D.u.y, D.u.z, D.c}), D.d};
 }
-// Precondition: less than half a turn, c > 0.
+// Precondition: a rotation by less than pi, c > 0.
 template <class T>
 se3T<T> screw_of(const Displacement<T>& D) {
   const T n2 = dot(D.u, D.u), n = std::sqrt(n2);
-  // 2 asin(n) / n, of which below 1e-4 the terms left out are less than 2^-53
+  // 2 asin(n) / n; below 1e-4 the omitted terms are less than 2^-53
   const T scale = n2 < T(1e-4) ? T(2) + n2 * (T(1.0 / 3) + n2 * (T(3.0 / 20) + n2 * T(5.0 / 56)))
                                : T(2) * arc_tangent(n, D.c) / n;
   const Vec3T<T> w = scale * D.u;
   return {w, left_jacobian_inverse(w) * D.d};
 }
 
-// --- a user's joint
+// --- user joints
 
 template <class T>
 struct UserPose {
@@ -105,7 +106,7 @@ template <class T>
 Vec3T<T> narrowed(const Vec3& a) {
   return {static_cast<T>(a.x), static_cast<T>(a.y), static_cast<T>(a.z)};
 }
-// At its coordinates q + delta.
+// Pose and columns at the coordinates q + delta.
 template <class T>
 UserPose<T> user_pose(const Node<T>& node, Span<T> q, Span<T> delta) {
   const auto dofs = static_cast<std::size_t>(node.dofs);
@@ -149,15 +150,16 @@ class VariationalStep {
  private:
   static constexpr const char* kName = "step_variational";
 
-  // Vectors of the step, in the memory that the other integrators have for their stages.
-  std::vector<T>& static_force() { return work_.u_rate[0]; }  // dU/dq less the external loads
+  // Vectors of the step, in the memory that the other integrators use for their stages.
+  std::vector<T>& static_force() { return work_.u_rate[0]; }  // dU/dq minus the external loads
   std::vector<T>& mean() { return work_.u_rate[1]; }          // delta / h
   std::vector<T>& momentum() { return work_.u_rate[2]; }      // M(q0) v0
   std::vector<T>& derivative() { return work_.u_rate[3]; }    // -D1 L_d, without U
   std::vector<T>& residual() { return work_.v_rate[0]; }      // of (1)
   std::vector<T>& correction() { return work_.v_rate[1]; }
 
-  // At q0: inertias, columns, momentum, the factors of M, and a first delta from the acceleration.
+  // At q0: inertias, columns, momentum, the factors of M, and the initial guess of delta from the
+  // acceleration.
   Expected<void> begin() {
     inverse_dynamics<T>(model_, work_.data, q_, work_.rest, work_.rest, step_.loads,
                         static_force());
@@ -200,7 +202,7 @@ class VariationalStep {
       sum = sum + work_.nodes[n].momentum;
     }
   }
-  // <S, Pi>, and what the armature adds to it at the joints' velocities.
+  // <S, Pi>, plus the momentum of the armature at the joint velocities v.
   void project(std::span<const T> v, std::span<T> out) const {
     for (std::size_t n = 0; n < tree_.nodes.size(); ++n) {
       const Node<T>& node = tree_.nodes[n];
@@ -225,7 +227,8 @@ class VariationalStep {
     return displacement(W);
   }
 
-  // D, pi and the energy outwards, Pi inwards, -D1 L_d. False where a link turns half a turn.
+  // Base to tip: D, pi and the energy. Tip to base: Pi. Then -D1 L_d. Returns false if a link
+  // rotates by pi or more.
   bool find_derivative() {
     const T rate = T(1) / step_.h;
     energy_ = T(0);
@@ -254,7 +257,7 @@ class VariationalStep {
     return true;
   }
 
-  // h/2 of all forces without the armature's, added to x.
+  // Adds h/2 of all forces except the armature's to x.
   void add_impulse(std::span<const T> q, T t, std::span<T> x) {
     const std::span<const T> tau = step_.forces.at(q, mean(), t, work_.tau);
     const T half = T(0.5) * step_.h;
@@ -266,7 +269,7 @@ class VariationalStep {
     }
   }
 
-  // What (1) is off by, for the present delta.
+  // The residual of (1) for the current delta.
   bool find_residual() {
     if (!find_derivative()) return false;
     residual() = momentum();
@@ -274,7 +277,7 @@ class VariationalStep {
     for (std::size_t i = 0; i < v_.size(); ++i) residual()[i] -= derivative()[i];
     return true;
   }
-  // delta += h M^-1 r; returns <r, M^-1 r>, twice the correction's kinetic energy.
+  // delta += h M^-1 r. Returns <r, M^-1 r>, twice the kinetic energy of the correction.
   T correct() {
     correction() = residual();
     solve_mass<T>(model_, work_.data, correction());
@@ -286,10 +289,10 @@ class VariationalStep {
     return energy;
   }
 
-  // (1), by corrections of delta: until they are small, or small enough to be rounding's and no
-  // longer shrinking.
+  // Solves (1) by corrections of delta, until they are below the tolerance, or at the level of
+  // rounding and no longer decreasing.
   Expected<int> solve(const VariationalT<T>& options) {
-    constexpr T kRounding = std::numeric_limits<T>::epsilon();  // of energies: its root of rates
+    constexpr T kRounding = std::numeric_limits<T>::epsilon();  // of energies: squares of rates
     bool close = false;
     T before = std::numeric_limits<T>::infinity();
     for (int iteration = 0; iteration <= options.max_iterations; ++iteration) {
@@ -308,8 +311,8 @@ class VariationalStep {
                          "dampers");
   }
 
-  // (2), as what (1) has on its left side and how that changes over the step: rounding is then that
-  // of the change, and what (1) is off by is not lost.
+  // Computes (2) as the left side of (1) plus its change over the step. The rounding error is then
+  // relative to the change, and the residual of (1) is included.
   Expected<void> end() {
     integrate<T>(model_, q_, work_.u, work_.q);
     for (std::size_t n = 0; n < tree_.nodes.size(); ++n) {
@@ -339,8 +342,8 @@ class VariationalStep {
     return {};
   }
 
-  // work_.v from momenta, which are kept to rounding only if M v is them as nearly as it can be:
-  // M^-1 of what is missing is added once.
+  // Computes work_.v from the momenta. Momentum is conserved to rounding only if M v equals them as
+  // closely as possible: one step of iterative refinement.
   void to_velocities() {
     correction() = work_.v;
     solve_mass<T>(model_, work_.data, correction());
@@ -356,7 +359,7 @@ class VariationalStep {
   IntegratorWork<T>& work_;
   const StepT<T>& step_;
   std::span<T> q_, v_;
-  T energy_ = 0;  // kinetic, twice, of the mean motion
+  T energy_ = 0;  // twice the kinetic energy of the mean motion
 };
 
 }  // namespace

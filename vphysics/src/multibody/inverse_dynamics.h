@@ -1,8 +1,8 @@
 // Inverse dynamics: the recursive Newton-Euler algorithm, in the tree's frame.
 //
-//   outwards   X, S, V, A with the joints' accelerations, each body's F_i (base_to_tip.h)
-//   inwards    F_parent += F_i
-//              tau_i = <S_i, F_i> + armature q''_i + damping q'_i
+//   base to tip   X, S, V, A with the joint accelerations, each body's F_i (base_to_tip.h)
+//   tip to base   F_parent += F_i
+//                 tau_i = <S_i, F_i> + armature q''_i + damping q'_i
 #pragma once
 
 #include "multibody/base_to_tip.h"

@@ -1,10 +1,11 @@
-// Jacobians in the tree's frame (work.h), whose origin is a point at rest that the root passes now.
+// Jacobians in the tree's frame (work.h), whose origin is the point at rest where the root is now.
 //
-//   J_k = S_k for the joints on the way from the root to the link, else 0
-//   S'_k = ad_(V_k) S_k + Ad_X of the joint's own slope: S is fixed in its link, a user's moves in
-//   it A = sum over the way of ad_(V_parent) (V - V_parent) + Ad_X (dS/dt) v = J' v
+//   J_k  = S_k for the joints on the path from the root to the link, else 0
+//   S'_k = ad_(V_k) S_k + Ad_X of the derivative of the joint's own subspace, which is zero except
+//          for user joints: other subspaces are fixed in their link
+//   A    = sum over the path of ad_(V_parent) (V - V_parent) + Ad_X (dS/dt) v = J' v
 //
-// and then seen from the frame that is asked for, which moves with the link or is at rest.
+// They are then transformed to the requested frame, which moves with the link or is at rest.
 #include "vphysics/multibody/jacobians.h"
 
 #include <algorithm>
@@ -19,7 +20,7 @@ namespace vp {
 namespace detail {
 namespace {
 
-// Where a link is and how it moves, in the tree's frame.
+// A link's node and pose, in the tree's frame.
 template <class T>
 struct Place {
   int node;
@@ -33,7 +34,8 @@ Place<T> place_of(const Tree<base_t<T>>& tree, const Work<T>& work, int link) {
           origin_of(work, frame.node)};
 }
 
-// A velocity of the tree's frame as a link's in some frame; V is how the link moves.
+// Transforms a twist in the tree's frame to the link's velocity in the requested frame; V is the
+// link's twist.
 template <class T>
 struct LinkView {
   using Column = se3T<T>;
@@ -53,7 +55,7 @@ struct LinkView {
   }
 };
 
-// As that of a point x on the link.
+// The same for the velocity of a point x on the link.
 template <class T>
 struct PointView {
   using Column = Vec3T<T>;

@@ -1,6 +1,6 @@
 //   spring   k (rest - q)
-//   limit    max(0, k (lower - q) - d v) below the lower one, and so above the upper one
-//   motor    k (position - q) + d (velocity - v), cut off at what it can do
+//   limit    max(0, k (lower - q) - d v) below the lower limit, and likewise above the upper limit
+//   motor    k (position - q) + d (velocity - v), clamped to its maximum
 #include "vphysics/multibody/joint_forces.h"
 
 #include "multibody/instantiate.h"
@@ -16,7 +16,7 @@ T at_most(const T& x, const T& max_value) {
   return select(x > max_value, max_value, select(x < -max_value, -max_value, x));
 }
 
-// BaseToTip is how far the coordinate is beyond the limit, and rate how fast it goes on.
+// `outwards` is the distance of the coordinate beyond the limit, rate its rate of increase.
 template <class T>
 T stop_force(const JointForces& f, const T& outwards, const T& rate) {
   const T resistance = T(static_cast<base_t<T>>(f.limit_stiffness)) * outwards +

@@ -1,4 +1,4 @@
-// Nodes that are not simple: balls, free nodes and users' joints, one at a time.
+// Nodes that are not simple: ball, free and user joints, one at a time.
 #pragma once
 
 #include <span>
@@ -27,7 +27,7 @@ InertiaT<T> wide(const InertiaT<base_t<T>>& J) {
           Sym3T<T>{T(I.xx), T(I.yy), T(I.zz), T(I.xy), T(I.yz), T(I.zx)}};
 }
 
-// Lane by lane, in double.
+// Access to a scalar lane by lane, in double.
 template <class T>
 inline constexpr int kLanesOf = 1;
 template <class B, int N>
@@ -59,7 +59,7 @@ void set_lane(se3T<T>& V, int lane, const se3& value) {
   set_lane(V.v, lane, value.v);
 }
 
-// A user's joint: its pose in the joint's frame; columns and rate in the link's.
+// A user joint: its pose in the joint's frame; columns and rate in the link's frame.
 template <class T>
 SE3T<T> evaluate_user(const Node<base_t<T>>& node, Span<T> q, Span<T> v, Columns<T>& columns) {
   const auto dofs = static_cast<std::size_t>(node.dofs);
@@ -90,8 +90,8 @@ QuaternionT<T> quaternion_at(Span<T> q, int i) {
   return {q[k], q[k + 1], q[k + 2], q[k + 3]};
 }
 
-// Of a node that is not simple, nor a free root: its pose in its parent's frame; and then from its
-// pose in the tree's frame its columns there.
+// For a node that is neither simple nor a free root. place_columns returns its pose in its parent's
+// frame. open_columns then computes its columns in the tree's frame from its pose there.
 template <class T>
 VP_NOINLINE SE3T<T> place_columns(const Node<base_t<T>>& node, Span<T> q, Span<T> v,
                                   Columns<T>& columns) {

@@ -1,5 +1,5 @@
-// One instruction set's passes for every scalar (kernels.h). The build names the set: VP_KERNELS is
-// the table's name, and but for the baseline vp is the set's own namespace.
+// The passes of one instruction set for every scalar (kernels.h). The build names the set:
+// VP_KERNELS is the name of the table, and, except for the baseline, vp is a namespace of the set.
 #include "multibody/kernels.h"
 
 #include "multibody/forward_dynamics.h"

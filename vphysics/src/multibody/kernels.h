@@ -1,10 +1,10 @@
-// The passes, compiled for several instruction sets, and the choice among them when the program
-// starts: docs/decisions/0012.
+// The passes, compiled for several instruction sets, and the selection among them at program start:
+// docs/decisions/0012.
 //
-// The baseline gives the same bits everywhere; the wider sets have fused multiply-add and give
-// their own, but for those that are compiled without it (VP_SAME_BITS). kernels.cpp is compiled
-// once for each set, in a namespace of its own, so that the linker can never take an inline
-// function of one for another's. What crosses between the namespaces is this header's: addresses.
+// The baseline gives the same bits everywhere. The wider sets have fused multiply-add and round
+// differently. kernels.cpp is compiled once for each set, in a separate namespace, so that the
+// linker cannot merge inline functions of different sets. Only the types of this header are shared
+// between the namespaces: addresses.
 #pragma once
 
 #include <array>
@@ -12,15 +12,15 @@
 
 namespace vphysics_kernels {
 
-// Of the arguments of a call of dynamics.h those that it has; lengths are the tree's.
+// The arguments of a call of dynamics.h; unused ones are null. The lengths are those of the tree.
 struct Arguments {
   const void* tree;
   void* work;
   const void* q = nullptr;
   const void* v = nullptr;
-  const void* given = nullptr;  // tau of forward dynamics, a of inverse
+  const void* given = nullptr;  // tau of forward dynamics, a of inverse dynamics
   const void* gravity = nullptr;
-  const void* external = nullptr;  // of each link, or null
+  const void* external = nullptr;  // one for each link, or null
   void* out = nullptr;
 };
 using Kernel = bool (*)(const Arguments&);

@@ -1,4 +1,4 @@
-// What algorithms beside the kernels read of a moved tree, and the joints' common terms.
+// What algorithms outside the kernels read after kinematics.
 #pragma once
 
 #include "multibody/joints.h"
@@ -6,7 +6,7 @@
 
 namespace vp::detail {
 
-// Of the node's own body, in the tree's frame.
+// Inertia of the node's body, in the tree's frame.
 template <class T>
 InertiaT<T> inertia_of(const Tree<base_t<T>>& tree, const Work<T>& work, int node) {
   const auto& J = tree.nodes[static_cast<std::size_t>(node)].J;

@@ -1,8 +1,8 @@
-// Numbers side by side: how the passes use SIMD lanes.
+// How the passes use SIMD lanes.
 //
-// The passes are written once. Where they go through the joints one after another they compute
-// with T; where all joints are alike they compute with Wide<T>. For a pack of states Wide<T> is T:
-// the lanes are states. For one state the lanes are eight joints at once.
+// Each pass is written once. Where it processes joints one after another it computes with T. Where
+// it processes all joints alike it computes with Wide<T>. For a pack of states Wide<T> is T: the
+// lanes are states. For one state the lanes are eight joints.
 #pragma once
 
 #include <cstddef>
@@ -18,9 +18,9 @@
 #include "vphysics/lie/ainertia.h"
 #include "vphysics/lie/pack.h"
 
-// Where registers are wide a pass is one function: what it calls becomes a part of it, so that its
-// numbers stay in registers. Where they are not, the lanes of a pack overflow them anyway, and it
-// would only take long to compile. What a pass rarely needs stays apart.
+// With wide registers, a pass is compiled as one function: everything it calls is inlined, so that
+// values stay in registers. Without them, the lanes of a pack exceed the registers anyway, and
+// inlining would only make compilation slow. Code that a pass rarely needs is not inlined.
 #ifdef __AVX2__
 #define VP_FLATTEN [[gnu::flatten]]
 #else
@@ -42,12 +42,12 @@ struct WideOf<PackT<B, N>> {
 };
 template <class T>
 using Wide = typename WideOf<T>::type;
-// How many slots (tree.h) one Wide<T> holds.
+// Number of slots (tree.h) in one Wide<T>.
 template <class T>
 inline constexpr int kSlots = WideOf<T>::kSlots;
 
-// From an aligned place. As numbers, which no pointer or count can be: what the compiler holds in
-// registers of those stays there.
+// Loads from an aligned address. The access has the type of the numbers, so it cannot alias
+// pointers or counters: the compiler may keep those in registers.
 template <class N, class T>
 inline N load(const T* from) {
   if constexpr (std::is_same_v<N, T>) {
@@ -64,7 +64,7 @@ inline void store(T* to, const N& x) {
     *reinterpret_cast<typename N::Lanes*>(to) = x.lanes;
   }
 }
-// `count` numbers of an array that goes on for `size`; other lanes of no meaning.
+// Loads `count` numbers from an array of `size` remaining numbers. The other lanes are unspecified.
 template <class N, class T>
 inline N load_until(const T* from, int size, int count) {
   N x(T(0));
@@ -86,7 +86,7 @@ inline N load_until(const T* from, int size, int count) {
   return x;
 }
 
-// Lanes begin to end - 1 to an array whose number 0 is lane 0's; its others stay as they are.
+// Stores lanes begin to end - 1; lane 0 corresponds to to[0]. Other elements are unchanged.
 template <class N, class T>
 inline void store_lanes(T* to, const N& x, [[maybe_unused]] int begin, [[maybe_unused]] int end) {
   if constexpr (std::is_same_v<N, T>) {
@@ -107,8 +107,8 @@ inline void store_lanes(T* to, const N& x, [[maybe_unused]] int begin, [[maybe_u
   }
 }
 
-// One lane anew. In the register: what is written to a part of it in memory makes the next to read
-// the whole wait.
+// Replaces one lane, in the register: a partial write to memory would stall the next read of the
+// whole vector.
 template <class B, int N>
 inline void set_lane_of(PackT<B, N>& to, int k, B x) {
 #if defined(__AVX512F__) && defined(__AVX512VL__)
@@ -129,7 +129,7 @@ inline void set_lane_of(Vec3T<PackT<B, N>>& to, int k, const Vec3T<B>& a) {
   for (int c = 0; c < 3; ++c) set_lane_of(to[c], k, a[c]);
 }
 
-// Zeros, at the boundary of a cache line.
+// An array aligned to cache lines, initialised with zeros.
 template <class T>
 class AlignedArray {
  public:
@@ -151,8 +151,9 @@ class AlignedArray {
   std::size_t size_ = 0;
 };
 
-// Numbers of one slot, or of a group of kSlots slots: number f of a slot is kSlots behind number
-// f - 1. N is T for a slot, Wide<T> for a group, whose numbers begin where its first slot's do.
+// Fields of one slot, or of a group of kSlots slots. Field f of a slot is kSlots elements after
+// field f - 1. N is T for a slot and Wide<T> for a group, whose fields start at those of its first
+// slot.
 template <class T, class N>
 class Fields {
  public:

@@ -1,4 +1,4 @@
-// From nodes to slots: what the passes read (tree.h).
+// Converts nodes to slots, the form that the passes read (tree.h).
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -41,7 +41,7 @@ class LayOut {
     return static_cast<int>(slot) == node_of(slot).body_slot();
   }
 
-  // Masses and lengths of all that hangs on each slot.
+  // Masses and extents of the subtree of each slot.
   void measure() {
     composites_.assign(tree_.slots.size(), 0.0);
     farthest_.assign(tree_.slots.size(), 0.0);
@@ -66,11 +66,11 @@ class LayOut {
       farthest_[parent] = std::max(farthest_[parent], farthest_[i]);
     }
   }
-  // Omega is a difference of numbers about the origin of the tree, which are as large as a mass
-  // times the square of a distance: so much of it may be rounding. Of a floppy chain this is far
-  // more than its joints feel: in float it would refuse a hundred links that are computed well, so
-  // there the bound is that of double, next to nothing. Of a user's joint, whose units are its own,
-  // nothing is said.
+  // Omega is a difference of numbers about the tree's origin, of the size of a mass times a squared
+  // distance. This is the bound of its rounding error. For a flexible chain the bound is far above
+  // the inertia at its joints: with the epsilon of float it would reject a hundred links that are
+  // computed accurately. Float therefore uses the epsilon of double, which is almost no bound. User
+  // joints have no bound, because their units are unknown.
   double min_value(std::size_t i) const {
     constexpr double rounding = 16.0 * std::numeric_limits<double>::epsilon();
     const double mass = rounding * composites_[i];
@@ -87,7 +87,7 @@ class LayOut {
   Slot& parent_of(const Slot& slot) { return tree_.slots[static_cast<std::size_t>(slot.parent)]; }
   int above(int slot) const { return tree_.slots[static_cast<std::size_t>(slot)].parent; }
 
-  // Whether numbers that belong to neighbours follow each other: all have seen the same first.
+  // Whether the numbers of adjacent slots are consecutive: all must have the same first index.
   class Following {
    public:
     void see(int first) {
@@ -199,7 +199,7 @@ class LayOut {
   void scan(Layout<B>& layout, typename Layout<B>::Group& group, int first) const {
     group.first_step = static_cast<int>(layout.steps.size());
     group.first_external = static_cast<int>(layout.externals.size());
-    // Of each lane the lane of an ancestor, or -1; at first the parent's.
+    // For each lane the lane of an ancestor, or -1; initially the parent's lane.
     std::array<int, 8> ancestor{}, top{};
     bool any = false;
     for (int k = 0; k < 8; ++k) {
@@ -227,7 +227,7 @@ class LayOut {
     group.end_step = static_cast<int>(layout.steps.size());
     group.end_external = static_cast<int>(layout.externals.size());
   }
-  // Lane k hangs on what the slot `top`, of the same group, hangs on.
+  // Assigns to lane k the external parent of slot `top`, its topmost ancestor in the group.
   void hang(Layout<B>& layout, const typename Layout<B>::Group& group, int top, int k) const {
     const Slot& slot = tree_.slots[static_cast<std::size_t>(top)];
     if (slot.kind == SlotKind::root) return;
@@ -264,7 +264,7 @@ class LayOut {
     const auto& I = node.J.rotational();
     const Inertia J(wider(node.J.mass()), wider(node.J.first_moment()),
                     {wider(I.xx), wider(I.yy), wider(I.zz), wider(I.xy), wider(I.yz), wider(I.zx)});
-    const bool has_centre = J.mass() > 0.0;  // files of robots have moments without a mass
+    const bool has_centre = J.mass() > 0.0;  // robot files have moments without a mass
     const Principal p = principal_of(has_centre ? J.central() : J.rotational());
     set(kMass, J.mass());
     if (has_centre) set3(kCentre, J.centre_of_mass());
@@ -275,7 +275,7 @@ class LayOut {
 
   Tree<B>& tree_;
   std::vector<double> composites_;  // [kg]
-  std::vector<double> farthest_;    // [m] from the root, along the links
+  std::vector<double> farthest_;    // from the root, along the links [m]
 };
 
 }  // namespace

@@ -1,7 +1,7 @@
-// The mass matrix: the composite body algorithm, in the tree's frame.
+// The mass matrix: the composite rigid body algorithm, in the tree's frame.
 //
-//   outwards  X, S, each body's inertia (base_to_tip.h)
-//   inwards   C_i = J_i + sum of the children's C: nine numbers, added; the masses are known
+//   base to tip   X, S, each body's inertia (base_to_tip.h)
+//   tip to base   C_i = J_i + sum of the children's C: nine numbers; the masses are constants
 //   F_i = C_i S_i,  M_ij = <S_j, F_i> for j = i and every j between i and the root
 #pragma once
 
@@ -12,8 +12,8 @@
 
 namespace vp::detail {
 
-// Row and column v of M, n x n, in which S are the columns of slots [begin, end) of one group and F
-// is the composite body times slot i's.
+// Fills row and column v of M, n x n, for the columns S of slots [begin, end) of one group. F is
+// the composite inertia times slot i's column.
 template <class T>
 void fill_row(const Tree<base_t<T>>& tree, const Work<T>& work, const dse3T<Wide<T>>& F,
               std::size_t row, int begin, int end, std::size_t n, std::span<T> M) {
@@ -31,7 +31,7 @@ void fill_row(const Tree<base_t<T>>& tree, const Work<T>& work, const dse3T<Wide
   }
 }
 
-// The columns of a free root with a force: of its own axes.
+// The products of a free root's columns with a force, in the root's own axes.
 template <class T>
 void fill_root(const Mat3T<T>& R, const dse3T<T>& F, std::size_t row, std::size_t first,
                std::size_t n, std::span<T> M) {

@@ -1,4 +1,4 @@
-// Building and checking a model, and taking its joints apart into nodes (tree.h).
+// Builds and checks a model, and decomposes its joints into nodes (tree.h).
 #include "vphysics/multibody/model.h"
 
 #include <array>
@@ -27,7 +27,7 @@ bool is_rotation(const Mat3& R) {
          std::fabs(dot(R.cx, R.cy)) < 1e-6 && dot(z, z) < 1e-12;
 }
 
-// The rotation that takes z to the axis.
+// A rotation that maps z to the axis.
 Mat3 frame_along(const Vec3& axis) {
   const Vec3 z = (1.0 / norm(axis)) * axis;
   if (z.x == 0.0 && z.y == 0.0 && z.z > 0.0) return Mat3::identity();
@@ -54,8 +54,9 @@ std::array<Vec3, 2> axes_of(const Joint& joint) {
   return std::visit(visitor, joint);
 }
 
-// Positive semidefinite, and no moment larger than the two others together: the matrix
-// trace(I)/2 - I about the centre of mass, whose mass is spread by it, is positive semidefinite.
+// Whether a body can have this inertia: the matrix trace(I)/2 - I about the centre of mass, the
+// second moments of its mass, is positive semidefinite. I is then positive semidefinite too, and no
+// moment exceeds the sum of the other two.
 bool of_a_body(const Inertia& J) {
   if (J == Inertia{}) return true;
   if (!(J.mass() > 0.0)) return false;
@@ -76,7 +77,7 @@ bool has_own_coordinates(const Joint& joint) {
   return !std::holds_alternative<BallJoint>(joint) && !std::holds_alternative<FreeJoint>(joint);
 }
 
-// Why a joint cannot have these forces, or nothing.
+// The reason why a joint cannot have these forces, or null.
 const char* wrong_with(const JointForces& f) {
   if (!(f.lower <= f.upper) || f.lower == JointForces::kNever || f.upper == -JointForces::kNever) {
     return "the lower limit must not be above the upper one";
@@ -110,7 +111,7 @@ const char* wrong_with_forces(const LinkSpec& link) {
   return nullptr;
 }
 
-// Adds the nodes of one joint, parent first, and tells the place of its link.
+// Adds the nodes of one joint, parents first, and returns the frame of its link.
 class NodeMaker {
  public:
   NodeMaker(Tree<double>& tree, const LinkSpec& link) : tree_(tree), link_(link) {
@@ -148,7 +149,7 @@ class NodeMaker {
     add(NodeKind::user, Mat3::identity(), dofs, dofs, 0.0, j.get());
   }
 
-  // Where the link is now; its inertia goes to the node.
+  // Adds the link's inertia to the node, and returns the link's frame.
   LinkFrame<double> finish() {
     if (place_.node != kWorld) {
       Inertia& J = tree_.nodes[static_cast<std::size_t>(place_.node)].J;
@@ -161,7 +162,8 @@ class NodeMaker {
   void simple(NodeKind kind, const Vec3& axis, double pitch = 0.0) {
     add(kind, frame_along(axis), 1, 1, pitch);
   }
-  // The node's frame is turned by Q against the joint's, and turns back into the link's after it.
+  // The node's frame is rotated by Q relative to the joint's frame; the link's frame is rotated
+  // back.
   void add(NodeKind kind, const Mat3& Q, int coordinates, int dofs, double pitch = 0.0,
            const UserJoint* user = nullptr) {
     Node<double> node{};
@@ -283,7 +285,7 @@ Expected<Model> ModelBuilder::build() const {
                                      "build: the model has no joint that moves, so that it has no "
                                      "dynamics; add a link with a joint that does"});
   }
-  // What each joint moves; armature alone is enough.
+  // Which joints move an inertia; armature alone suffices.
   std::vector<char> moves(tree->nodes.size());
   for (std::size_t i = tree->nodes.size(); i-- > 0;) {
     const Node<double>& node = tree->nodes[i];

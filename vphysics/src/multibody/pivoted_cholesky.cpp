@@ -13,7 +13,7 @@ PivotedCholesky::PivotedCholesky(std::size_t capacity)
       work_(capacity),
       order_(capacity) {}
 
-// Exchanges two rows of L so far, and their places.
+// Exchanges two rows of the partial L, and their entries in the order.
 void PivotedCholesky::bring_forward(std::size_t k, std::size_t pivot) {
   if (k == pivot) return;
   std::swap(order_[k], order_[pivot]);

@@ -1,10 +1,10 @@
-// G x = r for a symmetric positive semidefinite G whose rows may depend on each other.
+// Solves G x = r for a symmetric positive semidefinite G with possibly dependent rows.
 //
 //   S G S = P^T L L^T P,   S = diag(1 / sqrt(G_ii)),   the largest diagonal entry first
 //
-// A remaining entry of the diagonal is then the squared sine of the angle between its row and those
-// before it, a number without a unit: rows below kDependent are left out, with x = 0. So redundant
-// rows do no harm; whether they contradict the others is seen from what G x - r leaves in them.
+// A remaining diagonal entry is the squared sine of the angle between its row and the earlier rows,
+// which has no unit. Rows below kDependent are omitted, with x = 0. Redundant rows are therefore
+// harmless; the residual G x - r in them shows whether they contradict the others.
 #pragma once
 
 #include <cstddef>
@@ -13,20 +13,20 @@
 
 namespace vp::detail {
 
-// Rounding leaves some 1e-15 in a row that depends on others, and a loop closed to 1e-8 makes sines
-// of 1e-8 between rows that coincide when it is closed exactly, 1e-16 squared. Larger: a mechanism
-// is taken for singular farther from its singular position, here 3e-6 rad.
+// Rounding leaves about 1e-15 in a dependent row. In a loop closed to 1e-8, rows that coincide in
+// the closed loop have sines of 1e-8, 1e-16 squared. A larger value would treat a mechanism as
+// singular farther from its singular configuration; here within 3e-6 rad.
 inline constexpr double kDependent = 1e-11;
 
 class PivotedCholesky {
  public:
   explicit PivotedCholesky(std::size_t capacity);
 
-  // G is size x size, its rows `stride` apart. A row whose diagonal is at most its floor counts as
-  // zero and is left out. Returns the rank.
+  // G is size x size with row stride `stride`. A row whose diagonal is at most its floor counts as
+  // zero and is omitted. Returns the rank.
   std::size_t factor(std::span<const double> G, std::size_t size, std::size_t stride,
                      std::span<const double> floor);
-  // x <- a solution, zero in the rows that are left out.
+  // x <- a solution, zero in the omitted rows.
   void solve(std::span<double> x);
   std::size_t rank() const { return rank_; }
 

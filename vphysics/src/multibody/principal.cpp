@@ -5,7 +5,7 @@
 
 namespace vp::detail {
 
-// By Jacobi's rotations, in a fixed order; eight sweeps leave nothing beside the diagonal.
+// Jacobi's method with rotations in a fixed order; eight sweeps reduce the off-diagonal to zero.
 Principal principal_of(const Sym3& A) {
   double m[3][3] = {{A.xx, A.xy, A.zx}, {A.xy, A.yy, A.yz}, {A.zx, A.yz, A.zz}};
   double Q[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -14,7 +14,8 @@ Principal principal_of(const Sym3& A) {
     for (const auto& pair : kPairs) {
       const int i = pair[0], j = pair[1];
       if (m[i][j] == 0.0) continue;
-      // The turn by atan t that makes m[i][j] zero: t = cot - sqrt, the smaller of two.
+      // The rotation by atan t that makes m[i][j] zero: t = cot - sqrt, the smaller of the two
+      // solutions.
       const double cot = (m[j][j] - m[i][i]) / (2.0 * m[i][j]);
       const double t = (cot >= 0.0 ? 1.0 : -1.0) / (std::fabs(cot) + std::sqrt(cot * cot + 1.0));
       const double c = 1.0 / std::sqrt(t * t + 1.0), s = t * c;

@@ -8,8 +8,8 @@
 namespace vp::detail {
 
 struct Principal {
-  std::array<double, 3> moments;  // the least first
-  std::array<Vec3, 3> axes;       // unit vectors, of the moments in turn
+  std::array<double, 3> moments;  // in ascending order
+  std::array<Vec3, 3> axes;       // unit vectors, in the order of the moments
 };
 Principal principal_of(const Sym3& A);
 

@@ -1,6 +1,6 @@
 // Sums over the nodes, each body in its tree's frame (work.h):
 //
-//   momentum       sum of J_i V_i, moved from the tree's origin to the point asked for
+//   momentum       sum of J_i V_i, moved from the tree's origin to the requested point
 //   its matrix     A_k = sum over the nodes i that joint k moves of J_i S_k
 //   energies       1/2 sum <V_i, J_i V_i>,  - sum m_i <g, c_i>
 #include "vphysics/multibody/quantities.h"
@@ -15,13 +15,13 @@ namespace vp {
 namespace detail {
 namespace {
 
-// Of the tree's origin, about another point.
+// Moves a momentum from the tree's origin to another point.
 template <class T>
 dse3T<T> moved_to(const dse3T<T>& F, const Vec3T<T>& tree_origin, const Vec3T<T>& about) {
   return {F.m + cross(tree_origin - about, F.f), F.f};
 }
 
-// f(node's number, its inertia in the tree's frame)
+// Calls f(node index, its body's inertia in the tree's frame) for each node.
 template <class T, class F>
 void for_each_body(const Tree<base_t<T>>& tree, const Work<T>& work, const F& f) {
   for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
@@ -29,7 +29,7 @@ void for_each_body(const Tree<base_t<T>>& tree, const Work<T>& work, const F& f)
     if (tree.nodes[i].J != InertiaT<base_t<T>>{}) f(node, inertia_of(tree, work, node));
   }
 }
-// f(velocity's number, S) for every joint that moves the node.
+// Calls f(velocity index, S) for each velocity that moves the node.
 template <class T, class F>
 void for_each_ancestor_column(const Tree<base_t<T>>& tree, const Work<T>& work, int node,
                               const F& f) {

@@ -1,9 +1,8 @@
 // One state in registers of eight numbers: the recursions by rows.
 //
-// Inwards nothing is alike between slots, so the recursions of one state cannot use a lane for each
-// slot as the rest of a pass does (lanes.h). With registers of 512 bits they use lanes for the
-// numbers of one slot instead: a force is one register, an articulated inertia six. That sums in
-// another order than the baseline does.
+// In the tip-to-base pass slots depend on each other, so the recursions of one state cannot assign
+// a lane to each slot as the rest of a pass does (lanes.h). With 512-bit registers they assign
+// lanes to the numbers of one slot instead: a force is one register, an articulated inertia six.
 #pragma once
 
 #include "multibody/lanes.h"
@@ -26,7 +25,7 @@ auto shuffled(const PackT<T, N>& a, const PackT<T, N>& b) {
   return PackT<T, static_cast<int>(sizeof...(I))>(__builtin_shufflevector(a.lanes, b.lanes, I...));
 }
 
-// Eight rows to eight columns.
+// Transposes an 8x8 block.
 template <class T>
 void transpose_rows(Row<T> (&r)[8]) {
   const auto pairs = [](const Row<T>& a, const Row<T>& b, Row<T>& low, Row<T>& high) {
@@ -50,7 +49,7 @@ void transpose_rows(Row<T> (&r)[8]) {
   for (int i = 0; i < 4; ++i) halves(t[i], t[i + 4], r[i], r[i + 4]);
 }
 
-// Vectors of six of one slot, as the sums inwards take them: in rows where there are rows.
+// A 6-vector of one slot, as the child accumulation adds them: in a row, where rows are used.
 template <class T>
 struct SixRow {
   Row<T> row;
@@ -77,7 +76,8 @@ struct Six {
 template <class T>
 using ChainSix = std::conditional_t<kByRows<T>, SixRow<T>, Six<T>>;
 
-// From two vectors of each slot of a group to the slots, and back.
+// split: from two vectors for each slot of a group to one 6-vector for each slot; join: the
+// inverse.
 template <class T>
 void split(const Vec3T<Wide<T>>& a, const Vec3T<Wide<T>>& b, ChainSix<T> (&out)[kSlots<T>]) {
   if constexpr (kSlots<T> == 1) {
@@ -121,7 +121,7 @@ void join(const ChainSix<T> (&x)[kSlots<T>], Vec3T<Wide<T>>& a, Vec3T<Wide<T>>& 
   }
 }
 
-// An articulated inertia by columns of (angular 3, linear 3, nothing 2).
+// An articulated inertia by columns of (angular 3, linear 3, unused 2).
 template <class T>
 struct ColumnInertia {
   Row<T> c[6];
@@ -132,7 +132,7 @@ ColumnInertia<T> operator+(const ColumnInertia<T>& a, const ColumnInertia<T>& b)
   for (int k = 0; k < 6; ++k) out.c[k] = a.c[k] + b.c[k];
   return out;
 }
-// A body's, from I = (xx yy zz xy yz zx), mass, 0 and from (h, -h, 0, 0).
+// The inertia of a body, from I = (xx yy zz xy yz zx), mass, 0 and from (h, -h, 0, 0).
 template <class T>
 ColumnInertia<T> columns_of(const Row<T>& I, const Row<T>& h) {
   return {{shuffled<0, 3, 5, 14, 13, 9, 7, 7>(I, h), shuffled<3, 1, 4, 10, 14, 11, 7, 7>(I, h),
@@ -140,7 +140,7 @@ ColumnInertia<T> columns_of(const Row<T>& I, const Row<T>& h) {
            shuffled<13, 7, 8, 7, 6, 7, 7, 7>(I, h), shuffled<9, 11, 7, 7, 7, 6, 7, 7>(I, h)}};
 }
 
-// What flows inwards.
+// The load of the child accumulation.
 template <class T>
 struct ArticulatedRows {
   ColumnInertia<T> J;
@@ -151,7 +151,7 @@ ArticulatedRows<T> operator+(const ArticulatedRows<T>& a, const ArticulatedRows<
   return {a.J + b.J, a.p + b.p};
 }
 
-// J S, as AInertiaT has it.
+// J S, like AInertiaT.
 template <class T>
 Row<T> times(const ColumnInertia<T>& J, const se3T<T>& S) {
   return ((J.c[0] * Row<T>(S.w.x) + J.c[1] * Row<T>(S.w.y)) + J.c[2] * Row<T>(S.w.z)) +
@@ -168,8 +168,8 @@ ColumnInertia<T> without(const ColumnInertia<T>& J, const Row<T>& U, const T (&u
   return out;
 }
 
-// Numbers of a row, to be read one by one: from memory, where reading costs less than taking a
-// register apart.
+// Writes a row to memory, to read its numbers one by one: this costs less than extracting them from
+// a register.
 template <class T>
 void spread(T (&to)[8], const Row<T>& row) {
   store(to, row);

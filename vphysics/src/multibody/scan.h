@@ -1,8 +1,8 @@
 // One state in registers of eight numbers: products and sums along the tree, within a group.
 //
-// A slot's pose waits for its parent's, eight times in a row if each slot of a group hangs on the
-// one before. By doubling (ScanStep) that are three steps, each in all lanes at once: more
-// operations than one after the other, but full registers and a third of the waiting.
+// A slot's pose depends on its parent's. In a group of eight, a chain has up to eight dependent
+// steps. Doubling (ScanStep) needs three steps, each in all lanes: more operations than in
+// sequence, but full registers and a third of the latency.
 #pragma once
 
 #include "multibody/work.h"
@@ -12,7 +12,7 @@
 
 namespace vp::detail {
 
-// Lanes of a from where a step says; of `others` where it has none.
+// Takes lanes of a as the step specifies; of `others` for lanes without an ancestor.
 inline PackT<double, 8> taken(const ScanStep<double>& step, const PackT<double, 8>& a,
                               const PackT<double, 8>& others) {
   using Lanes = PackT<double, 8>::Lanes;
@@ -26,7 +26,7 @@ inline PackT<float, 8> taken(const ScanStep<float>& step, const PackT<float, 8>&
       others.lanes, step.lanes, _mm256_load_si256(reinterpret_cast<const __m256i*>(step.from)),
       a.lanes)));
 }
-// A number in the lanes of an external; `others` in the others.
+// Broadcasts a number to the lanes of an external parent; `others` in the other lanes.
 inline PackT<double, 8> spread_to(const External& external, double x,
                                   const PackT<double, 8>& others) {
   return PackT<double, 8>(static_cast<PackT<double, 8>::Lanes>(
@@ -37,7 +37,7 @@ inline PackT<float, 8> spread_to(const External& external, float x, const PackT<
       _mm256_mask_broadcastss_ps(others.lanes, external.lanes, _mm_set_ss(x))));
 }
 
-// A pose whose numbers each come through f(number, what it is in the unit).
+// Maps each component of a pose by f(component, the component of the identity).
 template <class N, class M, class F>
 SE3T<N> each_number(const SE3T<M>& X, const F& f) {
   const N zero(0), one(1);
@@ -73,7 +73,7 @@ se3T<N> summed_in_group(const Layout<B>& layout, const typename Layout<B>::Group
   }
   return V;
 }
-// A pose in the lanes of an external; P in the others.
+// A pose in the lanes of an external parent; P in the others.
 template <class T, class N>
 SE3T<N> pose_in_lanes(const External& external, const SE3T<T>& X, const SE3T<N>& P) {
   const auto column = [&](const Vec3T<T>& a, const Vec3T<N>& others) {

@@ -2,24 +2,24 @@
 //
 //   da/dtau = M^-1,   da/dq = -M^-1 dtau/dq,   da/dv = -M^-1 dtau/dv
 //
-// M = L^T D L, L of unit diagonal and with entries only from a velocity to those before it on the
-// path to the root, as M has (Featherstone, Rigid Body Dynamics Algorithms, 2008, section 6.5). The
-// articulated body algorithm has them already: it takes the velocities out of M in the same order,
-// and what it takes out of the articulated inertias, J^ -= J^ S_i (x) J^ S_i / Omega_i, seen by the
-// velocities S_j and S_k before i, is what elimination takes out of M_jk. In one frame
+// M = L^T D L. L has a unit diagonal and the sparsity of M: entries only from a velocity to the
+// velocities before it on the path to the root (Featherstone, Rigid Body Dynamics Algorithms, 2008,
+// section 6.5). The articulated body algorithm already computes L and D. It eliminates the
+// velocities in the same order: its update of the articulated inertias, J^ -= J^ S_i (x) J^ S_i /
+// Omega_i, projected on S_j and S_k of velocities before i, is the elimination's update of M_jk. In
+// one frame
 //
 //   D_i = Omega_i,   L_ij = <S_j, W_i>,   W_i = J^_i S_i / Omega_i
 //
-// Only a free root has its six in the axes of the tree, for which S are others (factor_root). So
+// Only a free root is factored in the axes of the tree, for other S (factor_root). Therefore
 //
-//   inwards    row j -= L_ij row i   for each j before i
-//   outwards   row i = row i / D_i - sum over j of L_ij row j
+//   tip to base   row j -= L_ij row i   for each j before i
+//   base to tip   row i = row i / D_i - sum over j of L_ij row j
 //
-// solve for all columns at once, a few registers of columns after the other: a row takes up all
-// that is subtracted from it while its numbers are in registers, and the rows of these columns stay
-// in the nearest cache. On the way inwards the rows of dtau/dq keep the zeros of M, so that columns
-// are left out that no velocity on a row's path moves; M^-1 is symmetric, so nothing left of the
-// diagonal is computed, but for what a whole register takes along.
+// solve for all columns, a few registers of columns at a time: a row's sum stays in registers, and
+// the rows of these columns stay in the first-level cache. In the tip-to-base pass the rows of
+// dtau/dq keep the zeros of M, so columns that no velocity on a row's path moves are skipped. M^-1
+// is symmetric, so nothing left of the diagonal is computed, except to fill a register.
 #pragma once
 
 #include <algorithm>
@@ -28,8 +28,8 @@
 
 namespace vp::detail::derivatives {
 
-// Numbers of a row, in whole units of padding: as many for every instruction set, so that even the
-// signs of zeros are the same.
+// A range of a row, rounded to whole units of padding. It is the same for every instruction set, so
+// that even the signs of zeros agree.
 template <class T>
 struct RowRange {
   std::size_t begin, end;
@@ -47,9 +47,9 @@ Lanes<T> load_row(const T* from) {
   }
 }
 
-// The rows of a free root, of L and 1/D: in its own axes, from the factors of its articulated
-// inertia in those of the tree, J^ = sum over k of Omega_k W_k (x) W_k. False where it is not
-// positive definite.
+// Computes the rows of L and 1/D of a free root in its own axes, from the factors of its
+// articulated inertia in the tree's axes, J^ = sum over k of Omega_k W_k (x) W_k. Returns false if
+// it is not positive definite.
 template <class T>
 bool factor_root(DerivativesWork<T>& memory, const Work<T>& work, const Node<base_t<T>>& node) {
   const auto first = static_cast<std::size_t>(node.v), dofs = static_cast<std::size_t>(node.dofs);
@@ -80,10 +80,10 @@ bool factor_root(DerivativesWork<T>& memory, const Work<T>& work, const Node<bas
   return true;
 }
 
-// A few registers of a row, to which other rows times a factor are added.
+// Accumulates multiples of other rows in a few registers of a row.
 template <class T, int kSums>
 struct RowSums {
-  // Of the compiler's vectors, which begin as nothing: zeros would be written to memory first.
+  // Raw compiler vectors, left uninitialised: initialising packs would write zeros to memory first.
   typename Lanes<T>::Lanes at[kSums];
 
   RowSums(const T* row, const T& scale) {
@@ -102,8 +102,9 @@ struct RowSums {
   }
 };
 
-// X <- sign M^-1 X. Shared rows hold as many matrices with the zeros of M; else X is the unit
-// matrix, of whose inverse the right of the diagonal is wanted.
+// X <- sign M^-1 X. shared > 0: X contains that many matrices with the zeros of M in shared rows.
+// shared = 0: X is the identity, and the part of its solution on and right of the diagonal is
+// computed.
 template <class T>
 class RowSolver {
  public:
@@ -120,15 +121,15 @@ class RowSolver {
   }
 
  private:
-  // Sums at once: eight registers, which leaves room for a factor and a number of a row, and whose
-  // rows stay in the nearest cache. Of one state at most 32 numbers: with more, columns are taken
-  // along that a row does not have (measured: 6 % of the time of a humanoid).
+  // Accumulators at once: eight registers, which leaves registers for a factor and a number of a
+  // row, and whose rows stay in the first-level cache. For one state at most 32 numbers: more would
+  // compute columns that a row does not have (measured: 6 % of the time of a humanoid).
   static constexpr int kRegistersEach =
       (static_cast<int>(sizeof(Lanes<T>)) + kRegister - 1) / kRegister;
   static constexpr int kAtBound = std::max(1, 8 / kRegistersEach);
   static constexpr int kMaxSums = kSlots<T> == 1 ? kAtBound : std::min(kAtBound, 256 / kRegister);
 
-  // From column c on.
+  // Solves the columns from c on.
   template <int kSums>
   void solve_columns(int sums, std::size_t c) const {
     if constexpr (kSums > 1) {
@@ -144,7 +145,7 @@ class RowSolver {
         take_base_to_tip<kSums>(i, X_ + c);
     }
   }
-  // The rows that were finished last come last.
+  // Subtracts the rows that were finished most recently last.
   template <int kSums>
   VP_FLATTEN void take_inwards(std::size_t j, T* X) const {
     RowSums<T, kSums> sums(X + j * stride_, T(1));
@@ -181,20 +182,20 @@ class RowSolver {
   T sign_;
 };
 
-// X <- -M^-1 X, of matrices with the zeros of M in shared rows.
+// X <- -M^-1 X, for matrices with the zeros of M in shared rows.
 template <class T>
 void solve(const DerivativesWork<T>& memory, T* X, std::size_t stride, std::size_t matrices) {
   RowSolver<T>(memory, X, stride, matrices, T(-1)).solve();
 }
-// X <- M^-1 on and right of the diagonal, from zeros.
+// X <- M^-1 on and right of the diagonal. Precondition: X is zero.
 template <class T>
 void invert(const DerivativesWork<T>& memory, T* X, std::size_t stride) {
   for (std::size_t i = 0; i < memory.branches.size(); ++i) X[i * stride + i] = T(1);
   RowSolver<T>(memory, X, stride, 0, T(1)).solve();
 }
 
-// From dtau/dq and dtau/dv, where `differentiate` has put them, and L but for free roots. False
-// where M is not positive definite.
+// From dtau/dq, dtau/dv and L (except for free roots) as `differentiate` leaves them. Returns false
+// if M is not positive definite.
 template <class T>
 bool factor_mass(const Tree<base_t<T>>& tree, const Work<T>& work, DerivativesWork<T>& memory) {
   for (std::size_t i = 0; i < memory.branches.size(); ++i) {

@@ -1,14 +1,15 @@
-// What a model is inside: its joints taken apart into nodes and slots, in the order of the passes.
+// The internal form of a model: its joints, decomposed into nodes and slots in the order of the
+// passes.
 //
-// A node moves about or along the z axis of its own frame, or is a ball, a free or a user's joint.
-// A cylindrical, universal or planar joint is a chain of simple nodes, all but the last without
-// mass; a fixed joint is none: its link's inertia is its parent's. So the passes know few kinds,
-// and most joints cost what a revolute one does.
+// A node rotates about or translates along the z axis of its own frame, or is a ball, free or user
+// joint. A cylindrical, universal or planar joint is a chain of simple nodes; all but the last are
+// massless. A fixed joint has no node: its link's inertia is added to its parent's. The passes
+// therefore have few cases, and most joints cost the same as a revolute joint.
 //
-// A slot is one degree of freedom, in the order of the velocities. A node of several has that many,
-// all in its frame, with nothing between them; its body is at the last. So the recursions take one
-// column of the motion subspace at a time and never see a matrix to invert. Only a free root is one
-// slot for its six (free_root.h).
+// A slot is one degree of freedom, in the order of the velocities. A node with several degrees of
+// freedom has as many slots, all in its frame, with no offset between them; its body belongs to the
+// last. The recursions process one column of the motion subspace at a time and need no matrix
+// inverse. Only a free root has a single slot for its six velocities (free_root.h).
 #pragma once
 
 #include <cstdint>
@@ -27,10 +28,10 @@ struct Node {
   NodeKind kind;
   int q, v;  // first coordinate and velocity
   int dofs;
-  int slot;          // its first
-  int root;          // the root of its tree: a number, counted from 0
-  SE3T<B> T_parent;  // at zero coordinates, from the parent node's frame
-  InertiaT<B> J;     // in the node's frame: of its link and all that is fixed to it
+  int slot;          // its first slot
+  int root;          // index of its tree's root
+  SE3T<B> T_parent;  // pose in the parent node's frame, at zero coordinates
+  InertiaT<B> J;     // of its link and all links fixed to it, in the node's frame
   B pitch;           // helical [m/rad]
   B armature, damping;
   const UserJoint* user;
@@ -48,73 +49,73 @@ struct LinkFrame {
   int q, v;
 };
 
-// column: of a node that is not simple; root: the one of a node that is free and hangs on the
-// world.
+// column: of a node that is not simple; root: of a free node whose parent is the world.
 enum class SlotKind : std::uint8_t { simple, column, root };
 
 struct Slot {
   int parent;  // a slot, or kWorld
   SlotKind kind;
-  int v;  // its velocity, a root's first
-  int q;  // of a simple node its coordinate, else -1
+  int v;  // its velocity; of a root, the first
+  int q;  // coordinate of a simple node, else -1
   int node;
-  int root;  // the slot of the free root that its tree hangs on, or kWorld
-  // Inwards (child_sum.h): the places where its children's loads are, and where its own goes.
+  int root;  // the slot of its tree's free root, or kWorld
+  // Child accumulation (child_sum.h): the entry with its children's loads, and the entry for its
+  // own.
   static constexpr int kNone = 0, kNext = 1, kOthers = 2;
   int from, to;
-  bool from_next_too;  // besides from: the next slot's
-  bool adds;           // others have given to that place before
-  bool to_previous;    // the slot before it is its parent
-  bool forks;          // somebody else than the next slot hangs on it
+  bool from_next_too;  // also adds the entry of the next slot
+  bool adds;           // entry `to` already contains loads of other slots
+  bool to_previous;    // its parent is the previous slot
+  bool forks;          // has a child other than the next slot
 };
 
-// Slots that follow each other.
+// Consecutive slots.
 struct SlotRun {
   int begin, end;
 };
 
-// A slot's constants: numbers of the fields (lanes.h).
+// A slot's constants: field indices (lanes.h).
 enum Constant : int {
-  kRotation0 = 0,  // rotation of the node against its parent's at zero coordinates
-  kShift0 = 9,     // and its place there; a root is at the origin of its tree
-  kRotation = 12,  // [rad] of turn about z for a unit of the coordinate
-  kSlide = 13,     // [m] of slide along z
+  kRotation0 = 0,  // rotation of the node relative to its parent, at zero coordinates
+  kShift0 = 9,     // and its position there; zero for a root
+  kRotation = 12,  // rotation about z for a unit of the coordinate [rad]
+  kSlide = 13,     // translation along z for a unit of the coordinate [m]
   kMass = 14,
   kCentre = 15,  // centre of mass
-  kSpin = 18,    // central inertia: kSpin 1 + a a^T + b b^T, two axes of a length
+  kSpin = 18,    // central inertia: kSpin 1 + a a^T + b b^T, with scaled axes a and b
   kAxisA = 19,
   kAxisB = 22,
   kArmature = 25,
   kDamping = 26,
-  kComposite = 27,  // mass of all that hangs on it, itself included
-  kMin = 28,        // what of Omega may be rounding (layout.cpp)
+  kComposite = 27,  // mass of its subtree
+  kMin = 28,        // rounding bound of Omega (layout.cpp)
   kConstants = 29
 };
 
-// How numbers are summed along the tree within a group, or poses multiplied: by doubling. In step s
-// each lane takes up the one of its ancestor 2^s above it, where that is in the group.
+// Sums or products of poses along the tree within a group, by doubling: in step s each lane
+// combines with the lane of its ancestor 2^s levels above, if that is in the group.
 template <class B>
 struct alignas(64) ScanStep {
   std::conditional_t<sizeof(B) == 8, std::int64_t, std::int32_t> from[8];
-  std::uint8_t lanes;  // that have such an ancestor: a bit each
+  std::uint8_t lanes;  // bit mask of the lanes with such an ancestor
 };
-// What lanes of a group hang on outside of it, after that.
+// A parent slot outside the group, combined after these steps, and the lanes of its descendants.
 struct External {
   int slot;  // or kWorld
   std::uint8_t lanes;
 };
 
-// The constants by groups of slots, and what the slots of a group have in common.
+// The constants by groups of slots, and properties of each group.
 template <class B>
 struct Layout {
   struct Group {
-    int count;      // of slots; the others are zero
+    int count;      // number of slots; the remaining lanes are zero
     bool revolute;  // all of them
     bool simple;    // all of them
-    // Where slot k has number first + k in the arrays of coordinates and velocities, each slot that
-    // has one; else -1.
+    // first, if each slot k that has a coordinate (velocity) has it at index first + k; otherwise
+    // -1.
     int first_q, first_v;
-    // Of groups of eight.
+    // Only for groups of eight.
     int first_step, end_step, first_external, end_external;
   };
   std::vector<Group> groups;
@@ -126,18 +127,18 @@ struct Layout {
 template <class B>
 struct Tree {
   std::vector<Node<B>> nodes;
-  std::vector<LinkFrame<B>> frames;  // of the links
+  std::vector<LinkFrame<B>> frames;  // one for each link
   std::vector<LinkSpec> links;
   int coordinates = 0, velocities = 0;
 
-  // Made of the above (layout.cpp).
+  // Computed from the above (layout.cpp).
   std::vector<Slot> slots;
-  std::vector<Vec3T<B>> roots;  // where they are at zero coordinates
+  std::vector<Vec3T<B>> roots;  // their positions at zero coordinates
   int child_slots = Slot::kOthers;
-  // The slots on the way from the world to each slot, itself included; without free roots.
+  // The slots on the path from the world to each slot, including itself; without free roots.
   std::vector<SlotRun> runs;
-  std::vector<int> first_run;  // of each slot; one more for the end
-  bool all_related = false;    // of any two slots one is above the other
+  std::vector<int> first_run;  // of each slot, plus one for the end
+  bool all_related = false;    // of any two slots one is an ancestor of the other
   Layout<B> one;               // for one state: groups of eight slots
   Layout<B> states;            // for packs of states: groups of one
   void lay_out();
@@ -148,7 +149,7 @@ const Layout<base_t<T>>& layout_of(const Tree<base_t<T>>& tree) {
   return kSlots<T> == 1 ? tree.states : tree.one;
 }
 
-// The constants of a slot, and those of a group of them.
+// The constants of a slot, and those of a group.
 template <class T>
 Constants<T, T> constants_of(const Tree<base_t<T>>& tree, int slot) {
   const auto* all = layout_of<T>(tree).constants.data();

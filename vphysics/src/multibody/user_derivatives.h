@@ -1,4 +1,4 @@
-// What a joint of one's own says of its slopes, in any scalar; of a pack of states lane by lane.
+// The derivatives of a user joint, in any scalar; lane by lane for a pack of states.
 #pragma once
 
 #include <array>
@@ -7,7 +7,7 @@
 
 namespace vp::detail {
 
-// Of n degrees, in the link's frame.
+// For n degrees of freedom, in the link's frame.
 template <class T>
 struct UserDerivatives {
   std::array<se3T<T>, 36> S{};    // dS[k]/dq[l] at [n * k + l]
@@ -22,7 +22,7 @@ se3T<T> cast_twist(const se3& V) {
   return {each(V.w), each(V.v)};
 }
 
-// The joint's coordinates and velocities in one lane, in the joint's scalar.
+// The joint's coordinates and velocities in one lane, in double.
 struct UserState {
   std::array<double, 6> q{}, v{};
   std::size_t n;
@@ -40,7 +40,7 @@ struct UserState {
   std::span<const double> velocities() const { return std::span(v).first(n); }
 };
 
-// Of one lane. False where the joint does not say them.
+// Evaluates one lane. Returns false if the joint does not provide its derivatives.
 template <class T>
 bool user_derivatives(const Node<base_t<T>>& node, const UserState& at, int lane,
                       UserDerivatives<T>& out) {
@@ -65,8 +65,8 @@ se3T<T> user_rate(const Node<T>& node, const UserState& at) {
   return cast_twist<T>(rate);
 }
 
-// The rates of the columns: sum over l of dS[k]/dq[l] v[l]. Of one degree, evaluate's rate at unit
-// velocity is dS/dq.
+// The rates of the columns: sum over l of dS[k]/dq[l] v[l]. With one degree of freedom, evaluate's
+// rate at unit velocity is dS/dq.
 template <class T>
 bool user_column_rates(const Node<T>& node, const UserState& at, std::array<se3T<T>, 6>& rates) {
   if (at.n == 1) {

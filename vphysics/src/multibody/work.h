@@ -1,9 +1,10 @@
-// What a data is inside: the numbers of each slot, in the order of the passes.
+// The internal state of a data: the numbers of each slot, in the order of the passes.
 //
-// Everything is in one frame, the tree's: the axes of the world, the origin where the root is now
-// (at its coordinates, if it is free). Then no inertia, twist or wrench changes frame between a
-// link and its parent: the recursion adds. A free root's own place keeps the numbers small wherever
-// in the world it is; those on another root grow with the way that it has gone.
+// Everything is in one frame, the tree's frame: the axes of the world, with the origin at the
+// current position of the root (at its coordinates, if it is free). Inertias, twists and wrenches
+// therefore need no transformation between a link and its parent: the recursion adds. The origin at
+// a free root keeps the numbers small anywhere in the world. On another root the numbers grow with
+// its displacement.
 #pragma once
 
 #include <array>
@@ -16,23 +17,23 @@
 
 namespace vp::detail {
 
-// A slot's numbers (lanes.h).
+// A slot's fields (lanes.h).
 enum Field : int {
   kX = 0,   // pose
-  kS = 12,  // motion subspace; none of a root
+  kS = 12,  // motion subspace; unused for a root
   kV = 18,  // velocity
-  kH = 24,  // of the body: first moment,
+  kH = 24,  // body: first moment,
   kI = 27,  // rotational inertia,
   kF = 33,  // and bias force
-  kA = 39,  // acceleration less gravity's; in forward dynamics without what the joints add
+  kA = 39,  // acceleration minus gravity; in forward dynamics without the joint accelerations
   kFields = 45
 };
 
-// Numbers of a slot for the recursions by rows (rows.h): the body's rotational inertia, mass and a
-// zero; its first moment, the same with the other sign and two zeros; its bias force.
+// A slot's fields for the recursions by rows (rows.h): the body's rotational inertia, mass and a
+// zero; its first moment, the negated first moment and two zeros; its bias force.
 enum RowField : int { kRowInertia = 0, kRowMoment = 8, kRowForce = 16, kRowSize = 24 };
 
-// A vector of six, with room for a row.
+// A 6-vector, padded to a row.
 template <class T>
 struct alignas(kSlots<T> > 1 ? 8 * sizeof(T) : alignof(T)) Eight {
   T x[8]{};
@@ -46,16 +47,16 @@ dse3T<T> wrench_from(const T* at) {
   return {{at[0], at[1], at[2]}, {at[3], at[4], at[5]}};
 }
 
-// What the inward pass leaves for the outward one.
+// Results of the tip-to-base pass for the base-to-tip pass.
 template <class T>
 struct alignas(kSlots<T> > 1 ? 8 * sizeof(T) : alignof(T)) Factor {
   dse3T<T> W;  // J^ S / Omega
   T inverse;   // 1 / Omega, Omega = <S, J^ S> + armature
-  T x;         // u / Omega, u what is left of tau
+  T x;         // u / Omega, u the remaining joint force
 };
 
-// What flows inwards: an articulated inertia and its bias force, a force alone, or what is left of
-// a composite rigid body when its mass is known.
+// Loads of the child accumulation: an articulated inertia with its bias force; a force alone
+// (Eight); first moment and inertia of a composite body, whose mass is known (Nine, Moments).
 template <class T>
 struct Articulated {
   AInertiaT<T> J;
@@ -87,7 +88,7 @@ Moments<T> operator+(const Moments<T>& a, const Moments<T>& b) {
   return {a.h + b.h, a.I + b.I};
 }
 
-// Of a ball's, a free or a user's node.
+// Columns of a ball, free or user node.
 template <class T>
 struct Columns {
   std::array<se3T<T>, 6> S;
@@ -104,21 +105,21 @@ struct Work {
   T* row(int i) const { return rows.data() + i * kRowSize; }
 
   InstructionSet instruction_set;
-  mutable AlignedArray<T> rows;  // of one state: kRowSize for each slot
+  mutable AlignedArray<T> rows;  // for one state: kRowSize for each slot
   mutable AlignedArray<T> fields;
-  se3T<T> A_world;                 // of what the roots hang on
+  se3T<T> A_world;                 // acceleration of the roots' parent
   std::vector<Factor<T>> factors;  // of each velocity
   std::vector<Articulated<T>> articulated_flow;
   struct None {};
   std::vector<std::conditional_t<(kSlots<T> > 1), ArticulatedRows<T>, None>> row_flow;
   std::vector<Eight<T>> force_flow;
   std::vector<Nine<T>> moment_flow;
-  std::vector<se3T<T>> added;       // what the joints add to A; of slots that fork
+  std::vector<se3T<T>> added;       // joint part of A, for slots with branches
   std::vector<Columns<T>> columns;  // of each node that is not simple
-  std::vector<int> columns_of;      // a node's, or -1
+  std::vector<int> columns_of;      // of each node, or -1
   std::vector<int> body_slot;       // of each node
   std::vector<int> root;            // of each node
-  std::vector<Vec3T<T>> origins;    // of each root's tree in the world
+  std::vector<Vec3T<T>> origins;    // of each root's tree, in the world
   std::vector<T> zeros;             // velocities or accelerations of a tree at rest
 
  private:
@@ -127,7 +128,7 @@ struct Work {
   }
 };
 
-// What a pass has left, of one node. Poses, subspaces and velocities are in the tree's frame.
+// A node's results of a pass. Poses, subspaces and velocities are in the tree's frame.
 template <class T>
 SE3T<T> pose_of(const Work<T>& work, int node) {
   return work.slot(work.body_slot[static_cast<std::size_t>(node)]).pose(kX);
@@ -147,7 +148,7 @@ se3T<T> column_of(const Tree<base_t<T>>& tree, const Work<T>& work, int node, in
   (k < 3 ? S.w : S.v) = axis;
   return S;
 }
-// The columns in which the inertia is factored: a free root's are the axes of the tree.
+// The columns in which the inertia is factored. For a free root: the axes of the tree.
 template <class T>
 se3T<T> factored_column_of(const Tree<base_t<T>>& tree, const Work<T>& work, int node, int k) {
   if (!tree.nodes[static_cast<std::size_t>(node)].free_root()) {
@@ -157,8 +158,8 @@ se3T<T> factored_column_of(const Tree<base_t<T>>& tree, const Work<T>& work, int
   (k < 3 ? S.w : S.v)[k % 3] = T(1);
   return S;
 }
-// What factoring has left of such a column: the articulated inertia times it, without what the
-// columns after it have taken out, by Omega; and 1 / Omega.
+// The factors of such a column: W, the articulated inertia (after elimination of later columns)
+// times the column, divided by Omega; and 1 / Omega.
 template <class T>
 dse3T<T> projected_wrench_of(const Tree<base_t<T>>& tree, const Work<T>& work, int node, int k) {
   const int velocity = tree.nodes[static_cast<std::size_t>(node)].v + k;
@@ -169,7 +170,7 @@ T omega_inverse_of(const Tree<base_t<T>>& tree, const Work<T>& work, int node, i
   const int velocity = tree.nodes[static_cast<std::size_t>(node)].v + k;
   return work.factors[static_cast<std::size_t>(velocity)].inverse;
 }
-// Where the origin of the node's tree is in the world.
+// The position of the origin of the node's tree in the world.
 template <class T>
 Vec3T<T> origin_of(const Work<T>& work, int node) {
   const int root = work.root[static_cast<std::size_t>(node)];

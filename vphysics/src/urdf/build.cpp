@@ -15,8 +15,8 @@
 namespace vp::detail {
 namespace {
 
-// What urdfdom would print is kept: it is the reason of its refusal. The bridge to the console is
-// one for the whole process, so one thread uses it at a time.
+// Captures what urdfdom would print: the reason for its rejection. The console bridge is global to
+// the process, so a mutex allows one thread at a time.
 class Listener final : public console_bridge::OutputHandler {
  public:
   Listener() : alone_(mutex()), before_(console_bridge::getOutputHandler()) {
@@ -41,7 +41,7 @@ class Listener final : public console_bridge::OutputHandler {
   std::string heard_;
 };
 
-// urdfdom's tree, taken apart without recursion: its links own each other as deep as the tree is.
+// urdfdom's tree, destroyed without recursion: its links own each other to the depth of the tree.
 class UrdfTree {
  public:
   explicit UrdfTree(const std::string& text) {
@@ -76,7 +76,7 @@ SE3 to_pose(const urdf::Pose& pose) {
   return {from_quaternion(Quaternion{r.x, r.y, r.z, r.w}), to_vec3(pose.position)};
 }
 
-// The rotation that takes z to the axis.
+// A rotation that maps z to the axis.
 Mat3 frame_of_plane(const Vec3& axis) {
   const Vec3 z = (1.0 / norm(axis)) * axis;
   const Vec3 perpendicular = cross(z, std::fabs(z.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0});
@@ -124,7 +124,7 @@ UrdfJoint to_urdf_joint(const urdf::Joint& joint, int link, bool mimics) {
   return out;
 }
 
-// Limits, friction and effort, for each of the joint's velocities.
+// Limits, friction and effort for each of the joint's velocities.
 std::vector<JointForces> to_forces(const UrdfJoint& joint, int velocities) {
   JointForces forces;
   forces.lower = joint.lower;
@@ -143,7 +143,7 @@ class Builder {
     root.T_parent_joint = options.T_world_root;
     if (options.base == UrdfBase::floating) root.joint = FreeJoint{};
     add(std::move(root), *tree->getRoot());
-    // Depth first; of one link's joints the first in the file goes first.
+    // Depth first; the joints of a link in the order of the file.
     while (!waiting_.empty()) {
       const auto [joint, parent] = waiting_.back();
       waiting_.pop_back();
@@ -162,7 +162,7 @@ class Builder {
     int parent;
   };
 
-  // Adds a link below its joint, and has its own joints wait.
+  // Adds a link with its joint, and queues its child joints.
   void add(LinkSpec spec, const urdf::Link& link) {
     spec.name = link.name;
     spec.inertia = inertia_of(link);
@@ -244,7 +244,7 @@ class Builder {
                                     lines_.joints.at(joint.name).mimic_line != 0));
     spec.forces = to_forces(joints_.back(), velocities_of(spec.joint));
     if (joint.type == urdf::Joint::PLANAR && !(axis.x == 0.0 && axis.y == 0.0 && axis.z > 0.0)) {
-      // The plane's frame is turned against the link's, and turned back by a fixed joint.
+      // The plane's frame is rotated relative to the link's frame; a fixed joint rotates back.
       const Mat3 Q = frame_of_plane(axis);
       spec.T_parent_joint = spec.T_parent_joint * SE3(Q, {});
       const int plane = add(std::move(spec), lines_.joints.at(joint.name).line);
@@ -255,7 +255,7 @@ class Builder {
     add(std::move(spec), child);
   }
 
-  // q - multiplier q of the other = offset.
+  // q - multiplier * q of the other joint = offset.
   std::vector<ConstraintPtr> couplings(const Model& model) {
     std::map<std::string_view, int> links;
     for (const UrdfJoint& joint : joints_) links[joint.name] = joint.link;

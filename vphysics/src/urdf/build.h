@@ -1,4 +1,4 @@
-// A checked document becomes a model: urdfdom makes the tree, the model's builder its links.
+// Converts a checked document to a model: urdfdom builds the tree, the model builder its links.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace vp::detail {
 
-// text: what check_urdf has left of the document. notes: of what was left out or mended until here.
+// text: the document after check_urdf. notes: what was omitted or repaired so far.
 Expected<UrdfModel> build_urdf(const std::string& text, const UrdfLines& lines,
                                const UrdfOptions& options, std::vector<std::string> notes);
 

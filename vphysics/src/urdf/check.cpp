@@ -29,7 +29,8 @@ std::string tag(const XMLElement& element) {
   return out += '>';
 }
 
-// Takes one finite number off the front. Unlike strtod it asks no locale and takes no hexadecimals.
+// Parses one finite number and removes it from the front. Unlike strtod, it ignores the locale and
+// accepts no hexadecimal numbers.
 std::optional<double> take_number(std::string_view& text) {
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
   double value = 0.0;
@@ -45,7 +46,7 @@ std::string written(double value) {
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
 }
 
-// Walks the document. The first fault is kept; what comes after it is not looked at.
+// Walks the document. Stops at the first fault.
 class Checker {
  public:
   explicit Checker(std::vector<std::string>& notes) : notes_(notes) {}
@@ -86,7 +87,7 @@ class Checker {
     attributes(robot, {"name", "version"});
     if (const char* name = robot.Attribute("name"); !name || !*name) {
       note(robot, "the robot has no name");
-      robot.SetAttribute("name", "");  // urdfdom asks for the attribute
+      robot.SetAttribute("name", "");  // urdfdom requires the attribute
     } else {
       (void)name_of(robot);
     }
@@ -133,7 +134,7 @@ class Checker {
     }
   }
 
-  // They go from the document: urdfdom would refuse a robot for a fault in one of them.
+  // Removes them from the document: urdfdom would reject the robot for a fault in one of them.
   void collisions(XMLElement& link, const std::string& name) {
     for (XMLElement* e = link.FirstChildElement("collision"); e;) {
       XMLElement* const next = e->NextSiblingElement("collision");
@@ -194,7 +195,7 @@ class Checker {
     const char* value = element.Attribute(attribute);
     return value ? value : "";
   }
-  // One factor stands for three.
+  // A single factor scales all three axes.
   std::optional<std::array<double, 3>> scale_of(const XMLElement& mesh) {
     if (const char* scale = mesh.Attribute("scale")) {
       if (const auto one = all_numbers<1>(scale))
@@ -202,8 +203,8 @@ class Checker {
     }
     return numbers_or<3>(mesh, "scale", std::array{1.0, 1.0, 1.0});
   }
-  // Of a collision: the numbers of an attribute, or those that stand for it where it is not given.
-  // None, and a note, where it has none or has to be given.
+  // For a collision: the numbers of an attribute, or the default if it is missing. Returns nullopt,
+  // with a note, if they are invalid, or missing without a default.
   template <std::size_t N>
   std::optional<std::array<double, N>> numbers_or(const XMLElement& element, const char* attribute,
                                                   std::optional<std::array<double, N>> otherwise) {
@@ -281,7 +282,7 @@ class Checker {
     line = end->GetLineNum();
   }
 
-  // needed: a joint of this type has one.
+  // needed: joints of this type have an axis.
   void axis(XMLElement& joint, bool needed) {
     XMLElement* axis = once(joint, "axis", Need::optional);
     if (!axis) return;
@@ -300,7 +301,7 @@ class Checker {
     if (!(length > 1e-100 && length < 1e100)) fail(*axis, "the axis has no length");
   }
 
-  // bounded: a joint of this type has limits.
+  // bounded: joints of this type have limits.
   void limit(XMLElement& joint, bool bounded) {
     XMLElement* limit = once(joint, "limit", Need::optional);
     if (!limit) {
@@ -340,7 +341,7 @@ class Checker {
       note(*dynamics, std::string(what) + " is negative, and taken as zero");
       dynamics->SetAttribute(what, "0");
     }
-    // An empty one is a fault to urdfdom.
+    // urdfdom rejects an empty <dynamics>.
     if (!dynamics->FirstAttribute()) joint.DeleteChild(dynamics);
   }
 
@@ -354,7 +355,7 @@ class Checker {
     number(*mimic, "offset", Need::optional);
   }
 
-  // Leaves the known attributes.
+  // Keeps only the known attributes.
   void attributes(XMLElement& element, std::initializer_list<const char*> known) {
     for (const tinyxml2::XMLAttribute* a = element.FirstAttribute(); a && !fault_;) {
       const std::string name = a->Name();
@@ -368,7 +369,7 @@ class Checker {
     }
   }
 
-  // Leaves the known elements.
+  // Keeps only the known elements.
   void children(XMLElement& parent, std::initializer_list<const char*> known) {
     for (XMLNode* node = parent.FirstChild(); node && !fault_;) {
       XMLNode* const next = node->NextSibling();
@@ -419,7 +420,7 @@ class Checker {
   double number(XMLElement& element, const char* attribute, Need need) {
     return numbers<1>(element, attribute, need)[0];
   }
-  // The numbers of an attribute, zeros where it is not given. They are written anew.
+  // The numbers of an attribute, or zeros if it is missing. Rewrites them in the document.
   template <std::size_t N>
   std::array<double, N> numbers(XMLElement& element, const char* attribute, Need need) {
     std::array<double, N> values{};
@@ -477,7 +478,7 @@ Expected<void> check_tree(UrdfLines& lines, std::vector<std::string>& notes) {
   const auto fault = [](int line, const std::string& what) {
     return tl::make_unexpected(urdf_error(line, what));
   };
-  std::map<std::string, const UrdfLines::Joint*> above;  // the joint that carries a link
+  std::map<std::string, const UrdfLines::Joint*> above;  // the parent joint of each link
   for (auto& [name, joint] : lines.joints) {
     if (!lines.links.contains(joint.parent)) {
       return fault(joint.parent_line, "joint " + quoted(name) + " has the parent link " +
@@ -519,8 +520,9 @@ Expected<void> check_tree(UrdfLines& lines, std::vector<std::string>& notes) {
     }
     root = &name;
   }
-  // Upwards from each link to one that is known to hang on the root, or back to where one was.
-  std::map<std::string, int> reached;  // by the walk of this number
+  // Walks from each link towards the root, until a link that an earlier walk reached, or one of
+  // this walk: a cycle.
+  std::map<std::string, int> reached;  // number of the walk
   int walk = 0;
   for (const auto& [start, line] : lines.links) {
     ++walk;

@@ -1,8 +1,8 @@
-// A URDF document checked and cleaned, before urdfdom sees it.
+// Checks and cleans a URDF document before urdfdom parses it.
 //
-// urdfdom tells no lines, recurses as deep as its input, prints, and leaves circles of links aside.
-// So every fault that a file can have is found here, by line; what is kept is only what it needs,
-// with every number written anew.
+// urdfdom reports no lines, recurses as deep as its input, prints, and ignores cycles of links. The
+// checks here therefore find every possible fault of a file, with its line. The cleaned document
+// contains only what urdfdom needs, with all numbers rewritten.
 #pragma once
 
 #include <tinyxml2.h>
@@ -18,30 +18,30 @@ namespace vp::detail {
 
 struct UrdfLines {
   struct Joint {
-    int line, order;  // order: its place among the joints
+    int line, order;  // order: index among the joints
     std::string parent, child, mimics;
-    int parent_line, child_line, mimic_line;  // mimic_line: 0 if it mimics none
+    int parent_line, child_line, mimic_line;  // mimic_line: 0 if it mimics no joint
   };
-  std::map<std::string, int> links;      // line of each
-  std::map<std::string, int> inertials;  // by the link's name
+  std::map<std::string, int> links;      // line of each link
+  std::map<std::string, int> inertials;  // by link name
   std::map<std::string, Joint> joints;
-  std::map<std::string, std::vector<UrdfCollision>> collisions;  // by the link's name
+  std::map<std::string, std::vector<UrdfCollision>> collisions;  // by link name
 };
 
-// Written into a document for what has no bound: URDF has no word for it.
+// Written to the document for a missing bound, which URDF cannot express.
 inline constexpr double kUrdfUnbounded = 1e300;
 
 std::string urdf_note(int line, const std::string& what);
 Error urdf_error(int line, const std::string& what);
 
-// Leaves of the document what builds a model; tells where it stood, and in notes what was left out
-// or mended. What has no meaning is an error.
+// Reduces the document to what the model needs. Returns the lines of its elements, and lists in
+// notes what was omitted or repaired. Invalid content is an error.
 Expected<UrdfLines> check_urdf(tinyxml2::XMLElement& robot, std::vector<std::string>& notes);
 
-// The links are one tree: every name is known, one root, one parent each, no circle. Mimics that
-// cannot be are taken out of lines, with a note.
+// Checks that the links form one tree: all names known, one root, one parent each, no cycle.
+// Removes invalid mimics from lines, with a note.
 Expected<void> check_tree(UrdfLines& lines, std::vector<std::string>& notes);
-// Of a joint that mimics another.
+// Removes the mimic of a joint, with a note.
 void ignore_mimic(const std::string& name, UrdfLines::Joint& joint, const std::string& why,
                   std::vector<std::string>& notes);
 

@@ -12,7 +12,7 @@ double size_of(const Sym3& a) {
   return std::fabs(a.xx) + std::fabs(a.yy) + std::fabs(a.zz);
 }
 
-// The velocities that a joint of URDF allows, in its link's frame, which is the joint's.
+// The motion subspace of a URDF joint, in its link's frame, which is the joint's frame.
 std::vector<se3> columns_of(const Joint& joint) {
   if (const auto* revolute = std::get_if<RevoluteJoint>(&joint)) {
     return {{(1.0 / norm(revolute->axis)) * revolute->axis, {}}};
@@ -28,8 +28,8 @@ std::vector<se3> columns_of(const Joint& joint) {
   return {};
 }
 
-// What is felt of J beyond a joint, which lets it go along the columns. False if along one of them
-// there is nothing, or as good as nothing beside what there is across it.
+// Eliminates the joint's columns from J: the articulated inertia seen by the parent. Returns false
+// if the inertia along a column is zero, or negligible beside the size of J.
 bool let_go(AInertia& J, const std::vector<se3>& columns, double armature) {
   const double angular = size_of(J.angular()), linear = size_of(J.linear());
   for (const se3& S : columns) {
@@ -41,7 +41,7 @@ bool let_go(AInertia& J, const std::vector<se3>& columns, double armature) {
   return true;
 }
 
-// Of the whole tree: its mass, and from its root to its farthest link along the others.
+// Of the whole tree: its mass, and the maximum distance of a link from the root, along the links.
 struct Scale {
   double mass = 0.0, length = 0.0;
 };
@@ -84,7 +84,7 @@ Sym3 without_negative(const Sym3& moments) {
 std::vector<int> give_armatures(std::vector<LinkSpec>& links) {
   std::vector<int> given;
   const Scale scale = scale_of(links);
-  std::vector<AInertia> carried(links.size());  // of what hangs on each link
+  std::vector<AInertia> carried(links.size());  // of each link's descendants
   for (std::size_t i = links.size(); i-- > 0;) {
     LinkSpec& link = links[i];
     const AInertia J = carried[i] + link.inertia;

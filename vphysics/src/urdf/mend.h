@@ -1,6 +1,6 @@
-// Inertias as robots' files have them: of dummy links, rounded, turned wrong. What dynamics can
-// work with is taken as it stands, though no body may have it; the rest is mended, as little as
-// possible.
+// Repairs inertias of robot files: dummy links, rounded values, wrong axes. Inertias that the
+// dynamics can use are accepted as given, even if no physical body has them. The others are changed
+// as little as possible.
 #pragma once
 
 #include <vector>
@@ -9,19 +9,20 @@
 
 namespace vp::detail {
 
-// Moments about the centre of mass.
+// Validity of the moments about the centre of mass.
 enum class StatedMoments {
   of_a_body,
-  of_no_body,  // positive semidefinite, but one is more than the two others together, or no mass
-  negative,    // one of the principal moments
+  of_no_body,  // positive semidefinite, but one exceeds the sum of the others, or no mass
+  negative,    // a negative principal moment
 };
 StatedMoments judged(double mass, const Sym3& moments);
-// Positive semidefinite: negative principal moments become zero.
+// The nearest positive semidefinite moments: negative principal moments become zero.
 Sym3 without_negative(const Sym3& moments);
 
-// Links by whose joint nothing moves, neither themselves nor what hangs on them: forward dynamics
-// would divide by zero. Each is given an armature: a millionth of the whole, which next to anything
-// that has a mass is nothing. In the order of the links; a link's parent comes before it.
+// Gives an armature to links whose joint moves no mass, neither their own nor that of descendants:
+// forward dynamics would divide by zero. The armature is a millionth of the robot's mass (times its
+// squared length), which is negligible beside any link with mass. Returns these links in order.
+// Precondition: parents come before their children.
 std::vector<int> give_armatures(std::vector<LinkSpec>& links);
 
 }  // namespace vp::detail

@@ -1,5 +1,5 @@
-// URDF in three steps: tinyxml2 reads the text, which it bounds in depth and knows the lines of;
-// check.cpp finds what is wrong; build.cpp has urdfdom build what is left.
+// Reads URDF in three steps: tinyxml2 parses the text, with bounded depth and line numbers;
+// check.cpp finds and repairs faults; build.cpp builds the model with urdfdom.
 #include "vphysics/multibody/urdf.h"
 
 #include <exception>

@@ -10,15 +10,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Without what comes before the rest of the name, if it begins so.
+// Removes the prefix, if the name starts with it.
 bool drop_prefix(std::string_view& name, std::string_view prefix) {
   if (name.substr(0, prefix.size()) != prefix) return false;
   name.remove_prefix(prefix.size());
   return true;
 }
 
-// The folder of the file and those around it, from within. A relative path is followed up to the
-// root.
+// The file's folder and its parents, innermost first. A relative path is resolved up to the root.
 std::vector<fs::path> folders_around(const std::string& file) {
   std::vector<fs::path> out;
   if (file.empty()) return out;
@@ -57,7 +56,7 @@ std::optional<std::string> find_mesh(const std::string& name, const std::string&
     };
     for (const std::string& folder : folders) in(folder);
     for (const fs::path& folder : around) in(folder);
-    // A package in a folder of another name.
+    // A package whose folder has another name.
     for (const std::string& folder : folders) tried.push_back(fs::path(folder) / inside);
     for (const fs::path& folder : around) tried.push_back(folder / inside);
   } else {

@@ -1,4 +1,4 @@
-// Where a mesh that a URDF file names is.
+// Finds the file of a mesh that a URDF file names.
 #pragma once
 
 #include <optional>
@@ -7,8 +7,8 @@
 
 namespace vp::detail {
 
-// The file, or none. urdf_path: the file that names it, may be empty. UrdfWorldOptions::folders
-// says where is looked.
+// Returns the path, or nullopt. urdf_path: the URDF file; may be empty. UrdfWorldOptions::folders
+// documents the search order.
 std::optional<std::string> find_mesh(const std::string& name, const std::string& urdf_path,
                                      std::span<const std::string> folders);
 

@@ -8,7 +8,7 @@
 namespace vp::detail {
 namespace {
 
-// Of what is flat: half of its thickness, as share of its extent.
+// Half of the thickness given to a flat mesh, as a fraction of its extent.
 constexpr double kThickening = 1e-3;
 
 double extent_of(std::span<const Vec3> points) {
@@ -23,8 +23,8 @@ double extent_of(std::span<const Vec3> points) {
   return std::max({size.x, size.y, size.z});
 }
 
-// Each point becomes the corners of a small cube around it: a plate, a wire or a single point then
-// has a volume.
+// Replaces each point by the corners of a small cube, so that a plate, a wire or a single point has
+// a volume.
 std::vector<Vec3> thickened(std::span<const Vec3> points) {
   const double t = std::max(kThickening * extent_of(points), 1e-6);
   std::vector<Vec3> out;
@@ -42,12 +42,12 @@ Expected<ConvexHull> hull_of(std::span<const Vec3> points, const HullOptions& op
   auto hull = ConvexHull::of(points, options);
   if (hull) return hull;
   auto thick = ConvexHull::of(thickened(points), options);
-  if (!thick) return hull;  // the fault of the points as they are
+  if (!thick) return hull;  // the error of the original points
   is_flat = true;
   return thick;
 }
 
-// Points of the triangles [first, last).
+// The points of the triangles [first, last).
 std::vector<Vec3> points_of(const MeshFile& mesh, std::span<const Vec3> vertices, std::size_t first,
                             std::size_t last) {
   std::vector<std::uint32_t> named;
@@ -96,7 +96,7 @@ Expected<MadeShape> shape_of_mesh(const MeshFile& mesh, const Vec3& scale, bool 
   if (mesh.left_out != 0) note = std::to_string(mesh.left_out) + " of its faces are left out; ";
   if (triangles) {
     std::vector<TriangleMesh::Triangle> faces = mesh.triangles;
-    if (scale.x * scale.y * scale.z < 0.0) {  // mirrored: the other way round
+    if (scale.x * scale.y * scale.z < 0.0) {  // mirrored: reverse the winding
       for (auto& face : faces) std::swap(face[1], face[2]);
     }
     if (auto made = TriangleMesh::of(vertices, faces, options.triangles)) {

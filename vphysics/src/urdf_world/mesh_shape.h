@@ -1,4 +1,4 @@
-// A mesh becomes a shape that the world can collide.
+// Converts a mesh to a collision shape.
 #pragma once
 
 #include <string>
@@ -9,10 +9,10 @@ namespace vp::detail {
 
 struct MadeShape {
   Shape shape;
-  std::string note;  // what was mended, or empty
+  std::string note;  // what was repaired, or empty
 };
 
-// scale: factors of the mesh's axes, of any sign but zero. triangles: as a TriangleMesh.
+// scale: factors of the mesh's axes, of either sign, not zero. triangles: make a TriangleMesh.
 Expected<MadeShape> shape_of_mesh(const MeshFile& mesh, const Vec3& scale, bool triangles,
                                   const UrdfWorldOptions& options);
 

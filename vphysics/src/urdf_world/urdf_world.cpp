@@ -1,5 +1,5 @@
-// A robot into a world, in four steps: shapes are made of its geometry, masses are completed,
-// the articulation or the body is created, colliders are added to it.
+// Adds a robot to a world in four steps: makes the shapes of its geometry, completes the masses,
+// creates the articulation or the body, adds the colliders.
 #include "vphysics/urdf_world.h"
 
 #include <array>
@@ -17,15 +17,15 @@
 namespace vp {
 namespace {
 
-constexpr double kThinnest = 1e-4;  // [m], of a box or a cylinder with an extent of zero
+constexpr double kThinnest = 1e-4;  // [m], for a box or cylinder with an extent of zero
 
-// Whether nothing but the root moves: then the robot is one body.
+// Whether only the root moves: then the robot is a single body.
 bool is_one_body(const Model& model) {
   const bool free = std::holds_alternative<FreeJoint>(model.link(0).joint);
   return free && model.velocities() == velocities_of(model.link(0).joint);
 }
 
-// About the centre of mass, beyond rounding.
+// Whether J has moments about the centre of mass, beyond rounding.
 bool has_moments(const Inertia& J) {
   if (!(J.mass() > 0.0)) return false;
   const auto trace = [](const Sym3& I) { return I.xx + I.yy + I.zz; };
@@ -39,7 +39,7 @@ class Importer {
     for (const std::string& each : robot_.urdf.notes) note(each);
   }
 
-  // motion: of a robot that is one body.
+  // motion: for a robot that is a single body.
   Expected<UrdfRobot> add(Motion motion) {
     for (const UrdfCollision& collision : collisions()) {
       made_.push_back(shape_of(collision));
@@ -72,7 +72,7 @@ class Importer {
   }
   void note(const std::string& what) { robot_.notes.push_back(placed(what)); }
   Error fault(const Error& error) const { return {error.code, placed(error.message)}; }
-  // Of the collider that was noted last.
+  // The error of the last note.
   tl::unexpected<Error> fault() const {
     return tl::make_unexpected(Error{Errc::bad_data, robot_.notes.back()});
   }
@@ -168,7 +168,7 @@ class Importer {
     }
   }
 
-  // Whether the link can move at all.
+  // Whether the link can move.
   bool moves(int link) const {
     for (; link != kWorld; link = model().link(link).parent) {
       if (velocities_of(model().link(link).joint) != 0) return true;
@@ -178,7 +178,7 @@ class Importer {
 
   // --- masses -----------------------------------------------------------------------------------
 
-  // Gives links without mass that of their geometry, and point masses its moments.
+  // Gives links without mass the mass of their geometry, and point masses its moments.
   Expected<void> complete_masses() {
     std::map<int, Inertia> added;
     for (std::size_t i = 0; i < made_.size(); ++i) {
@@ -237,7 +237,7 @@ class Importer {
     }
     has_mass_ = desc.inertia.mass() > 0.0;
     auto made = world_.create_body(desc);
-    if (!made) {  // by far the most often for its inertia; what else is wrong fails again
+    if (!made) {  // mostly because of its inertia; any other error fails again
       has_mass_ = false;
       desc.inertia = {};
       made = world_.create_body(desc);
@@ -247,7 +247,7 @@ class Importer {
     return {};
   }
 
-  // False if one is refused that must not be.
+  // Returns false if a collider fails and options.require_all is set.
   bool add_colliders(bool one_body) {
     for (std::size_t i = 0; i < made_.size(); ++i) {
       ColliderId& id = robot_.colliders.emplace_back();
@@ -298,7 +298,7 @@ class Importer {
   const UrdfWorldOptions& options_;
   std::string path_;
   UrdfRobot robot_;
-  std::vector<std::optional<Shape>> made_;  // of the collisions
+  std::vector<std::optional<Shape>> made_;  // of each collision
   std::map<std::pair<std::string, std::array<double, 4>>,
            std::optional<Expected<detail::MadeShape>>>
       meshes_;                    // by name, scale and kind
@@ -326,7 +326,7 @@ BodyId UrdfRobot::link_body(const World& world, std::string_view link) const {
 
 Expected<UrdfRobot> add_urdf(World& world, const std::string& path,
                              const UrdfWorldOptions& options) {
-  // With a free root whatever has links can be read.
+  // With a free root, a file without moving joints can be loaded too.
   auto robot = load_urdf(path, {UrdfBase::floating, options.T_world_root});
   if (!robot) return tl::make_unexpected(std::move(robot.error()));
   const bool fixed = options.base == UrdfBase::fixed;

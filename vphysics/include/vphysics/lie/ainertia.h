@@ -1,9 +1,9 @@
-// The articulated inertia of a body and all that hangs on it: paper, sections 4.3, 4.4, appendix B.
+// The articulated inertia of a body and its descendants: paper, sections 4.3, 4.4, appendix B.
 //
-// A symmetric 6x6 in blocks, 21 scalars: J V = (I w + H v, H^T w + M v). A rigid body has H = [h]
-// and M = m 1, and converts to it.
+// A symmetric 6x6 matrix in blocks, 21 scalars: J V = (I w + H v, H^T w + M v). A rigid body has H
+// = [h] and M = m 1; InertiaT converts to it.
 //
-// Equation (6), the step of the recursion, is written as the paper's Table 2 has it:
+// Equation (6), the step of the recursion, reads as in the paper's Table 2:
 //   eta = J[i] * S[i];
 //   J[i-1] = I[i-1] + (J[i] - (eta*eta) / (S[i]*eta)).Xform(Inv(f[i]));
 #pragma once
@@ -26,11 +26,11 @@ class AInertiaT {
   constexpr const Mat3T<T>& coupling() const { return H_; }
   constexpr const Sym3T<T>& linear() const { return M_; }
 
-  // The same inertia seen from another frame: with T_b_a, from frame b to frame a. As a bilinear
-  // form, J' = dAd_T J Ad_T.
+  // The same inertia in another frame: with T_b_a, from frame b to frame a. As a bilinear form, J'
+  // = dAd_T J Ad_T.
   constexpr AInertiaT Xform(const SE3T<T>& A) const {
-    // First the origin, by p: G = H - [p] M and I' = I + (H [p])^T + G [p], which is symmetric as a
-    // whole; then the axes.
+    // Moves the origin by p first: G = H - [p] M and I' = I + (H [p])^T + G [p], whose sum is
+    // symmetric. Then rotates the axes.
     const Vec3T<T>& p = A.position();
     const Mat3T<T> G = {H_.cx - cross(p, Vec3T<T>{M_.xx, M_.xy, M_.zx}),
                         H_.cy - cross(p, Vec3T<T>{M_.xy, M_.yy, M_.yz}),
@@ -62,7 +62,7 @@ template <class T>
 constexpr AInertiaT<T> operator-(const AInertiaT<T>& a, const AInertiaT<T>& b) {
   return {a.angular() - b.angular(), a.coupling() - b.coupling(), a.linear() - b.linear()};
 }
-// A rigid body has 10 scalars of the 21.
+// Uses only the 10 scalars of the rigid body.
 template <class T>
 constexpr AInertiaT<T> operator+(const InertiaT<T>& a, const AInertiaT<T>& b) {
   const Vec3T<T>& h = a.first_moment();
@@ -92,7 +92,7 @@ constexpr dse3T<T> operator*(const AInertiaT<T>& J, const se3T<T>& V) {
           transposed_times(J.coupling(), V.w) + J.linear() * V.v};
 }
 
-// The paper's Kronecker product of two forces, symmetric as an inertia is: (a b^T + b a^T) / 2.
+// The paper's symmetric product of two wrenches: (a b^T + b a^T) / 2.
 template <class T>
 constexpr AInertiaT<T> operator*(const dse3T<T>& a, const dse3T<T>& b) {
   const Vec3T<T> m = T(0.5) * a.m, f = T(0.5) * a.f;

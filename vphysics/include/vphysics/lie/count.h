@@ -1,7 +1,7 @@
-// A scalar that counts what is done with it: the paper's Table 3.
+// A scalar that counts operations: the paper's Table 3.
 //
-// Multiplications and additions as the paper counts them: a subtraction is an addition, a division
-// is counted apart, changes of sign and comparisons are free.
+// Counts as in the paper: a subtraction is an addition, divisions are counted separately, sign
+// changes and comparisons are not counted.
 #pragma once
 
 #include <type_traits>
@@ -22,7 +22,7 @@ class Count {
   requires std::is_arithmetic_v<S> Count(S value) : value_(static_cast<double>(value)) {}
   double value() const { return value_; }
 
-  // This thread's operations so far.
+  // Operations of this thread so far.
   static OperationCount& done() {
     static thread_local OperationCount count;
     return count;
@@ -58,7 +58,7 @@ class Count {
   double value_ = 0.0;
 };
 
-// What a function does with counting scalars.
+// The operations of f with counting scalars.
 template <class F>
 OperationCount count_operations(const F& f) {
   const OperationCount before = Count::done();

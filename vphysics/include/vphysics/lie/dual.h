@@ -1,9 +1,9 @@
-// Dual numbers: a value and its slopes along N directions, for derivatives to rounding.
+// Dual numbers: a value and its derivatives along N directions, exact to rounding.
 //
 //   f(a + e b) = f(a) + e f'(a) b,  e^2 = 0
 //
 // A function of the Lie groups, called with dual scalars, returns its derivative beside its value.
-// Comparisons look at values alone.
+// Comparisons use the values only.
 #pragma once
 
 #include <array>
@@ -23,7 +23,7 @@ struct DualT {
   template <class S>
   requires(std::is_arithmetic_v<S> && !std::is_same_v<S, T>) constexpr DualT(S s)
       : value(static_cast<T>(s)) {}
-  // With slope 1 in one direction: a variable.
+  // An independent variable: derivative 1 in one direction.
   static constexpr DualT variable(const T& v, int direction = 0) {
     DualT out(v);
     out.derivative[static_cast<std::size_t>(direction)] = T(1);
@@ -62,14 +62,14 @@ struct DualT {
   friend constexpr auto operator==(const DualT& a, const DualT& b) { return a.value == b.value; }
   friend constexpr auto operator!=(const DualT& a, const DualT& b) { return a.value != b.value; }
 
-  // A number whose slopes are made of this one's and b's, one by one.
+  // A dual number with value v, whose derivatives are f of this number's and b's, one by one.
   template <class F>
   constexpr DualT chain(const T& v, const F& f, const DualT& b) const {
     DualT out(v);
     for (std::size_t i = 0; i < N; ++i) out.derivative[i] = f(derivative[i], b.derivative[i]);
     return out;
   }
-  // f(this), whose value and derivative are given.
+  // f(this), given its value and its derivative.
   constexpr DualT through(const T& v, const T& derivative) const {
     return chain(
         v, [&](const T& x, const T&) { return derivative * x; }, *this);
@@ -81,14 +81,14 @@ struct BaseOf<DualT<T, N>> {
   using type = base_t<T>;
 };
 
-// By lanes, where the dual numbers are packs.
+// Per lane, for dual numbers of packs.
 template <class M, class T, int N>
 requires(!std::is_same_v<M, bool>) constexpr DualT<T, N> select(const M& m, const DualT<T, N>& a,
                                                                 const DualT<T, N>& b) {
   return a.chain(
       select(m, a.value, b.value), [&](const T& x, const T& y) { return select(m, x, y); }, b);
 }
-// Precondition: a > 0; the root has no slope at 0.
+// Precondition: a > 0; the square root has no derivative at 0.
 template <class T, int N>
 DualT<T, N> sqrt(const DualT<T, N>& a) {
   using std::sqrt;

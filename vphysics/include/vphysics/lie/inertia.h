@@ -1,7 +1,7 @@
 // The generalized inertia of a rigid body: paper, section 4.3 and appendix B.
 //
-// Ten scalars in one frame: mass m, first moment h = m c (c: centre of mass) and the rotational
-// inertia I about the frame's origin. J V = (I w + h x v, m v - h x w).
+// Ten scalars in one frame: mass m, first moment h = m c (c: centre of mass) and rotational inertia
+// I about the frame's origin. J V = (I w + h x v, m v - h x w).
 #pragma once
 
 #include "vphysics/lie/se3.h"
@@ -65,7 +65,7 @@ class InertiaT {
   // About the frame's origin: mass, first moment m c, rotational inertia.
   constexpr InertiaT(T mass, const Vec3T<T>& first_moment, const Sym3T<T>& rotational)
       : mass_(mass), h_(first_moment), I_(rotational) {}
-  // Centre of mass at the origin, principal axes along the frame's.
+  // Centre of mass at the origin, principal axes along the frame's axes.
   constexpr InertiaT(T mass, const Vec3T<T>& principal)
       : mass_(mass), I_{principal.x, principal.y, principal.z, 0, 0, 0} {}
 
@@ -77,8 +77,8 @@ class InertiaT {
   // Rotational inertia about the centre of mass; precondition: mass > 0.
   constexpr Sym3T<T> central() const { return I_ - point_inertia(mass_, centre_of_mass()); }
 
-  // The same inertia seen from another frame: with T_b_a, from frame b to frame a. As a bilinear
-  // form, J' = dAd_T J Ad_T; eq. (6) has (...).Xform(Inv(f)).
+  // The same inertia in another frame: with T_b_a, from frame b to frame a. As a bilinear form, J'
+  // = dAd_T J Ad_T; eq. (6) has (...).Xform(Inv(f)).
   constexpr InertiaT Xform(const SE3T<T>& A) const {
     const InertiaT moved = about(A.position());
     return {mass_, A.unrotate(moved.h_), unrotated(A.rotation(), moved.I_)};
@@ -87,7 +87,7 @@ class InertiaT {
   constexpr InertiaT InvXform(const SE3T<T>& A) const {
     return InertiaT(mass_, A.rotate(h_), rotated(A.rotation(), I_)).about(-A.position());
   }
-  // The same axes, about the point p: with h' = h - m p and g = h + h',
+  // The same axes, with the origin at the point p. With h' = h - m p and g = h + h',
   //   I' = I + (p g^T + g p^T) / 2 - (g . p) 1.
   constexpr InertiaT about(const Vec3T<T>& p) const {
     const Vec3T<T> moved = h_ - mass_ * p;
@@ -119,7 +119,7 @@ constexpr dse3T<T> operator*(const InertiaT<T>& J, const se3T<T>& V) {
   return {J.rotational() * V.w + cross(J.first_moment(), V.v),
           J.mass() * V.v - cross(J.first_moment(), V.w)};
 }
-// Inertias of parts rigidly joined, in the same frame.
+// The inertia of rigidly connected parts, in the same frame.
 template <class T>
 constexpr InertiaT<T> operator+(const InertiaT<T>& a, const InertiaT<T>& b) {
   return {a.mass() + b.mass(), a.first_moment() + b.first_moment(),

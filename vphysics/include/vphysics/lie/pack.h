@@ -1,7 +1,7 @@
-// N states at once: a scalar of N SIMD lanes, written with the vector types of g++ and clang++.
+// N states at once: a scalar of N SIMD lanes, with the vector types of g++ and clang++.
 //
-// Every lane gives the bits that the plain scalar gives. The pack is as wide as is asked for: 4
-// lanes of double are one AVX register, two of SSE2; whatever the target has is used.
+// Each lane gives the same bits as the plain scalar. The width is independent of the target: 4
+// lanes of double are one AVX register or two SSE2 registers.
 #pragma once
 
 #include <cstring>
@@ -9,7 +9,8 @@
 
 #include "vphysics/lie/scalar.h"
 
-// Packs go between functions inside one build, never between libraries built for different targets.
+// Packs are passed between functions of one build, never between libraries built for different
+// targets.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wpsabi"
 
@@ -20,7 +21,7 @@ template <int BYTES>
 using LaneMask = std::conditional_t<BYTES == 8, long long, int>;
 }
 
-// The outcome of a comparison: all bits of a lane, or none.
+// The result of a comparison: all bits of a lane set, or none.
 template <class T, int N>
 struct PackMaskT {
   // g++ drops the attribute of a dependent `using`.
@@ -49,7 +50,7 @@ bool none(const PackMaskT<T, N>& m) {
   return all(!m);
 }
 
-// Aligned to its size whatever the target, so that code built for a wider one may read it.
+// Aligned to its size on every target, so that code for a target with wider registers may read it.
 template <class T, int N>
 struct alignas(sizeof(T) * N) PackT {
   static_assert(std::is_floating_point_v<T> && (N & (N - 1)) == 0);
@@ -60,10 +61,10 @@ struct alignas(sizeof(T) * N) PackT {
 
   PackT() : lanes{} {}
   PackT(const Lanes& l) : lanes(l) {}
-  // The same number in every lane.
+  // Broadcasts a number to all lanes.
   template <class S>
   requires std::is_arithmetic_v<S> PackT(S s) {
-    lanes = static_cast<T>(s) - Lanes{};  // in every lane, zeros with their sign
+    lanes = static_cast<T>(s) - Lanes{};  // broadcast; zeros keep their sign
   }
 
   T operator[](int lane) const { return lanes[lane]; }

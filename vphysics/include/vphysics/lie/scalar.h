@@ -1,11 +1,11 @@
-// What the Lie groups ask of their scalar: + - * /, comparisons, sqrt, sin_cos, arc_tangent and a
-// choice between two formulas. double and float are here; in headers of their own a counting scalar
-// (count.h), a dual number (dual.h) and a pack of SIMD lanes (pack.h).
+// The operations that the Lie groups need of a scalar: + - * /, comparisons, sqrt, sin_cos,
+// arc_tangent, and the selection of one of two formulas. This file has double and float. A counting
+// scalar is in count.h, a dual number in dual.h, a pack of SIMD lanes in pack.h.
 //
-// libm's sin, cos and atan2 differ in the last bit between libraries (glibc, musl, emscripten), and
-// a simulation that must be the same to the bit cannot use them. These use only IEEE 754 operations
-// that are exact or correctly rounded (+ - * / sqrt floor fmod), so that they give the same bits
-// wherever contraction is off, lane by lane in a pack too.
+// libm's sin, cos and atan2 differ in the last bit between libraries (glibc, musl, emscripten), so
+// a simulation that must be reproducible to the bit cannot use them. The functions here use only
+// IEEE 754 operations that are exact or correctly rounded (+ - * / sqrt floor fmod). They give the
+// same bits wherever contraction is off, also in each lane of a pack.
 #pragma once
 
 #include <cmath>
@@ -20,7 +20,7 @@ struct SinCosT {
   T sin, cos;
 };
 
-// The number in which a scalar holds its values: that of a lane, of a dual number's value.
+// The floating-point type of a scalar's values: of a pack's lanes, of a dual number's value.
 template <class T>
 struct BaseOf {
   using type = T;
@@ -28,20 +28,20 @@ struct BaseOf {
 template <class T>
 using base_t = typename BaseOf<T>::type;
 
-// Conditions of one state; a pack has its own.
+// Conditions of a single state; packs overload them.
 constexpr bool all(bool condition) {
   return condition;
 }
 constexpr bool both(bool a, bool b) {
   return a && b;
 }
-// One of two formulas, by a condition: of one state only the chosen one is evaluated; of a pack
-// both where its lanes disagree, so neither may do harm where it does not hold.
+// Selects one of two formulas by a condition. A single state evaluates only the selected formula. A
+// pack evaluates both where its lanes differ, so each must be safe to evaluate outside its range.
 template <class F, class G>
 constexpr auto choose(bool condition, const F& f, const G& g) {
   return condition ? f() : g();
 }
-// One of two values.
+// Selects one of two values.
 template <class T>
 constexpr T select(bool condition, const T& a, const T& b) {
   return condition ? a : b;
@@ -49,8 +49,8 @@ constexpr T select(bool condition, const T& a, const T& b) {
 
 namespace detail {
 
-// pi/2 in three parts, the first two so short that n * part is exact; adding and subtracting 1.5 *
-// 2^(mantissa bits) rounds to an integer.
+// pi/2 in three parts; the first two have so few bits that n * part is exact. Adding and
+// subtracting 1.5 * 2^(mantissa bits) rounds to an integer.
 template <class T>
 struct Angle;
 template <>
@@ -70,9 +70,9 @@ struct Angle<float> {
   static constexpr float kExactBelow = 4096.0f;
 };
 
-// Taylor polynomials on |r| <= pi/4, by Estrin's scheme: four short chains of operations instead of
-// a long one. In double the first term left out is below 8e-20 (sin) and 2e-18 (cos), in float 2e-9
-// and 2e-10.
+// Taylor polynomials on |r| <= pi/4 by Estrin's scheme: four short chains of operations instead of
+// one long chain. In double the first omitted term is below 8e-20 (sin) and 2e-18 (cos), in float
+// 2e-9 and 2e-10.
 template <class T>
 constexpr SinCosT<T> sin_cos_kernel(const T& r, double) {
   const T z = r * r, z2 = z * z, z4 = z2 * z2;
@@ -100,8 +100,8 @@ constexpr T nearest_integer(const T& x) {
   return (x + T(Angle<base_t<T>>::kRounder)) - T(Angle<base_t<T>>::kRounder);
 }
 
-// |x| < kExactBelow. Without a branch, hence for packs as it stands: the quadrant n mod 4 is read
-// from whether n and floor(n / 2) are odd.
+// |x| < kExactBelow. Branch-free, so that packs can use it: the parities of n and of floor(n / 2)
+// give the quadrant n mod 4.
 template <class T>
 constexpr SinCosT<T> sin_cos_near(const T& x) {
   using B = base_t<T>;
@@ -131,8 +131,7 @@ inline constexpr double kAtanTable[9] = {0.0,
                                          0.78539816339744828};
 
 // 0 <= x <= 1. atan x = atan c + atan((x - c) / (1 + x c)), c the nearest eighth, so that the
-// argument of the series is at most 1/16 and the first term left out below 6e-20. Of what is no
-// number it is none.
+// argument of the series is at most 1/16 and the first omitted term is below 6e-20. NaN gives NaN.
 inline double atan_unit(double x) {
   const int k = x <= 1.0 ? static_cast<int>(std::floor(x * 8.0 + 0.5)) : 0;
   const double c = k * 0.125;
@@ -149,8 +148,8 @@ inline double atan_unit(double x) {
 
 }  // namespace detail
 
-// Sine and cosine of x [rad]; finite x. Within 2 units in the last place for |x| < 2^20 (float:
-// 4096). Beyond, the angle is first taken modulo the double nearest to 2 pi: still deterministic,
+// Sine and cosine of a finite x [rad]. Within 2 units in the last place for |x| < 2^20 (float:
+// 4096). A larger angle is first reduced modulo the double nearest to 2 pi: still deterministic,
 // with an absolute error that grows as 4e-17 |x|.
 inline SinCosT<double> sin_cos(double x) {
   if (!(std::fabs(x) < detail::Angle<double>::kExactBelow)) x = std::fmod(x, 2.0 * kPi);

@@ -1,12 +1,12 @@
 // The group SE(3), its algebra se(3) and the dual dse(3): paper, sections 4.1 to 4.3, appendix B.
 //
-// Ad_T V    = (R w, R v + p x R w)            velocity of frame b, T = T_a_b, seen from frame a
+// Ad_T V    = (R w, R v + p x R w)            velocity of frame b, T = T_a_b, in frame a
 // dAd_T F   = (R^T (m - p x f), R^T f)        the transpose of Ad_T: <Ad_T V, F> = <V, dAd_T F>
 // ad_V1 V2  = (w1 x w2, w1 x v2 + v1 x w2)
 // dad_V F   = (m x w + f x v, f x w)          eq. (4); <ad_V X, F> = <X, dad_V F>
-// Newton's law reads F = J V' - dad_V (J V) with these (appendix A; eq. (3) has the other sign).
+// With these, Newton's law reads F = J V' - dad_V (J V) (appendix A; eq. (3) has the other sign).
 //
-// SE3 is a group: there is multiplication and substitution, no addition (section 4.3).
+// SE3 is a group: it has multiplication and assignment, but no addition (section 4.3).
 #pragma once
 
 #include "vphysics/lie/so3.h"
@@ -49,7 +49,7 @@ template <class T>
 constexpr SE3T<T> operator*(const SE3T<T>& A, const SE3T<T>& B) {
   return {A.rotation() * B.rotation(), A.position() + A.rotate(B.position())};
 }
-// The coordinates of a point, from frame b to frame a with T_a_b.
+// Transforms a point from frame b to frame a, with T_a_b.
 template <class T>
 constexpr Vec3T<T> operator*(const SE3T<T>& A, const Vec3T<T>& point) {
   return A.position() + A.rotate(point);
@@ -58,7 +58,7 @@ template <class T>
 constexpr SE3T<T> Inv(const SE3T<T>& A) {
   return {transpose(A.rotation()), -A.unrotate(A.position())};
 }
-// Inv(A) * point, without building the inverse.
+// Inv(A) * point, without computing the inverse.
 template <class T>
 constexpr Vec3T<T> inverse_times(const SE3T<T>& A, const Vec3T<T>& point) {
   return A.unrotate(point - A.position());
@@ -88,7 +88,7 @@ template <class T>
 constexpr dse3T<T> operator*(T s, const dse3T<T>& a) {
   return {s * a.m, s * a.f};
 }
-// Reciprocal product: power of a force on a velocity.
+// Reciprocal product: the power of a wrench on a twist.
 template <class T>
 constexpr T operator*(const se3T<T>& V, const dse3T<T>& F) {
   return dot(V.w, F.m) + dot(V.v, F.f);
@@ -116,7 +116,7 @@ constexpr dse3T<T> dad(const se3T<T>& V, const dse3T<T>& F) {
   return {cross(F.m, V.w) + cross(F.f, V.v), cross(F.f, V.w)};
 }
 
-// Ad and dAd of the inverse, without building it.
+// Ad and dAd of the inverse, without computing it.
 template <class T>
 constexpr se3T<T> InvAd(const SE3T<T>& A, const se3T<T>& V) {
   return {A.unrotate(V.w), A.unrotate(V.v - cross(A.position(), V.w))};
@@ -128,7 +128,6 @@ constexpr dse3T<T> InvdAd(const SE3T<T>& A, const dse3T<T>& F) {
 }
 
 // --- Exp, Log and the Jacobians
-// -------------------------------------------------------------------
 
 // p = v + B w x v + C w x (w x v)
 template <class T>
@@ -148,13 +147,13 @@ se3T<T> Log(const SE3T<T>& A) {
   return {w, A.position() - T(0.5) * wp + D * cross(w, wp)};
 }
 
-// A Jacobian of Exp on SE(3), 6x6 of the form [J 0; Q J]: it takes a change of V to a velocity.
+// A Jacobian of Exp on SE(3), 6x6 of the form [J 0; Q J]: maps a change of V to a twist.
 template <class T>
 struct SE3JacobianT {
   Mat3T<T> J, Q;
 
   constexpr se3T<T> operator*(const se3T<T>& V) const { return {J * V.w, Q * V.w + J * V.v}; }
-  // Its transpose takes a force to one along the coordinates.
+  // The transpose maps a wrench to the force along the coordinates.
   constexpr dse3T<T> transposed_times(const dse3T<T>& F) const {
     return {vp::transposed_times(J, F.m) + vp::transposed_times(Q, F.f),
             vp::transposed_times(J, F.f)};
@@ -163,7 +162,8 @@ struct SE3JacobianT {
 
 namespace detail {
 
-// The slope along v, at w, of 1 + a [w] + b [w]^2, when a and b have slopes a1 and b1 in t = |w|^2.
+// The derivative along v, at w, of 1 + a [w] + b [w]^2; a1 and b1 are the derivatives of a and b
+// with respect to t = |w|^2.
 template <class T>
 Mat3T<T> quadratic_derivative(const Vec3T<T>& w, const Vec3T<T>& v, const T& a, const T& a1,
                               const T& b, const T& b1) {
@@ -181,8 +181,8 @@ Mat3T<T> quadratic_derivative(const Vec3T<T>& w, const Vec3T<T>& v, const T& a, 
   return out;
 }
 
-// dB/dt = (A - 2 B) / (2 t) and dC/dt = (B - 3 C) / (2 t), dD/dt; their series where t is small.
-// Above, they lose up to 5 bits, but are multiplied by theta^2 or more.
+// dB/dt = (A - 2 B) / (2 t), dC/dt = (B - 3 C) / (2 t), and dD/dt; their series for small t. Above
+// the switching point they lose up to 5 bits, but are multiplied by theta^2 or more.
 inline constexpr double kDerivativeB[] = {
     -1.0 / 24,        2.0 / 720,           -3.0 / 40320,           4.0 / 3628800,
     -5.0 / 479001600, 6.0 / 87178291200.0, -7.0 / 20922789888000.0};
@@ -226,7 +226,7 @@ T derivative_D(const ExpCoefficients<T>& k, const T& D) {
 }  // namespace detail
 
 // Exp(V + d) = Exp(J d) Exp(V) to first order. se(3) is so(3) over the dual numbers w + e v, so Q
-// is the slope of J_l along v.
+// is the derivative of J_l along v.
 template <class T>
 SE3JacobianT<T> left_jacobian(const se3T<T>& V) {
   const auto k = detail::exp_coefficients(V.w);
@@ -253,7 +253,7 @@ SE3JacobianT<T> right_jacobian_inverse(const se3T<T>& V) {
   return left_jacobian_inverse(T(-1) * V);
 }
 
-// The pose a share s of the way from A to B, along the screw that joins them.
+// The pose at fraction s from A to B, along the screw between them.
 template <class T>
 SE3T<T> interpolate(const SE3T<T>& A, const SE3T<T>& B, const std::type_identity_t<T>& s) {
   return A * Exp(s * Log(Inv(A) * B));

@@ -1,4 +1,4 @@
-// The group SO(3) of rotations; its algebra so(3) is written as the vectors w of R^3.
+// The group SO(3) of rotations; its algebra so(3) is represented by the vectors w of R^3.
 //
 //   Exp w  = 1 + A [w] + B [w]^2          rotation about w by theta = |w|
 //   J_l(w) = 1 + B [w] + C [w]^2          left Jacobian:  Exp(w + d) = Exp(J_l d) Exp(w)
@@ -8,8 +8,8 @@
 //   A = sin(theta) / theta           B = (1 - cos(theta)) / theta^2
 //   C = (1 - A) / theta^2            D = (1 - A / (2 B)) / theta^2
 //
-// A to D are analytic functions of t = theta^2, and below a switching point they are summed as
-// such: nothing is divided by a small angle, and a dual number finds their slopes at 0 too. Source:
+// A to D are analytic functions of t = theta^2. Below a switching point their series are summed:
+// this avoids division by a small angle, and dual numbers get the derivatives at 0 too. Source:
 // Murray, Li, Sastry, A Mathematical Introduction to Robotic Manipulation, 1994, chapter 2; paper,
 // appendix B.
 #pragma once
@@ -19,8 +19,8 @@
 
 namespace vp {
 
-// A rotation. R_a_b takes the coordinates of a vector in frame b to those in frame a. A group:
-// there is multiplication and substitution, no addition.
+// A rotation. R_a_b maps the coordinates of a vector in frame b to those in frame a. A group: it
+// has multiplication and assignment, but no addition.
 template <class T>
 class SO3T {
  public:
@@ -46,14 +46,13 @@ template <class T>
 constexpr SO3T<T> Inv(const SO3T<T>& A) {
   return SO3T<T>(transpose(A.matrix()));
 }
-// Ad_R w = R w, the rate w seen from the other frame.
+// Ad_R w = R w, the angular velocity w in the other frame.
 template <class T>
 constexpr Vec3T<T> Ad(const SO3T<T>& A, const Vec3T<T>& w) {
   return A.matrix() * w;
 }
 
 // --- quaternions
-// ----------------------------------------------------------------------------------
 
 // Unit quaternion (x, y, z, w) of a rotation; w >= 0.
 template <class T>
@@ -61,8 +60,8 @@ struct QuaternionT {
   T x{}, y{}, z{}, w{1};
 };
 
-// Shepperd's method: the largest of the four components is found first, so that nothing is divided
-// by a small number and the result is exact near every half turn.
+// Shepperd's method: it selects the largest of the four components first. This avoids division by a
+// small number, and the result is accurate at rotations near pi.
 template <class T>
 QuaternionT<T> to_quaternion(const Mat3T<T>& R) {
   using std::sqrt;
@@ -87,7 +86,7 @@ QuaternionT<T> to_quaternion(const SO3T<T>& R) {
   return to_quaternion(R.matrix());
 }
 
-// Any quaternion but zero: it is normalised.
+// Accepts any quaternion except zero; normalises it.
 template <class T>
 Mat3T<T> from_quaternion(const QuaternionT<T>& q) {
   const T s = T(2) / (q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
@@ -119,13 +118,12 @@ QuaternionT<T> normalized(const QuaternionT<T>& q) {
 }
 
 // --- the coefficients A to D
-// ----------------------------------------------------------------------
 
 namespace detail {
 
-// Below these t = theta^2 the series is summed; its terms beyond those that are kept are less than
-// 2^-54 of the sum there. Above, C and D lose at most 5 bits to cancellation, but are multiplied by
-// theta^2 = t wherever they are used, so that what reaches a result is below 2^-53 on either side.
+// The series is summed below these values of t = theta^2. Its omitted terms are less than 2^-54 of
+// the sum there. Above, C and D lose at most 5 bits to cancellation, but they are always multiplied
+// by theta^2 = t, so that the error of a result is below 2^-53 on both sides.
 inline constexpr double kExpSeriesBelow = 0.25;
 inline constexpr double kLogSeriesBelow = 0.1;
 
@@ -146,7 +144,7 @@ inline constexpr double kSeriesB[] = {
 inline constexpr double kSeriesC[] = {
     1.0 / 6,        -1.0 / 120,          1.0 / 5040,           -1.0 / 362880,
     1.0 / 39916800, -1.0 / 6227020800.0, 1.0 / 1307674368000.0};
-// D: |B_2k| / (2k)! of t^(k-1), B_2k the Bernoulli numbers
+// D: |B_2k| / (2k)! is the coefficient of t^(k-1), B_2k the Bernoulli numbers
 inline constexpr double kSeriesD[] = {1.0 / 12,           1.0 / 720,      1.0 / 30240,
                                       1.0 / 1209600,      1.0 / 47900160, 691.0 / 1307674368000.0,
                                       1.0 / 74724249600.0};
@@ -156,8 +154,8 @@ struct ExpCoefficients {
   T t, A, B;
 };
 
-// Above the switching point by the half angle: s = sin(theta/2) / (theta/2), A = s cos(theta/2),
-// B = s^2 / 2, so that 1 - cos does not cancel.
+// Above the switching point, by the half angle: s = sin(theta/2) / (theta/2), A = s cos(theta/2), B
+// = s^2 / 2. This avoids the cancellation of 1 - cos.
 template <class T>
 ExpCoefficients<T> exp_coefficients(const Vec3T<T>& w) {
   using std::sqrt;
@@ -202,15 +200,14 @@ constexpr Mat3T<T> quadratic(const Vec3T<T>& w, const T& a, const T& b) {
 }  // namespace detail
 
 // --- Exp, Log and the Jacobians
-// -------------------------------------------------------------------
 
 template <class T>
 SO3T<T> Exp(const Vec3T<T>& w) {
   const auto k = detail::exp_coefficients(w);
   return SO3T<T>(detail::quadratic(w, k.A, k.B));
 }
-// The quaternion of Exp(w): (sin(theta/2) w / theta, cos(theta/2)). It follows w without a jump, so
-// its real part may be negative.
+// The quaternion of Exp(w): (sin(theta/2) w / theta, cos(theta/2)). It is continuous in w, so its
+// real part may be negative.
 template <class T>
 QuaternionT<T> exp_quaternion(const Vec3T<T>& w) {
   using std::sqrt;
@@ -230,8 +227,8 @@ QuaternionT<T> exp_quaternion(const Vec3T<T>& w) {
   const T k = T(0.5) * s;
   return {k * w.x, k * w.y, k * w.z, c};
 }
-// The inverse of Exp with |w| <= pi. The angle is taken from the quaternion, which is well
-// conditioned near 0 and near pi alike; at a half turn exactly, either axis may be returned.
+// The inverse of Exp with |w| <= pi. The angle is computed from the quaternion, which is well
+// conditioned near 0 and near pi. At exactly pi, either axis may be returned.
 template <class T>
 Vec3T<T> Log(const SO3T<T>& R);
 
@@ -254,7 +251,7 @@ Mat3T<T> right_jacobian_inverse(const Vec3T<T>& w) {
   return left_jacobian_inverse(-w);
 }
 
-// Of a unit quaternion of either sign.
+// Log of a unit quaternion of either sign.
 template <class T>
 Vec3T<T> Log(const QuaternionT<T>& q) {
   using std::sqrt;
@@ -277,8 +274,8 @@ Vec3T<T> Log(const SO3T<T>& R) {
   return Log(to_quaternion(R.matrix()));
 }
 
-// The rotation nearest to R, for an R that rounding has moved a little from SO(3): one Newton step
-// of the polar decomposition, R (3 - R^T R) / 2; the error is squared.
+// The nearest rotation to R, for an R close to SO(3) within rounding: one Newton step of the polar
+// decomposition, R (3 - R^T R) / 2, which squares the error.
 template <class T>
 constexpr Mat3T<T> orthonormalized(const Mat3T<T>& R) {
   const T xx = dot(R.cx, R.cx), yy = dot(R.cy, R.cy), zz = dot(R.cz, R.cz);
@@ -290,7 +287,7 @@ constexpr Mat3T<T> orthonormalized(const Mat3T<T>& R) {
           (k - half * zz) * R.cz - zx * R.cx - yz * R.cy};
 }
 
-// The rotation a share s of the way from A to B, turning at a constant rate the shorter way.
+// The rotation at fraction s from A to B, along the shorter rotation, at a constant rate.
 template <class T>
 SO3T<T> interpolate(const SO3T<T>& A, const SO3T<T>& B, const std::type_identity_t<T>& s) {
   return A * Exp(s * Log(Inv(A) * B));

@@ -57,7 +57,7 @@ bool is_finite(const Vec3T<T>& a) {
   return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
 }
 
-// Stored by columns: for a rotation, the images of the three axes.
+// Stored by columns. The columns of a rotation are the images of the three axes.
 template <class T>
 struct Mat3T {
   Vec3T<T> cx, cy, cz;
@@ -77,7 +77,7 @@ template <class T>
 constexpr Mat3T<T> operator*(const Mat3T<T>& A, const Mat3T<T>& B) {
   return {A * B.cx, A * B.cy, A * B.cz};
 }
-// A^T b, without building A^T.
+// A^T b, without computing A^T.
 template <class T>
 constexpr Vec3T<T> transposed_times(const Mat3T<T>& A, const Vec3T<T>& b) {
   return {dot(A.cx, b), dot(A.cy, b), dot(A.cz, b)};
@@ -104,7 +104,7 @@ template <class T>
 constexpr Mat3T<T> operator*(const std::type_identity_t<T>& s, const Mat3T<T>& A) {
   return {s * A.cx, s * A.cy, s * A.cz};
 }
-// A^T B, without building A^T.
+// A^T B, without computing A^T.
 template <class T>
 constexpr Mat3T<T> transposed_times(const Mat3T<T>& A, const Mat3T<T>& B) {
   return {transposed_times(A, B.cx), transposed_times(A, B.cy), transposed_times(A, B.cz)};

@@ -2,15 +2,14 @@
 //
 //   M(q) a + h(q, v) = tau + J^T lambda,   J a + b = 0
 //
-// solved through the articulated recursion: M^-1 J^T row by row, O(links) each; then
-// (J M^-1 J^T) lambda = ..., in factors that tell which rows depend on others. So redundant
-// constraints are fine (a planar linkage closed by a hinge has three rows too many; their lambda is
-// zero), and mechanisms pass singular positions. Constraints that contradict each other give an
-// error.
+// The articulated body recursion gives M^-1 J^T row by row, in O(links) each. A rank-revealing
+// factorisation then solves (J M^-1 J^T) lambda = .... Redundant constraints are therefore allowed:
+// a planar linkage closed by a hinge has three redundant rows, and their lambda is zero. Mechanisms
+// may pass through singular configurations. Contradictory constraints return an error.
 //
 // Everything is in double: a loop closed to 1e-12 has no use for float. Preconditions (asserted):
-// lengths are the model's, the data was made for the model. Nothing is allocated but the message of
-// an error. Errors: Errc::singular, after which the results are unspecified and finite or not.
+// the lengths match the model; the data was made for the model. Calls allocate only the message of
+// an error. Errors: Errc::singular; the results are then unspecified and may be non-finite.
 #pragma once
 
 #include <memory>
@@ -26,8 +25,8 @@ namespace detail {
 struct ConstraintWork;
 }
 
-// Memory for a model under constraints, the constraints themselves, and what the calls leave: 48
-// (rows + velocities)^2 bytes at most.
+// Memory for a model under constraints, the constraints, and the results of the calls. At most 48
+// (rows + velocities)^2 bytes.
 class ConstrainedData {
  public:
   ConstrainedData(const Model& model, ConstraintSet constraints);
@@ -35,15 +34,15 @@ class ConstrainedData {
   ConstrainedData(ConstrainedData&&) noexcept;
   ConstrainedData& operator=(ConstrainedData&&) noexcept;
 
-  // Of the last call: poses and velocities of links (dynamics.h).
+  // Poses and velocities of the links (dynamics.h) of the last call.
   Data& links();
-  // phi and J (rows x velocities, row by row), and the multipliers lambda of
-  // constrained_forward_dynamics: forces along the rows.
+  // phi, J (rows x velocities, row by row), b, and the multipliers lambda of
+  // constrained_forward_dynamics: the forces along the rows.
   std::span<const double> residual() const;
   std::span<const double> jacobian() const;
   std::span<const double> bias() const;
   std::span<const double> multipliers() const;
-  // How many of the rows were independent when last solved for.
+  // The number of independent rows in the last solve.
   int rank() const;
 
   detail::ConstraintWork& work() { return *work_; }
@@ -53,13 +52,14 @@ class ConstrainedData {
   std::unique_ptr<detail::ConstraintWork> work_;
 };
 
-// phi, J and b at q and v.
+// Computes phi, J and b at q and v.
 void evaluate_constraints(const Model& model, ConstrainedData& data, std::span<const double> q,
                           std::span<const double> v);
 
-// a from tau. With a rate r > 0 [1/s], phi'' + 2 r phi' + r^2 phi = 0 instead of phi'' = 0
-// (Baumgarte), so that errors of q and v fade; what closes loops to rounding is close_loops.
-// Refused: constraints without a solution, and singular inertias as in forward_dynamics.
+// Computes a from tau. With a rate r > 0 [1/s] it solves phi'' + 2 r phi' + r^2 phi = 0 instead of
+// phi'' = 0 (Baumgarte stabilisation), so that errors of q and v decay. To close loops to rounding,
+// call close_loops. Fails on constraints without a solution, and on singular inertias as
+// forward_dynamics does.
 Expected<void> constrained_forward_dynamics(const Model& model, ConstrainedData& data,
                                             std::span<const double> q, std::span<const double> v,
                                             std::span<const double> tau, const Loads& loads,
@@ -68,18 +68,18 @@ Expected<void> constrained_forward_dynamics(const Model& model, ConstrainedData&
 struct ClosureOptions {
   double tolerance = 1e-12;  // of every residual
   int max_steps = 50;
-  // Numbers of velocities whose coordinates stay: a driven crank, joints that are locked.
+  // Indices of velocities whose coordinates stay fixed: a driven crank, locked joints.
   std::span<const int> held{};
 };
 
-// Moves q onto phi(q) = 0 by Newton's method on the group, each step the least that does it by the
-// measure of kinetic energy; from near, the error is squared each time. Returns the steps taken.
-// Refused: when it cannot be closed from here; q is then the nearest that was found.
+// Moves q onto phi(q) = 0 by Newton's method on the group. Each step has the minimum norm in the
+// kinetic-energy metric. Close to the solution, convergence is quadratic. Returns the number of
+// steps. Fails when the loops cannot be closed from q; q is then the closest configuration found.
 Expected<int> close_loops(const Model& model, ConstrainedData& data, std::span<double> q,
                           const ClosureOptions& options = {});
 
-// v <- the velocities with J v = 0 that are nearest by the measure of kinetic energy: what an
-// impact of the constraints makes of v.
+// Projects v onto J v = 0, to the nearest velocities in the kinetic-energy metric. This is the
+// effect of an impact of the constraints on v.
 Expected<void> project_velocities(const Model& model, ConstrainedData& data,
                                   std::span<const double> q, std::span<double> v);
 

@@ -1,15 +1,16 @@
-// One step of a tree with all that its joints and constraints do: springs, dampers, Coulomb
-// friction, limits, motors of bounded force, closed loops.
+// One time step of a tree with its joint forces and constraints: springs, dampers, Coulomb
+// friction, limits, motors with bounded force, closed loops.
 //
 //   M (v+ - v) = h (tau - h(q, v)) + J^T lambda + p,   q+ = q [+] h v+
 //
-// Semi-implicit Euler, first order. Each joint's p and its v+ obey its force law at the step's end:
-//   spring, damper, motor   implicit: stable however stiff; the motor is cut off at its bound
+// Semi-implicit Euler, first order. The impulse p and the velocity v+ of each joint satisfy the
+// joint's force law at the end of the step:
+//   spring, damper, motor   implicit: stable at any stiffness; the motor saturates at its bound
 //   dry friction            sticks at exactly zero, or slides against exactly its bound
-//   stop                    v+ reaches it and no more; nothing bounces
-// All laws of the tree are solved together, exactly (Newton), not by a number of sweeps. Afterwards
-// q+ is brought back onto the constraints, and v+ onto their tangent, joints that stick or stand at
-// a stop staying where they are.
+//   stop                    v+ reaches the stop and no further; no restitution
+// Newton's method solves all force laws of the tree together, exactly, instead of a fixed number of
+// Gauss-Seidel sweeps. Afterwards, q+ is projected onto the constraints and v+ onto their tangent
+// space. Joints that stick or rest at a stop keep their coordinates.
 #pragma once
 
 #include <span>
@@ -20,23 +21,23 @@
 namespace vp {
 
 struct StepReport {
-  int iterations = 0;     // of Newton's method over the laws
-  bool converged = true;  // false: the laws are met to 1e-3 only, not to rounding
+  int iterations = 0;     // Newton iterations over the force laws
+  bool converged = true;  // false: the force laws are satisfied to 1e-3 only, not to rounding
 };
 
-// Replaces q and v by those h [s] later. tau: forces on top of what the model and the motors do;
-// motors: none, or one for each velocity. With no constraints, data is made of ConstraintSet{}.
+// Advances q and v by h [s]. tau: forces in addition to those of the model and the motors. motors:
+// empty, or one for each velocity. Without constraints, make data with ConstraintSet{}.
 //
-// Refused, q and v being then unspecified: a step that is not positive, motors whose numbers are
-// negative or not finite (Errc::invalid_argument); singular inertias, constraints and stops that
-// contradict each other, loops that cannot be closed any more (Errc::singular).
+// Errors, after which q and v are unspecified: a step that is not positive, or motors with negative
+// or non-finite parameters (Errc::invalid_argument); singular inertias, constraints and stops that
+// contradict each other, or loops that can no longer be closed (Errc::singular).
 Expected<StepReport> constrained_step(const Model& model, ConstrainedData& data,
                                       std::span<double> q, std::span<double> v,
                                       std::span<const double> tau, std::span<const Motor> motors,
                                       const Loads& loads, double h);
 
-// Of the last step, a force for each velocity, as the mean over the step [N], [N m]: of all laws
-// together, and of the motors alone.
+// Forces of the last step, one for each velocity, averaged over the step [N], [N m]: of all force
+// laws together, and of the motors alone.
 std::span<const double> force_law_forces(const ConstrainedData& data);
 std::span<const double> motor_forces(const ConstrainedData& data);
 

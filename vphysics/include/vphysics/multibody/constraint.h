@@ -1,11 +1,11 @@
-// Constraints between the links of a tree: closed loops, couplings, and one's own.
+// Constraints between the links of a tree: closed loops, couplings, and user-defined constraints.
 //
-//   phi(q) = 0         residual, one number a row
+//   phi(q) = 0         residual, one number for each row
 //   phi' = J(q) v      J: Jacobian, rows x velocities
 //   phi'' = J a + b    b: bias, (dJ/dt) v
 //
-// A constraint of one's own is a class derived from Constraint, in one's own source file. It may be
-// used by any number of models, sets and threads.
+// A user-defined constraint is a class derived from Constraint, in a source file of the user. Any
+// number of models, sets and threads may share it.
 #pragma once
 
 #include <memory>
@@ -17,13 +17,13 @@
 
 namespace vp {
 
-// What a constraint fills in. All is zero at first.
+// The output of a constraint. All values are zero on entry.
 struct ConstraintRows {
-  std::span<double> residual, bias;  // one a row
+  std::span<double> residual, bias;  // one for each row
   std::span<double> jacobian;        // row by row
-  // Of each row, the largest term in any of its sums. Below 1e-11 of it the row counts as zero:
-  // links that another joint keeps together already, or a plane that they cannot leave. Left at
-  // zero, only a row of zeros is zero. ConstraintView::add keeps it.
+  // For each row, the largest term in any of its sums. A row below 1e-11 of this magnitude counts
+  // as zero: the links are already connected by another joint, or cannot leave a plane. If the
+  // magnitude stays at zero, only a row of zeros counts as zero. ConstraintView::add updates it.
   std::span<double> magnitude;
   std::size_t velocities;
 
@@ -32,8 +32,8 @@ struct ConstraintRows {
   }
 };
 
-// A configuration and its velocities, as a constraint sees them. A link may be kWorld: its frame is
-// the world's, and it rests.
+// A configuration and its velocities, as a constraint sees them. A link may be kWorld: the world
+// frame, at rest.
 class ConstraintView {
  public:
   ConstraintView(const Model& model, const Data& data, std::span<const double> q,
@@ -44,12 +44,12 @@ class ConstraintView {
   std::span<const double> q() const { return q_; }
   std::span<const double> v() const { return v_; }
   SE3 T_world_link(int link) const;
-  // Of link b in the frame of link a; exact however far both are from the world's origin.
+  // Pose of link b in the frame of link a; exact at any distance from the world's origin.
   SE3 T_between(int a, int b) const;
-  // In the link's frame: its velocity V, and V's rate while no joint's velocity changes.
+  // In the link's frame: the velocity V, and the rate of V at zero joint accelerations.
   se3 velocity(int link) const;
   se3 bias(int link) const;
-  // Adds to row i of the Jacobian the row that takes v to <F, V>; F in the link's frame.
+  // Adds to row i of the Jacobian the row that maps v to <F, V>; F is in the link's frame.
   void add(const ConstraintRows& out, std::size_t i, int link, const dse3& F) const;
 
  private:
@@ -62,11 +62,11 @@ class ConstraintView {
 class Constraint {
  public:
   virtual ~Constraint() = default;
-  virtual int rows() const = 0;  // 1 or more, the same always
-  // Whether it can be used with the model: whether the links are there, the numbers finite.
+  virtual int rows() const = 0;  // at least 1, constant
+  // Checks the constraint against the model: links exist, numbers are finite.
   virtual Expected<void> check(const Model& model) const;
-  // Called without allocating. Rows that depend on others are fine. A residual of rotations must
-  // not vanish where the constraint does not hold.
+  // Must not allocate. Rows may depend on others. A residual of rotations must not vanish where the
+  // constraint is violated.
   virtual void evaluate(const ConstraintView& at, const ConstraintRows& out) const = 0;
 };
 
@@ -78,21 +78,22 @@ struct Attachment {
   SE3 T_link_frame{};
 };
 
-// Loop closures, as if a joint connected the two frames. Residuals are in metres and radians.
+// Loop closures, which act as a joint between the two frames. Residuals are in metres and radians.
 //
-// A ball: the origins coincide. 3 rows.
+// Ball: the origins coincide. 3 rows.
 ConstraintPtr close_ball(const Attachment& a, const Attachment& b);
-// A hinge: the origins and the z axes coincide. 5 rows, the last two 2 tan(angle / 2) between the
-// axes, about x and y; not for frames that start opposite.
+// Hinge: the origins and the z axes coincide. 5 rows; the last two are 2 tan(angle / 2) between the
+// axes, about x and y. Not for frames whose z axes start opposite.
 ConstraintPtr close_hinge(const Attachment& a, const Attachment& b);
-// Welded: the frames coincide. 6 rows, Log(T_a_b), angular first; not for frames half a turn apart.
+// Weld: the frames coincide. 6 rows, Log(T_a_b), angular first. Not for frames that differ by a
+// rotation of pi.
 ConstraintPtr close_weld(const Attachment& a, const Attachment& b);
-// A bar between the two origins. One row, (d^2 - length^2) / (2 length), which is d - length to
-// first order. Precondition: length > 0.
+// Distance: a bar between the two origins. One row, (d^2 - length^2) / (2 length), which is d -
+// length to first order. Precondition: length > 0.
 ConstraintPtr keep_distance(const Attachment& a, const Attachment& b, double length);
 
-// Gears, mimic joints, differentials: sum of factor_i q_i = offset, over coordinates of joints that
-// are no ball and not free. One row.
+// Gears, mimic joints, differentials: sum of factor_i q_i = offset, over coordinates of joints
+// other than ball and free. One row.
 struct CoupledCoordinate {
   int link = 0;
   int index = 0;  // among the joint's coordinates
@@ -100,10 +101,10 @@ struct CoupledCoordinate {
 };
 ConstraintPtr couple(std::vector<CoupledCoordinate> coordinates, double offset = 0.0);
 
-// Constraints that have been found to fit a model.
+// Constraints that were checked against a model.
 class ConstraintSet {
  public:
-  // Refused: a constraint that is null, has no rows, or does not pass its own check().
+  // Fails on a constraint that is null, has no rows, or fails its own check().
   static Expected<ConstraintSet> make(const Model& model, std::vector<ConstraintPtr> constraints);
 
   int rows() const { return rows_; }

@@ -1,9 +1,8 @@
-// What changes while a model moves: the memory in which an algorithm works, and what it leaves
-// there.
+// The mutable state of a model's algorithms: their working memory and their results.
 //
-// All of it is taken when the data is made; no call takes more. One data is used by one thread at a
-// time. DataT<PackT<double, 8>> holds eight states at once: the same calls then work on all of
-// them, and every number of q, v and tau is a pack.
+// The constructor allocates all memory; the algorithms allocate none. One data is used by one
+// thread at a time. DataT<PackT<double, 8>> contains eight states: the same calls then process all
+// of them, and each number of q, v and tau is a pack.
 #pragma once
 
 #include <memory>
@@ -18,13 +17,13 @@ template <class T>
 struct Work;
 }
 
-// How a data's results are rounded.
+// How results are rounded.
 enum class Arithmetic {
-  // With the widest registers and the fused multiply-add that the machine has: the same bits in
-  // every run on one machine and build, the last bits may differ on another.
+  // Uses the widest registers and the fused multiply-add of the machine. Results are identical in
+  // every run on one machine and build; the last bits may differ on another.
   fastest,
   // The same bits on every machine and compiler, as lockstep, rollback and replays need. World
-  // always computes so.
+  // always uses it.
   reproducible
 };
 

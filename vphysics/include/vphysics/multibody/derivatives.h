@@ -1,23 +1,23 @@
-// Analytic derivatives of inverse and forward dynamics by the state.
+// Analytic derivatives of inverse and forward dynamics with respect to the state.
 //
-// Along q a derivative is taken in the tangent space: its column k is the slope at zero of the
-// result at q [+] delta (configuration.h) as delta[k] grows, the velocities held as numbers. So all
-// matrices are velocities x velocities, row by row, also for ball and free joints. External loads
-// are forces that turn with their link, as LoadsT has them; damping and armature are included.
+// Derivatives with respect to q are taken in the tangent space: column k is the derivative at zero
+// of the result at q [+] delta (configuration.h) with respect to delta[k], with the components of v
+// constant. All matrices are therefore velocities x velocities, row by row, also for ball and free
+// joints. External loads rotate with their link, as in LoadsT. Damping and armature are included.
 //
-// Inverse dynamics costs O(links * depth), forward dynamics in addition the solution for every
-// column, O(velocities * links * depth). Preconditions (asserted) as in dynamics.h, matrices of the
-// right size; the matrices of one call do not overlap. Nothing is allocated.
+// Inverse dynamics costs O(links * depth). Forward dynamics in addition solves for every column,
+// O(velocities * links * depth). Preconditions (asserted): as in dynamics.h; matrices have the
+// right size, and the matrices of one call do not overlap. No call allocates.
 //
-// Scalars as in dynamics.h. With a pack every number of the matrices is one: a call differentiates
-// at as many states as it has lanes, in each lane as it does one state; of Arithmetic::reproducible
-// with the same bits. A state of a pack of eight doubles takes a third to a half of the time that
-// it takes alone; of a chain of a hundred joints the matrices of a pack leave the caches, and its
-// states take as long as one by one.
+// Scalars as in dynamics.h. With a pack, every number of the matrices is a pack: one call
+// differentiates at one state for each SIMD lane. With Arithmetic::reproducible each lane has the
+// same bits as a single state. In a pack of eight doubles, a state takes a third to a half of the
+// time of a single state. For a chain of a hundred joints the matrices of a pack exceed the caches,
+// and a pack saves no time.
 //
-// Errors: Errc::singular as forward_dynamics, in any lane; Errc::unsupported where a joint of one's
-// own does not say its derivatives (UserJoint::slopes, joint.h): the velocity-product force of such
-// a joint has a derivative that `evaluate` does not give. The results are then unspecified.
+// Errors: Errc::singular as in forward_dynamics, in any lane; Errc::unsupported if a user joint
+// does not provide its derivatives (UserJoint::subspace_derivatives, joint.h), because `evaluate`
+// does not give the derivative of its velocity-product force. The results are then unspecified.
 //
 // Source: Carpentier, Mansard, Analytical derivatives of rigid body dynamics algorithms, RSS 2018;
 // Singh, Russo, Wensing, Efficient analytical derivatives of rigid-body dynamics using spatial
@@ -36,7 +36,8 @@ template <class T>
 struct DerivativesWork;
 }
 
-// The memory for them, of one model; used by one thread at a time, with a data of any arithmetic.
+// Working memory of the derivatives of one model. Used by one thread at a time, with a data of
+// either Arithmetic.
 template <class T>
 class DerivativesDataT {
  public:
@@ -52,7 +53,7 @@ class DerivativesDataT {
 };
 using DerivativesData = DerivativesDataT<double>;
 
-// Of tau(q, v, a): dtau/dq, dtau/dv, and dtau/da, which is the mass matrix.
+// Derivatives of tau(q, v, a): dtau/dq, dtau/dv, and dtau/da, which is the mass matrix.
 template <class T>
 struct InverseDerivativesT {
   std::span<T> tau_q, tau_v, tau_a;
@@ -64,8 +65,8 @@ Expected<void> inverse_dynamics_derivatives(const ModelT<base_t<T>>& model, Data
                                             const LoadsT<T>& loads,
                                             const InverseDerivativesT<T>& out);
 
-// Of a(q, v, tau): da/dq, da/dv, and da/dtau, which is the inverse of the mass matrix; and a
-// itself.
+// a(q, v, tau) and its derivatives: da/dq, da/dv, and da/dtau, which is the inverse of the mass
+// matrix.
 template <class T>
 struct ForwardDerivativesT {
   std::span<T> a;

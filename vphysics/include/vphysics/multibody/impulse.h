@@ -1,14 +1,15 @@
-// How links answer to impulses, through the articulated recursion: what a contact solver needs.
+// The response of links to impulses, from the articulated body recursion, for contact solvers.
 //
 //   impulse_response    dv = M^-1 J_link^T F                one impulse, all velocities, O(links)
 //   inverse_inertia     L_ab = J_a M^-1 J_b^T               6x6, between two links, O(depth)
 //
-// J is a link's Jacobian in its own frame; F = (m, f) an impulse on it at its origin, in its frame
-// [N m s, N s]. So a row of contact with force F_a on link a meets another with F_b on link b at
-// <F_a, L_ab F_b>. The force of a unit impulse f at a point p of the link is (p x f, f).
+// J is a link's Jacobian in its own frame. F = (m, f) is an impulse on the link, about its origin
+// and in its frame [N m s, N s]. The entry of the effective inverse mass between a contact row with
+// wrench F_a on link a and another with F_b on link b is <F_a, L_ab F_b>. A unit impulse f at a
+// point p of the link has F = (p x f, f).
 //
-// Precondition of all: the data has M in factors, from factor_mass or forward_dynamics that has
-// succeeded. Nothing is allocated. Scalars as in dynamics.h.
+// Precondition of all calls: the data has the factors of M, from factor_mass or from
+// forward_dynamics that succeeded. No call allocates. Scalars as in dynamics.h.
 //
 // Source: Lilly, Efficient Dynamic Simulation of Robotic Mechanisms, 1993, section 4 (the force
 // propagator); the articulated inertias are those of the paper's equation (6).
@@ -21,13 +22,13 @@
 
 namespace vp {
 
-// The change of all velocities by the impulse F on a link.
+// The change dv of all velocities due to the impulse F on a link.
 template <class T>
 void impulse_response(const ModelT<base_t<T>>& model, DataT<T>& data, int link, const dse3T<T>& F,
                       std::span<T> dv);
 
-// A linear map from impulses on one link to changes of velocity of another, each in its link's
-// frame: a column for each of m.x, m.y, m.z, f.x, f.y, f.z.
+// A linear map from impulses on one link to velocity changes of another, each in its link's frame:
+// one column for each of m.x, m.y, m.z, f.x, f.y, f.z.
 template <class T>
 struct ResponseT {
   std::array<se3T<T>, 6> columns;
@@ -38,7 +39,7 @@ struct ResponseT {
   }
 };
 
-// Symmetric, from impulses (m, f) to velocities: (A m + B f, B^T m + C f). 21 scalars.
+// Symmetric map from impulses (m, f) to velocities: (A m + B f, B^T m + C f). 21 scalars.
 template <class T>
 struct InverseInertiaT {
   Sym3T<T> A;
@@ -50,14 +51,14 @@ struct InverseInertiaT {
   }
 };
 
-// The inverse inertias of all links in one configuration. Memory is taken when it is made; update()
-// is O(links) and prepares any number of calls of inverse_inertia in this configuration.
+// The inverse inertias of all links in one configuration. The constructor allocates. update() is
+// O(links) and prepares any number of calls of inverse_inertia in this configuration.
 template <class T>
 class InverseInertiasT {
  public:
   explicit InverseInertiasT(const ModelT<base_t<T>>& model);
   void update(const ModelT<base_t<T>>& model, const DataT<T>& data);
-  // Of links that the world holds, or that hang on different roots: zero.
+  // Zero if either link is fixed to the world, or if the links belong to different roots.
   ResponseT<T> between(const ModelT<base_t<T>>& model, const DataT<T>& data, int a, int b) const;
 
  private:

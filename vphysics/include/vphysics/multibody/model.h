@@ -1,10 +1,10 @@
-// A tree of links and joints: what does not change while it moves.
+// A tree of links and joints: the constant part of a multibody system.
 //
-// Built once and checked there, then const: any number of threads may use a model at once, each
-// with its own data (data.h). Links are numbered in the order they were added, a parent before its
-// children; their coordinates and velocities follow each other in the same order.
+// A model is built once, checked, and then const. Any number of threads may share it, each with its
+// own data (data.h). Links are numbered in the order in which they were added, parents before
+// children. Their coordinates and velocities follow in the same order.
 //
-// ModelT<float> is made from a Model, for data in float.
+// ModelT<float> is converted from a Model, for data in float.
 #pragma once
 
 #include <memory>
@@ -25,13 +25,13 @@ struct LinkSpec {
   Joint joint = FixedJoint{};
   SE3 T_parent_joint{};   // pose of the joint's frame in the parent's link frame
   Inertia inertia{};      // about the link's origin, in its frame; may be zero
-  double armature = 0.0;  // rotor inertia, added to each of the joint's own in joint space
-  double damping = 0.0;   // viscous, of each of its velocities [N s/m] or [N m s/rad]
-  // None, or one for each of its velocities. Those of a ball or free joint, which have no
-  // coordinate of their own, know friction and the motor's limit only.
+  double armature = 0.0;  // rotor inertia, added to each velocity's inertia in joint space
+  double damping = 0.0;   // viscous, for each velocity [N s/m] or [N m s/rad]
+  // Empty, or one for each velocity. Velocities of ball and free joints are not rates of
+  // coordinates and use only friction and motor_limit.
   std::vector<JointForces> forces{};
-  // Take the inertia as it is stated, though no body may have it, as robots' files do. It should be
-  // positive semidefinite: else forward dynamics may have no solution.
+  // Accept the inertia as given, even if no physical body has it, as in many robot files. It should
+  // be positive semidefinite: otherwise forward dynamics may have no solution.
   bool inertia_as_stated = false;
 };
 
@@ -43,19 +43,19 @@ struct Tree;
 template <class B>
 class ModelT {
  public:
-  // The same tree in another precision.
+  // Converts the tree to another precision.
   template <class C>
   explicit ModelT(const ModelT<C>& other);
 
   int links() const;
   int coordinates() const;  // length of q
-  int velocities() const;   // length of v, of the accelerations and of the forces
-  // The first of a link's coordinates and velocities.
+  int velocities() const;   // length of v, of accelerations and of joint forces
+  // Index of the link's first coordinate and of its first velocity.
   int first_coordinate(int link) const;
   int first_velocity(int link) const;
   const LinkSpec& link(int link) const;
-  int find_link(std::string_view name) const;  // or -1
-  // Coordinates with every joint at zero and every quaternion at one.
+  int find_link(std::string_view name) const;  // -1 if not found
+  // Coordinates with all joints at zero and identity quaternions.
   std::vector<B> zero_coordinates() const;
 
   const detail::Tree<B>& tree() const { return *tree_; }
@@ -72,14 +72,14 @@ using Model = ModelT<double>;
 
 class ModelBuilder {
  public:
-  // The link's number. Refused: a parent that does not exist, a number that is not finite, an axis
-  // of length zero, parallel axes, an inertia that no body has (negative mass, not positive
-  // semidefinite, moments against the triangle inequality; taken where it is inertia_as_stated),
-  // negative armature or damping, forces that are not the joint's or contradict themselves, a user
-  // joint that says less than 1 or more than 6 degrees of freedom.
+  // Returns the link's number. Fails on a parent that does not exist, a non-finite number, an axis
+  // of zero length, parallel axes, a non-physical inertia (negative mass, not positive
+  // semidefinite, principal moments that violate the triangle inequality; accepted with
+  // inertia_as_stated), negative armature or damping, forces that do not match the joint or
+  // contradict each other, or a user joint with less than 1 or more than 6 degrees of freedom.
   Expected<int> add(LinkSpec link);
-  // Refused: no joint that moves; a joint that moves no mass, neither by itself nor through its
-  // children.
+  // Fails if no joint moves, or if a joint moves no mass, neither itself nor through its
+  // descendants.
   Expected<Model> build() const;
 
  private:
