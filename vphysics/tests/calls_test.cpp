@@ -16,9 +16,10 @@ namespace vp::test {
 namespace {
 
 constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
-constexpr double kEndless = std::numeric_limits<double>::infinity();
+constexpr double kUnboundedRadius = std::numeric_limits<double>::infinity();
 constexpr double kDt = 0.001;
-constexpr double kUnusable[] = {kNotANumber, kEndless, -kEndless, 1e10, -1e10, 1e300};
+constexpr double kUnusable[] = {kNotANumber, kUnboundedRadius, -kUnboundedRadius, 1e10, -1e10,
+                                1e300};
 
 struct Small {
   World world;
@@ -95,7 +96,7 @@ TEST(EveryCall, RefusesJointStatesAndDrivesThatAreNone) {
   double JointDrive::*const fields[] = {&JointDrive::position, &JointDrive::velocity,
                                         &JointDrive::stiffness, &JointDrive::damping};
   for (double JointDrive::*const field : fields) {
-    for (const double x : {kNotANumber, kEndless, -kEndless, -1e10, 1e300}) {
+    for (const double x : {kNotANumber, kUnboundedRadius, -kUnboundedRadius, -1e10, 1e300}) {
       JointDrive drive{0, 0, 1, 1, 1};
       drive.*field = x;
       EXPECT_FALSE(s.world.set_drive(id, 0, 0, drive)) << x;
@@ -157,7 +158,7 @@ TEST(EveryCall, RefusesSettingsOfAWorldThatAreNone) {
   double WorldDesc::*const fields[] = {&WorldDesc::restitution_threshold, &WorldDesc::contact_slop,
                                        &WorldDesc::sleep_after, &WorldDesc::sleep_speed};
   for (double WorldDesc::*const field : fields) {
-    for (const double x : {kNotANumber, kEndless, -1.0, 1e10}) {
+    for (const double x : {kNotANumber, kUnboundedRadius, -1.0, 1e10}) {
       WorldDesc desc;
       desc.*field = x;
       EXPECT_TRUE(refused(desc)) << x;
@@ -190,7 +191,7 @@ TEST(EveryCall, RefusesSettingsOfAWorldThatAreNone) {
 // Of shapes made by calls of their own; a scale of zero or below makes none either.
 TEST(EveryCall, RefusesShapesThatAreNone) {
   const std::vector<double> flat(9, 0.0);
-  for (const double x : {kNotANumber, kEndless, -kEndless, 1e300}) {
+  for (const double x : {kNotANumber, kUnboundedRadius, -kUnboundedRadius, 1e300}) {
     std::vector<Vec3> points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {x, 0, 0}};
     EXPECT_FALSE(ConvexHull::of(points)) << x;
     const std::vector<TriangleMesh::Triangle> triangles{{0, 1, 4}};
@@ -205,7 +206,7 @@ TEST(EveryCall, RefusesShapesThatAreNone) {
     const CompoundPart moved[] = {{Sphere{1.0}, SE3(Vec3{x, 0, 0})}};
     EXPECT_FALSE(Compound::of(moved)) << x;
   }
-  for (const double x : {kNotANumber, kEndless, -1.0, 0.0, 1e300}) {
+  for (const double x : {kNotANumber, kUnboundedRadius, -1.0, 0.0, 1e300}) {
     EXPECT_FALSE(scaled(Box{{1, 1, 1}}, {1, x, 1})) << x;
     EXPECT_FALSE(HeightField::of({3, 3, 1.0, 1.0, flat, {}}).value().scaled({x, 1, 1})) << x;
   }

@@ -292,7 +292,7 @@ Range allowed(const JointForces& f, double damping, const Motor* motor, double q
 TEST(ConstrainedStep, ObeysEveryLawOfATree) {
   Random random(101);
   double worst = 0.0;
-  int stuck = 0, at_stop = 0, cut_off = 0, rounds = 0;
+  int stuck = 0, at_stop = 0, clamped_impulse = 0, rounds = 0;
   for (int round = 0; round < 150; ++round) {
     const Model model = random_tree_with_forces(random, 10);
     ConstrainedData data(model, ConstraintSet());
@@ -332,18 +332,18 @@ TEST(ConstrainedStep, ObeysEveryLawOfATree) {
         worst = std::max(worst, beyond / scale);
         stuck += s.v[i] == 0.0;
         at_stop += range.most == kNever || range.least == -kNever;
-        cut_off += std::fabs(motor_forces(data)[i]) >= motor.max_force * (1 - 1e-12) &&
-                   motor.max_force > 0.0;
+        clamped_impulse += std::fabs(motor_forces(data)[i]) >= motor.max_force * (1 - 1e-12) &&
+                           motor.max_force > 0.0;
         EXPECT_NEAR(force_law_forces(data)[i], did, 1e-9 * scale);
       }
     }
   }
   std::printf("worst %.1e; %d stuck, %d at stops, %d motors at their bound; %d rounds\n", worst,
-              stuck, at_stop, cut_off, rounds);
+              stuck, at_stop, clamped_impulse, rounds);
   EXPECT_LT(worst, 1e-9);
   EXPECT_GT(stuck, 50);
   EXPECT_GT(at_stop, 20);
-  EXPECT_GT(cut_off, 50);
+  EXPECT_GT(clamped_impulse, 50);
 }
 
 // Chains that bend at stiff motors, with friction, stops and springs all at once, from hard starts:

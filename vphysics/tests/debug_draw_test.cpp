@@ -441,7 +441,7 @@ TEST(DebugDraw, SizesThatAreNoneAreRefusedAndNothingIsDrawn) {
 TEST(DebugDraw, UsualColoursTellTheMarksApart) {
   std::set<std::uint32_t> colours;
   for (int mark = 0; mark < kDebugCategories; ++mark) {
-    colours.insert(usual_colour(static_cast<DebugCategory>(mark)));
+    colours.insert(default_colour(static_cast<DebugCategory>(mark)));
   }
   EXPECT_EQ(colours.size(), static_cast<std::size_t>(kDebugCategories));
   EXPECT_EQ(static_cast<int>(DebugCategory::joint_axis), kDebugCategories - 1);

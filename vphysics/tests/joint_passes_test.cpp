@@ -126,7 +126,7 @@ struct Pairs {
       put(bound.position, -1, 1);
       put(bound.speed, -1, 1);
       put(bound.lower, -0.5, 0);
-      bound.upper.lane[at] = random.word() % 2 == 0 ? kNowhere : 0.1f;
+      bound.upper.lane[at] = random.word() % 2 == 0 ? kNoBound : 0.1f;
       if constexpr (!B::kAxes) {
         put3(to.jacobian[i].linear_a, 1);
         put3(to.jacobian[i].angular_a, 1);

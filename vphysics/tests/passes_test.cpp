@@ -65,8 +65,8 @@ struct Net {
       for (const std::uint32_t step : {0u, 1u, 7u}) {  // 0: with what is fixed
         if (random.word() % 4 == 0) continue;
         const std::uint32_t j = (i + step) % kBodies;
-        const ContactGraph::End a{step == 0 ? kWorldRow : i + 1, step != 0, kBetween};
-        const ContactGraph::End b{j + 1, true, kBetween};
+        const ContactGraph::End a{step == 0 ? kWorldRow : i + 1, step != 0, kSharedRegion};
+        const ContactGraph::End b{j + 1, true, kSharedRegion};
         const bool ball = random.word() % 5 == 0;
         const Place place = graph.add(contact++, a, b, ball ? 1 : 4);
         if (ball) {
@@ -108,8 +108,8 @@ struct Net {
           f(of_kind, Run{colour.blocks.data(), colour.lanes, kLanes, rows.data()});
         }
       };
-      one(passes.one, graph.of<1>(kBetween, c));
-      one(passes.four, graph.of<4>(kBetween, c));
+      one(passes.one, graph.of<1>(kSharedRegion, c));
+      one(passes.four, graph.of<4>(kSharedRegion, c));
     }
   }
 

@@ -17,7 +17,7 @@ namespace vp::test {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kEndless = std::numeric_limits<double>::infinity();
+constexpr double kUnboundedRadius = std::numeric_limits<double>::infinity();
 constexpr Kind kQueryKinds[] = {Kind::sphere,   Kind::capsule, Kind::box,
                                 Kind::cylinder, Kind::cone,    Kind::hull};
 
@@ -109,7 +109,7 @@ Scene random_scene(Random& random, int bodies, double size) {
 // count.
 struct Least {
   const Known* collider = nullptr;
-  double value = kEndless;
+  double value = kUnboundedRadius;
 };
 Least least_of(const Scene& scene, const std::function<bool(const Known&)>& accepts,
                const std::function<std::optional<double>(const Geometry&, const SE3&)>& f) {
@@ -491,7 +491,7 @@ TEST(Queries, RefuseWhatIsNoQuestion) {
   std::vector<RayHit> rays;
   std::vector<ShapeHit> casts;
   std::vector<ColliderId> found;
-  for (const double bad : {kNan, kEndless, -kEndless, 2e9}) {
+  for (const double bad : {kNan, kUnboundedRadius, -kUnboundedRadius, 2e9}) {
     expect_refused(world.ray_cast({bad, 0, 0}, {1, 0, 0}, 1));
     expect_refused(world.ray_cast({0, 0, 0}, {1, bad, 0}, 1));
     expect_refused(world.ray_cast({0, 0, 0}, {1, 0, 0}, bad));

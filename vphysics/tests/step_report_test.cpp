@@ -52,16 +52,16 @@ TEST(Stages, AreToldOnceAStepInOrder) {
     diary->lines.clear();
     must(pile.world.step(0.004));
     ASSERT_EQ(diary->lines,
-              each_once({Stage::prepare, Stage::broad_phase, Stage::narrow_phase, Stage::lanes,
-                         Stage::sub_steps, Stage::report, Stage::advance}))
+              each_once({Stage::prepare, Stage::broad_phase, Stage::narrow_phase,
+                         Stage::contact_slots, Stage::sub_steps, Stage::report, Stage::advance}))
         << i;
   }
   add_ball(pile.world, {1, 1, 1}, {5, 0, 0}, {});
   diary->lines.clear();
   must(pile.world.step(0.004));
-  EXPECT_EQ(diary->lines,
-            each_once({Stage::prepare, Stage::broad_phase, Stage::narrow_phase, Stage::lanes,
-                       Stage::sub_steps, Stage::report, Stage::forces, Stage::impacts}));
+  EXPECT_EQ(diary->lines, each_once({Stage::prepare, Stage::broad_phase, Stage::narrow_phase,
+                                     Stage::contact_slots, Stage::sub_steps, Stage::report,
+                                     Stage::forces, Stage::impacts}));
   World only_a_ball;
   add_ball(only_a_ball, {0, 0, 1}, {}, {});
   only_a_ball.observe_stages(diary);
@@ -84,9 +84,9 @@ TEST(Stages, HaveSleepAsTheLastWhereBodiesMaySleep) {
   const auto diary = std::make_shared<Diary>();
   world.observe_stages(diary);
   must(world.step(0.004));
-  EXPECT_EQ(diary->lines,
-            each_once({Stage::prepare, Stage::broad_phase, Stage::narrow_phase, Stage::lanes,
-                       Stage::sub_steps, Stage::report, Stage::advance, Stage::sleep}));
+  EXPECT_EQ(diary->lines, each_once({Stage::prepare, Stage::broad_phase, Stage::narrow_phase,
+                                     Stage::contact_slots, Stage::sub_steps, Stage::report,
+                                     Stage::advance, Stage::sleep}));
   for (int i = 0; i < 200; ++i) must(world.step(0.004));
   ASSERT_TRUE(world.is_asleep(box));
   diary->lines.clear();
@@ -109,15 +109,15 @@ std::int64_t told_ns = 0;
 TEST(StageClock, AddsUpWhatItsClockSays) {
   StageClock clock([] { return told_ns; });
   for (int i = 1; i <= 3; ++i) {
-    clock.begin(Stage::lanes);
+    clock.begin(Stage::contact_slots);
     told_ns += 10 * i;
-    clock.end(Stage::lanes);
+    clock.end(Stage::contact_slots);
     told_ns += 1000;
   }
-  EXPECT_EQ(clock.total(Stage::lanes), 60);
+  EXPECT_EQ(clock.total(Stage::contact_slots), 60);
   EXPECT_EQ(clock.total(Stage::sleep), 0);
   clock.clear();
-  EXPECT_EQ(clock.total(Stage::lanes), 0);
+  EXPECT_EQ(clock.total(Stage::contact_slots), 0);
 }
 
 // Two layers of three boxes at rest: six pairs that touch, with four points each.

@@ -49,7 +49,7 @@ glm::vec4 speed_colour(double speed) {
 }
 
 glm::vec4 mark_colour(vp::DebugCategory mark) {
-  const std::uint32_t rgb = vp::usual_colour(mark);
+  const std::uint32_t rgb = vp::default_colour(mark);
   const auto share = [rgb](int shift) { return static_cast<float>(rgb >> shift & 0xFF) / 255.0f; };
   return {share(16), share(8), share(0), 1.0f};
 }

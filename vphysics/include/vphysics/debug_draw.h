@@ -31,7 +31,7 @@ enum class DebugCategory : std::uint8_t {
 inline constexpr int kDebugCategories = 15;
 
 // A colour that is distinct from the others on dark and light backgrounds: 0xRRGGBB.
-std::uint32_t usual_colour(DebugCategory category);
+std::uint32_t default_colour(DebugCategory category);
 
 // World::debug_draw calls these functions, in the same order for the same world. They must not
 // change that world. World frame [m].

@@ -31,14 +31,14 @@ enum class Stage : std::uint8_t {
   sleep,
 };
 inline constexpr std::array kStages{
-    Stage::prepare, Stage::broad_phase, Stage::narrow_phase, Stage::lanes,   Stage::sub_steps,
-    Stage::report,  Stage::forces,      Stage::impacts,      Stage::advance, Stage::sleep};
+    Stage::prepare, Stage::broad_phase, Stage::narrow_phase, Stage::contact_slots, Stage::sub_steps,
+    Stage::report,  Stage::forces,      Stage::impacts,      Stage::advance,       Stage::sleep};
 const char* name_of(Stage stage);  // "broad phase"
 
-// Called for each stage on the thread that calls step(), outside of all tasks. Stages do not overlap
-// and come once a step, in order, with one exception: narrow_phase and contact_slots alternate, some
-// hundred contacts at a time, and once more each time that contacts wake sleeping bodies. The
-// observer must not change the world (a step within the step fails), nor throw.
+// Called for each stage on the thread that calls step(), outside of all tasks. Stages do not
+// overlap and come once a step, in order, with one exception: narrow_phase and contact_slots
+// alternate, some hundred contacts at a time, and once more each time that contacts wake sleeping
+// bodies. The observer must not change the world (a step within the step fails), nor throw.
 class StageObserver {
  public:
   virtual ~StageObserver() = default;

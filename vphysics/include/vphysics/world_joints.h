@@ -115,7 +115,7 @@ struct Gear {
 };
 
 // One row of a Jacobian: residual' = <a, V_a> + <b, V_b>, with the bodies' generalized velocities
-// in their own frames about their origins. Twelve numbers.
+// in their own frames about their origins. RowJacobian numbers.
 struct PairRow {
   dse3 a, b;
 };

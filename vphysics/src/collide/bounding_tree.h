@@ -119,7 +119,7 @@ class BoundingTree {
  private:
   static constexpr std::uint32_t kNone = 0xffffffffu;
   static constexpr std::uint32_t kLeaf = 0x80000000u;  // in child: an item, not a node
-  // The maximum depth of a node: stacks have a fixed size. Eight to the tenth is a billion.
+  // The maximum depth of a node: stacks have a fixed size. PaddedSix to the tenth is a billion.
   static constexpr unsigned kMaxDepth = 40;
   static constexpr std::size_t kStack = 7 * kMaxDepth + 16;
   static constexpr std::size_t kPairStack = 63 * kMaxDepth + 128;

@@ -19,7 +19,7 @@ using collide::Loop;
 
 constexpr double kFarthestPoint = 1e9;    // of a coordinate [m], the engine's limit
 constexpr double kSmallestExtent = 1e-6;  // [m], the limit of every shape
-constexpr double kThinnest = 1e-6;        // thickness, as a fraction of the extent
+constexpr double kMinExtent = 1e-6;       // thickness, as a fraction of the extent
 // Feature names and the cost of pairs are designed for this many.
 constexpr int kMaxHullVertices = 256;
 constexpr double kCoarsestTolerance = 0.01;  // the maximum tolerance option
@@ -83,7 +83,7 @@ collide::Quickhull find_triangles(std::span<const Vec3> points, const Extent& ex
   const double cells = extent.largest * scale;
   const std::vector<collide::GridPoint> grid = snapped(points, extent.lower, scale);
   collide::Quickhull found =
-      collide::quickhull(grid, options.max_vertices, options.tolerance * cells, kThinnest * cells);
+      collide::quickhull(grid, options.max_vertices, options.tolerance * cells, kMinExtent * cells);
   while (found.result == collide::Quickhull::Result::hull) {
     const std::vector<std::uint32_t> flat =
         collide::flat_corners(points, found.triangles, found.tolerance / scale);
@@ -99,7 +99,7 @@ collide::Quickhull find_triangles(std::span<const Vec3> points, const Extent& ex
     fewer.reserve(kept_points.size());
     for (const std::uint32_t i : kept_points) fewer.push_back(grid[i]);
     collide::Quickhull next =
-        collide::quickhull(fewer, options.max_vertices, found.tolerance, kThinnest * cells);
+        collide::quickhull(fewer, options.max_vertices, found.tolerance, kMinExtent * cells);
     if (next.result != collide::Quickhull::Result::hull) break;
     for (collide::Triangle& t : next.triangles)
       t = {kept_points[t[0]], kept_points[t[1]], kept_points[t[2]]};

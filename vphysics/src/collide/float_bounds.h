@@ -85,7 +85,7 @@ inline Bounds widened(const FloatBounds& b) {
   return {{b.lower[0], b.lower[1], b.lower[2]}, {b.upper[0], b.upper[1], b.upper[2]}};
 }
 
-// Eight bounds as a structure of arrays; unused lanes are empty and overlap nothing.
+// PaddedSix bounds as a structure of arrays; unused lanes are empty and overlap nothing.
 struct EightBounds {
   Lanes4 lower[3][2];
   Lanes4 upper[3][2];

@@ -38,9 +38,9 @@ struct ManifoldScratch {
   std::vector<ManifoldPoint> points;
   // By point, 1: a manifold contains or represents it.
   std::vector<std::uint8_t> converged;
-  // Statistics: narrow_phase_pairs counts triangles; crowded: there were more normals than
+  // Statistics: triangles_tested counts triangles; crowded: there were more normals than
   // kMaxClusters; rough: CorePair::rough was set for a triangle.
-  std::uint32_t narrow_phase_pairs = 0;
+  std::uint32_t triangles_tested = 0;
   bool crowded = false, rough = false;
 
   // Reserves more than a shape touches of a surface whose triangles are not much smaller than the

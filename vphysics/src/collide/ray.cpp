@@ -15,15 +15,15 @@
 namespace vp::collide {
 namespace {
 
-constexpr double kEndless = std::numeric_limits<double>::infinity();
+constexpr double kUnboundedRadius = std::numeric_limits<double>::infinity();
 
 // The interval of distances inside a set, and the surface normal at its entry.
 struct Stretch {
-  double in = -kEndless, out = kEndless;
+  double in = -kUnboundedRadius, out = kUnboundedRadius;
   Vec3 normal{0, 0, 1};
 
   bool empty() const { return !(in <= out); }
-  void make_empty() { in = kEndless, out = -kEndless; }
+  void make_empty() { in = kUnboundedRadius, out = -kUnboundedRadius; }
   void enter(double t, const Vec3& n) {
     if (t > in) in = t, normal = n;
   }
@@ -255,7 +255,7 @@ bool is_first(const RayEntry& best, double distance, std::uint32_t part) {
 
 bool cast_at_surface(const Surface& surface, const Ray& ray, double limit, CastScratch& scratch,
                      RayEntry& entry) {
-  RayEntry best{kEndless, {}, 0};
+  RayEntry best{kUnboundedRadius, {}, 0};
   const RayFrame frame(ray);
   const auto hit = [&](std::uint32_t id, double) {
     const SurfaceTriangle t = surface.triangle(id);
@@ -268,14 +268,14 @@ bool cast_at_surface(const Surface& surface, const Ray& ray, double limit, CastS
     return limit > 0.0 ? std::min(1.0, best.distance / limit) : 1.0;
   };
   surface.cast({{ray.origin, ray.origin}, limit * ray.direction}, 1.0, scratch, hit);
-  if (best.distance == kEndless) return false;
+  if (best.distance == kUnboundedRadius) return false;
   entry = best;
   return true;
 }
 
 bool cast_at_compound(const CompoundData& compound, const Ray& ray, double limit,
                       CastScratch& scratch, RayEntry& entry) {
-  RayEntry best{kEndless, {}, 0};
+  RayEntry best{kUnboundedRadius, {}, 0};
   const auto hit = [&](std::uint32_t i, float) {
     const SE3& T = compound.parts[i].T_compound_part;
     RayEntry found{};
@@ -287,7 +287,7 @@ bool cast_at_compound(const CompoundData& compound, const Ray& ray, double limit
     return limit > 0.0 ? std::min(1.0, best.distance / limit) : 1.0;
   };
   compound.tree.cast({{ray.origin, ray.origin}, limit * ray.direction}, 1.0, scratch, hit);
-  if (best.distance == kEndless) return false;
+  if (best.distance == kUnboundedRadius) return false;
   entry = best;
   return true;
 }

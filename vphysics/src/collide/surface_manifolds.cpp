@@ -55,7 +55,7 @@ void find_contacts(const Surface& surface, const Geometry& shape, const SE3& T, 
     if (cull.may_overlap(p)) scratch.near_triangles.push_back(id);
   });
   std::sort(scratch.near_triangles.begin(), scratch.near_triangles.end());
-  scratch.narrow_phase_pairs += static_cast<std::uint32_t>(scratch.triangles.size());
+  scratch.triangles_tested += static_cast<std::uint32_t>(scratch.triangles.size());
   const Vec3 centre = T * core_centre(shape);
   for (const std::uint32_t id : scratch.near_triangles) {
     SurfaceTriangle t = surface.triangle(id);

@@ -96,13 +96,13 @@ Bounds bounds_of_sweep(const SweepQuery& q, double A, double target) {
 double time_to_parts(const SweepQuery& q, double A, double target) {
   const CompoundData& compound = *q.shape->compound;
   double first = -1.0;
-  const auto look_at = [&](std::uint32_t i) {
+  const auto update_if_remote = [&](std::uint32_t i) {
     SweepQuery part = q;
     part.shape = &compound.geometries[i];
     part.T_shape = q.T_shape * compound.parts[i].T_compound_part;
     first = earlier(first, time_of_impact(part, target));
   };
-  compound.tree.overlapping(rounded_outward(bounds_of_sweep(q, A, target)), look_at);
+  compound.tree.overlapping(rounded_outward(bounds_of_sweep(q, A, target)), update_if_remote);
   return first;
 }
 

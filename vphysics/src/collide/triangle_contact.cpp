@@ -75,8 +75,8 @@ class TriangleCollider {
       : surface_(surface),
         t_(t),
         p_{{}, t.p[1] - t.p[0], t.p[2] - t.p[0]},
-        own_(triangle_geometry(p_)),
-        pair_(own_, shape, SE3(T.rotation(), T.position() - t.p[0])),
+        body_inertia_(triangle_geometry(p_)),
+        pair_(body_inertia_, shape, SE3(T.rotation(), T.position() - t.p[0])),
         query_(pair_, margin),
         points_(points) {}
 
@@ -95,7 +95,7 @@ class TriangleCollider {
   const Surface& surface_;
   const SurfaceTriangle& t_;
   Vec3 p_[3];
-  Geometry own_;
+  Geometry body_inertia_;
   CorePair pair_;
   ContactQuery query_;
   std::vector<ManifoldPoint>& points_;
@@ -139,7 +139,7 @@ bool TriangleCollider::find_witness(BestAxis& axis) const {
   const double farther = kFarther * pair_.size;
   const SE3& T = pair_.T_a_b;
   const Vec3 shift = (farther - axis.separation) * axis.normal;
-  const CorePair separated(own_, pair_.b, SE3(T.rotation(), T.position() + shift));
+  const CorePair separated(body_inertia_, pair_.b, SE3(T.rotation(), T.position() + shift));
   const GjkResult near = gjk(separated, axis.normal, 2.0 * farther);
   if (near.state != GjkResult::State::separated) return false;
   axis.on_a = near.on_a;

@@ -87,7 +87,7 @@ class SlotMotion {
   bool far() const { return !reduce_ && !all(near_); }
   void reduce_angles() { reduce_ = true; }
 
-  Angles open_angles(int g) {
+  Angles begin_angles(int g) {
     const auto& group = layout_.groups[static_cast<std::size_t>(g)];
     const auto k = group_constants<T>(tree_, g);
     const W q = coordinates(g, group);
@@ -149,14 +149,14 @@ class SlotMotion {
     if constexpr (kByRows<T>) {
       const SE3T<W> X = multiplied_in_group(layout_, group, local);
       SE3T<W> above;
-      bool at_home = true;
+      bool has_no_external = true;
       for (int i = group.first_external; i < group.end_external; ++i) {
         const External& external = layout_.externals[static_cast<std::size_t>(i)];
         if (external.slot == kWorld) continue;
         above = pose_in_lanes(external, work_.slot(external.slot).pose(kX), above);
-        at_home = false;
+        has_no_external = false;
       }
-      return at_home ? X : above * X;
+      return has_no_external ? X : above * X;
     } else if constexpr (kSlots<T> == 1) {
       return has_parent(g) ? work_.slot(slot(g).parent).pose(kX) * local : local;
     } else {
@@ -229,18 +229,18 @@ class SlotMotion {
     set(S, k, columns(n).S[static_cast<std::size_t>(i - node.slot)]);
   }
   // Rotates six components of a free root from the link's axes to the tree's axes.
-  se3T<T> of_root(int i, Span<T> x) const {
+  se3T<T> root_twist(int i, Span<T> x) const {
     const Mat3T<T> R = work_.slot(i).mat(kX);
     const auto k = static_cast<std::size_t>(slot(i).v);
     return {R * Vec3T<T>{x[k], x[k + 1], x[k + 2]}, R * Vec3T<T>{x[k + 3], x[k + 4], x[k + 5]}};
   }
   void take_root_velocity(int i, int k, se3T<W>& own) const {
-    if (slot(i).kind == SlotKind::root) set(own, k, of_root(i, v_));
+    if (slot(i).kind == SlotKind::root) set(own, k, root_twist(i, v_));
   }
   void take_root_acceleration(int i, int k, se3T<W>& own) const {
     if (slot(i).kind != SlotKind::root) return;
     se3T<T> A = work_.A_world;
-    if (!a_.empty()) A = A + of_root(i, a_);
+    if (!a_.empty()) A = A + root_twist(i, a_);
     set(own, k, A);
   }
   // All columns of a node rotate with its link. The last slot therefore adds ad_V of the joint's
@@ -314,12 +314,12 @@ class BaseToTip {
 
   // Processes the groups in order. The sine and cosine of a joint are a long dependency chain:
   // those of the next group start before the poses of the current group.
-  void begin() { angles_ = motion_.open_angles(0); }
+  void begin() { angles_ = motion_.begin_angles(0); }
   void move(int g) {
     const auto& groups = motion_.layout().groups;
     const auto& group = groups[static_cast<std::size_t>(g)];
     const Angles angles = angles_;
-    if (g + 1 < static_cast<int>(groups.size())) angles_ = motion_.open_angles(g + 1);
+    if (g + 1 < static_cast<int>(groups.size())) angles_ = motion_.begin_angles(g + 1);
     if (group.simple) {
       move_as<true>(g, group, angles);
     } else {

@@ -28,9 +28,9 @@ namespace {
 
 // A coordinate that starts beyond its stop moves back by this fraction in each step, as a position
 // correction without velocity: it must neither jump nor gain speed.
-constexpr double kBack = 0.2;
+constexpr double kStopCorrection = 0.2;
 // Force laws with a larger residual contradict each other.
-constexpr double kMissed = 1e-3;
+constexpr double kMaxResidual = 1e-3;
 
 tl::unexpected<Error> bad_step(const char* why) {
   return tl::make_unexpected(
@@ -206,11 +206,11 @@ bool solve_step(ConstraintWork& work, std::span<const double> v, double h, StepR
   report.iterations += work.force_laws.solve();
   report.converged = work.force_laws.off() < 1e-9;
   find_impulses(work);
-  return work.force_laws.off() < kMissed && !contradicted(work);
+  return work.force_laws.off() < kMaxResidual && !contradicted(work);
 }
 
 // Stores impulses as forces, and for the warm start of the next step.
-void tell_forces(ConstraintWork& work, std::span<const Motor> motors, double h) {
+void store_forces(ConstraintWork& work, std::span<const Motor> motors, double h) {
   std::fill(work.force_law_force.begin(), work.force_law_force.end(), 0.0);
   std::fill(work.motor_force.begin(), work.motor_force.end(), 0.0);
   std::fill(work.warm.begin(), work.warm.end(), 0.0);
@@ -221,7 +221,7 @@ void tell_forces(ConstraintWork& work, std::span<const Motor> motors, double h) 
     work.force_law_force[i] = force_laws.p[j] / h;
     if (motors.empty() || !is_motor(motors[i])) continue;
     work.motor_force[i] =
-        force_laws.force_laws[j].fraction_of_first(force_laws.on[j].w, force_laws.p[j]) / h;
+        force_laws.force_laws[j].part_of_first(force_laws.on[j].w, force_laws.p[j]) / h;
   }
 }
 
@@ -245,8 +245,8 @@ void move(const Model& model, ConstraintWork& work, std::span<double> q, std::sp
       const int c = work.coordinate[static_cast<std::size_t>(model.first_velocity(l)) + k];
       if (c < 0 || forces[k].limit_stiffness < kUnbounded) continue;
       double& x = q[static_cast<std::size_t>(c)];
-      if (x < forces[k].lower) x += kBack * (forces[k].lower - x);
-      if (x > forces[k].upper) x += kBack * (forces[k].upper - x);
+      if (x < forces[k].lower) x += kStopCorrection * (forces[k].lower - x);
+      if (x > forces[k].upper) x += kStopCorrection * (forces[k].upper - x);
     }
   }
 }
@@ -308,7 +308,7 @@ Expected<StepReport> constrained_step(const Model& model, ConstrainedData& data,
   if (!detail::solve_step(work, v, h, report) && !detail::solve_step(work, v, 0.0, report)) {
     return detail::contradiction("constrained_step");
   }
-  detail::tell_forces(work, motors, h);
+  detail::store_forces(work, motors, h);
   detail::apply_impulses(work, v);
   detail::move(model, work, q, v, h);
   if (work.rows > 0) {

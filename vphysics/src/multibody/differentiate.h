@@ -66,7 +66,7 @@ InertiaT<N> inertia_at(const F& fields) {
 
 // Computes, for a group of velocities, S1, S2 and Sv, and F, K and p of the bodies.
 template <class T>
-VP_FLATTEN void open_group(const Records<T>& fields, const Records<T>& joints) {
+VP_FLATTEN void begin_group(const Records<T>& fields, const Records<T>& joints) {
   using N = Wide<T>;
   const se3T<N> S = fields.twist(kColumnS), V_p = joints.twist(kParentV);
   const se3T<N> V = joints.twist(kNodeV);
@@ -135,7 +135,7 @@ se3T<T> acceleration_before(const State<T>& state, const DerivativesWork<T>& mem
 // Prepares a node, at its first velocity. Returns false if a user joint does not provide its
 // derivatives.
 template <class T>
-bool open_node(const State<T>& state, DerivativesWork<T>& memory, int number) {
+bool begin_node(const State<T>& state, DerivativesWork<T>& memory, int number) {
   const auto n = static_cast<std::size_t>(number);
   const Node<base_t<T>>& node = state.tree.nodes[n];
   se3T<T> A = acceleration_before(state, memory, node) +
@@ -166,7 +166,7 @@ VP_FLATTEN void place_bodies(const Tree<base_t<T>>& tree, Work<T>& work) {
   }
 }
 
-// Gathers the inputs of open_group.
+// Gathers the inputs of begin_group.
 template <class T>
 void gather(const State<T>& state, DerivativesWork<T>& memory, const Branch& branch,
             const Fields<T, T>& fields, const Fields<T, T>& joints) {
@@ -196,10 +196,10 @@ bool open(const State<T>& state, DerivativesWork<T>& memory) {
     const int first = g * kSlots<T>, count = std::min(kSlots<T>, velocities - first);
     for (int k = 0; k < count; ++k) {
       const Branch& branch = memory.branches[static_cast<std::size_t>(first + k)];
-      if (branch.column == 0 && !open_node(state, memory, branch.node)) return false;
+      if (branch.column == 0 && !begin_node(state, memory, branch.node)) return false;
       gather(state, memory, branch, memory.velocity(first + k), memory.lane(k));
     }
-    open_group<T>(memory.group(g), memory.lanes());
+    begin_group<T>(memory.group(g), memory.lanes());
     for (int k = 0; k < count; ++k) {
       const Branch& branch = memory.branches[static_cast<std::size_t>(first + k)];
       const int derivatives = memory.derivatives_of[static_cast<std::size_t>(branch.node)];

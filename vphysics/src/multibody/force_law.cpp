@@ -97,7 +97,7 @@ double ForceLaw::velocity_for(double p) const {
   return 0.0;  // not reached
 }
 
-double ForceLaw::cut_off(double p) const {
+double ForceLaw::clamped_impulse(double p) const {
   double lowest = 0.0, highest = 0.0;
   for (std::size_t i = 0; i < count_; ++i) {
     const Ramp& r = ramps_[i];
@@ -108,7 +108,7 @@ double ForceLaw::cut_off(double p) const {
   return std::clamp(p, lowest, highest);
 }
 
-double ForceLaw::fraction_of_first(double w, double p) const {
+double ForceLaw::part_of_first(double w, double p) const {
   const Ramp& r = ramps_[0];
   const bool free = r.slope == kUnbounded && w == r.w0;
   const double high = free ? r.highest : r.at(w), low = free ? r.lowest : r.at(w);

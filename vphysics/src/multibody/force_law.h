@@ -38,12 +38,13 @@ class ForceLaw {
   void add(Ramp ramp);
   // The intersection with w = z + D p; D > 0.
   ForceLawPoint intersect(double z, double D) const;
-  // velocity_for: the velocity at which the law has p; cut_off: p clamped to the law's range.
+  // velocity_for: the velocity at which the law has p; clamped_impulse: p clamped to the law's
+  // range.
   double velocity_for(double p) const;
-  double cut_off(double p) const;
+  double clamped_impulse(double p) const;
   // The part of p from the first ramp at w. Where friction or a stop could supply the same impulse,
   // what the ramp would supply by itself.
-  double fraction_of_first(double w, double p) const;
+  double part_of_first(double w, double p) const;
 
  private:
   static constexpr std::size_t kMax = 5;  // motor, spring and damper, friction, two limits

@@ -14,7 +14,7 @@ constexpr int kMaxIterations = 100;
 constexpr int kHalvings = 40;
 // Factors of caution after a failed Newton step, in a cycle: a bold step may select the same wrong
 // pieces again, and a cautious step corrects few of them (docs/decisions/0015).
-constexpr double kCaution[8] = {1, 1, 16, 1, 256, 1, 4096, 1};
+constexpr double kDamping[8] = {1, 1, 16, 1, 256, 1, 4096, 1};
 
 }  // namespace
 
@@ -54,7 +54,7 @@ void ForceLawSolver::find_w() {
 
 // Finds the piece of each joint with all other joints fixed. Returns the largest relative change of
 // p. More caution keeps each joint closer to its current p, since all change at once.
-double ForceLawSolver::find_pieces(double caution) {
+double ForceLawSolver::update_active_pieces(double caution) {
   double worst = 0.0;
   for (std::size_t i = 0; i < size; ++i) {
     const double D = caution * D_[i];
@@ -96,8 +96,9 @@ void ForceLawSolver::newton() {
 
 // Line search from best_ towards p, to the minimum of the energy E. The derivative E' increases
 // along it.
-void ForceLawSolver::go_towards_newton() {
-  for (std::size_t i = 0; i < size; ++i) direction_[i] = force_laws[i].cut_off(p[i]) - best_[i];
+void ForceLawSolver::line_search() {
+  for (std::size_t i = 0; i < size; ++i)
+    direction_[i] = force_laws[i].clamped_impulse(p[i]) - best_[i];
   for (std::size_t i = 0; i < size; ++i) {
     double at_start = w_free[i], bend = 0.0;
     for (std::size_t j = 0; j < size; ++j) {
@@ -137,21 +138,21 @@ int ForceLawSolver::solve() {
     D_[i] = std::max(G[i * capacity + i], kNoFreedom * self[i]);
   }
   find_w();
-  off_ = find_pieces(1.0);
+  off_ = update_active_pieces(1.0);
   int iteration = 0;
   for (; iteration < kMaxIterations && !(off_ <= kExact); ++iteration) {
     std::copy_n(p.begin(), size, best_.begin());
     newton();
     find_w();
-    const double now = find_pieces(1.0);
+    const double now = update_active_pieces(1.0);
     if (now <= 0.01 * off_) {
       off_ = now;
       continue;
     }
-    go_towards_newton();
+    line_search();
     sweep();
     find_w();
-    off_ = find_pieces(kCaution[iteration % 8]);
+    off_ = update_active_pieces(kDamping[iteration % 8]);
   }
   return iteration;
 }

@@ -35,9 +35,9 @@ struct ForceLawSolver {
 
  private:
   void find_w();
-  double find_pieces(double caution);
+  double update_active_pieces(double caution);
   void newton();
-  void go_towards_newton();
+  void line_search();
   void sweep();
 
   double off_ = 0.0;

@@ -228,7 +228,7 @@ VP_FLATTEN bool factor_mass_kernel(const Tree<base_t<T>>& tree, Work<T>& work, S
 
 template <class T>
 VP_FLATTEN void solve_mass_kernel(const Tree<base_t<T>>& tree, Work<T>& work, std::span<T> x) {
-  LightChildSum<Six<T>, Eight<T>> child_sum(work.force_flow);
+  LightChildSum<Six<T>, PaddedSix<T>> child_sum(work.force_flow);
   for (int i = static_cast<int>(tree.slots.size()); i-- > 0;) {
     const Slot& slot = tree.slots[static_cast<std::size_t>(i)];
     const auto n = static_cast<std::size_t>(slot.v);

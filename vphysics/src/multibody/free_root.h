@@ -52,7 +52,7 @@ class FreeRoot {
   template <class Positive>
   void factor(Triangle<T> J, Positive& positive) const {
     const T armature = k_.get(kArmature), turns = k_.get(kMin);
-    const T slides = T(16) * T(std::numeric_limits<base_t<T>>::epsilon()) * k_.get(kComposite);
+    const T slides = T(16) * T(std::numeric_limits<base_t<T>>::epsilon()) * k_.get(kSubtreeMass);
     for (int k = 6; k-- > 0;) {
       const T omega = J.m[k][k] + armature;
       positive.see(omega, k < 3 ? turns : slides);

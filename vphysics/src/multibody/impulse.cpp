@@ -37,7 +37,8 @@ InverseInertiaT<T> through(const InverseInertiaT<T>& L, const se3T<T>& S, const 
 
 // Transmits an impulse on a node to its parent.
 template <class T>
-dse3T<T> inwards_through(const Tree<base_t<T>>& tree, const Work<T>& work, int node, dse3T<T> F) {
+dse3T<T> transmit_to_parent(const Tree<base_t<T>>& tree, const Work<T>& work, int node,
+                            dse3T<T> F) {
   for (int k = tree.nodes[static_cast<std::size_t>(node)].dofs; k-- > 0;) {
     F = F - (factored_column_of<T>(tree, work, node, k) * F) *
                 projected_wrench_of<T>(tree, work, node, k);
@@ -123,7 +124,7 @@ ResponseT<T> InverseInertiasT<T>::between(const ModelT<base_t<T>>& model, const 
     const bool a_is_later = i > j;
     int& later = a_is_later ? i : j;
     for (dse3T<T>& F : a_is_later ? at_a : at_b) {
-      F = detail::inwards_through<T>(tree, work, later, F);
+      F = detail::transmit_to_parent<T>(tree, work, later, F);
     }
     later = tree.nodes[static_cast<std::size_t>(later)].parent;
   }

@@ -66,10 +66,10 @@ ImpulseFactor::ImpulseFactor(const Model& model) {
       depth_[dof] = next == kEnd ? 1 : depth_[next] + 1;
       deepest_ = std::max(deepest_, depth_[dof]);
       next = dof;
-      inwards_.push_back(dof);
+      tip_to_base_order_.push_back(dof);
     }
   }
-  std::reverse(inwards_.begin(), inwards_.end());
+  std::reverse(tip_to_base_order_.begin(), tip_to_base_order_.end());
   joint_rows_.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
     joint_rows_[i].begin = static_cast<std::uint32_t>(cached_.size());
@@ -148,8 +148,8 @@ ImpulseFactor::JointRow ImpulseFactor::joint_row(std::uint32_t dof) {
 }
 
 void ImpulseFactor::to_velocities(std::span<double> x) {
-  for (std::size_t i = inwards_.size(); i-- > 0;) {
-    const std::uint32_t d = inwards_[i], next = next_[d];
+  for (std::size_t i = tip_to_base_order_.size(); i-- > 0;) {
+    const std::uint32_t d = tip_to_base_order_[i], next = next_[d];
     const Column& c = columns_[d];
     const se3 a = next == kEnd ? se3{} : A_[next];
     const double t = x[d] - c.G * a;
@@ -160,7 +160,7 @@ void ImpulseFactor::to_velocities(std::span<double> x) {
 
 void ImpulseFactor::solve(std::span<double> x) {
   for (dse3& r : r_) r = {};
-  for (const std::uint32_t d : inwards_) {
+  for (const std::uint32_t d : tip_to_base_order_) {
     const Column& c = columns_[d];
     x[d] = c.g * x[d] + c.s * r_[d];
     if (next_[d] != kEnd) r_[next_[d]] = r_[next_[d]] + (r_[d] - x[d] * c.G);
@@ -169,8 +169,8 @@ void ImpulseFactor::solve(std::span<double> x) {
 }
 
 void ImpulseFactor::twists(std::span<const double> v) {
-  passes().twists(columns_.data(), inwards_.data(), next_.data(), inwards_.size(), v.data(),
-                  a_.data());
+  passes().twists(columns_.data(), tip_to_base_order_.data(), next_.data(),
+                  tip_to_base_order_.size(), v.data(), a_.data());
 }
 
 ImpulseFactor::Momentum ImpulseFactor::momentum_at(std::span<const int> nodes, const Data& data,
@@ -192,7 +192,7 @@ void ImpulseFactor::bias(const Vec3& gravity, std::span<double> force) {
   passes().body_forces({body_dof_.size(), inertias_.data(), inertia_at_.data(), body_dof_.data(),
                         parent_dof_.data(), a_.data(), A_.data(), r_.data()},
                        &gravity.x);
-  for (const std::uint32_t d : inwards_) {
+  for (const std::uint32_t d : tip_to_base_order_) {
     const std::uint32_t next = next_[d];
     force[d] = columns_[d].S * r_[d];
     if (next != kEnd) r_[next] = r_[next] + r_[d];

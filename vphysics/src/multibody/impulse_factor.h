@@ -81,8 +81,8 @@ class ImpulseFactor {
     const se3& V = a_[path.first];
     return {V.w, V.v + cross(V.w, point - path.origin)};
   }
-  // Sums over the bodies of some nodes, ascending, in the tree's frame: the inertia, after a call of
-  // find_inertias(), and the momentum at the data's twists or at those of twists().
+  // Sums over the bodies of some nodes, ascending, in the tree's frame: the inertia, after a call
+  // of find_inertias(), and the momentum at the data's twists or at those of twists().
   struct Momentum {
     Inertia inertia;
     dse3 momentum{};
@@ -121,9 +121,9 @@ class ImpulseFactor {
   void row(std::uint32_t dof, dse3 impulse, double* y) const;
   Momentum momentum_at(std::span<const int> nodes, const Data& data, const void* twists) const;
 
-  std::vector<Column> columns_;              // one for each degree of freedom
-  std::vector<std::uint32_t> next_, depth_;  // one for each degree of freedom
-  std::vector<std::uint32_t> inwards_;       // all degrees of freedom, tip to base
+  std::vector<Column> columns_;                   // one for each degree of freedom
+  std::vector<std::uint32_t> next_, depth_;       // one for each degree of freedom
+  std::vector<std::uint32_t> tip_to_base_order_;  // all degrees of freedom, tip to base
   std::vector<LinkPath> links_;
   std::vector<CachedRow> joint_rows_;  // one for each degree of freedom
   std::vector<double> cached_;

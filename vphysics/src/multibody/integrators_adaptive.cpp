@@ -121,7 +121,7 @@ class DormandPrince {
     rejected_ = false;
     return std::clamp(factor, T(kLargestShrinking), max_value);
   }
-  T factor_after_refusal(T E) {
+  T factor_after_rejection(T E) {
     rejected_ = true;
     if (E == kNoState) return T(kLargestShrinking);
     const T root = sixteenth_root(E);
@@ -210,7 +210,7 @@ Expected<void> advance(DormandPrince<T>& method, const StepT<T>& step, const Ada
     if (!E) return tl::make_unexpected(E.error());
     if (*E > T(1)) {
       ++report.refused;
-      h = trial * method.factor_after_refusal(*E);
+      h = trial * method.factor_after_rejection(*E);
       if (h < minimum) {
         return not_converged("advance_adaptive",
                              "the tolerance asks for a step below the minimum; allow a larger "

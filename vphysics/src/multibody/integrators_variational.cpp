@@ -174,7 +174,7 @@ class VariationalStep {
       VariationalNode<T>& node = work_.nodes[n];
       node.momentum = node.J * velocity_of(work_.data.work(), static_cast<int>(n));
     }
-    add_inwards();
+    accumulate_to_base();
     project(v_, momentum());
     return {};
   }
@@ -194,7 +194,7 @@ class VariationalStep {
     }
   }
 
-  void add_inwards() {
+  void accumulate_to_base() {
     for (std::size_t n = tree_.nodes.size(); n-- > 0;) {
       const int parent = tree_.nodes[n].parent;
       if (parent == kWorld) continue;
@@ -245,7 +245,7 @@ class VariationalStep {
       energy_ += rate * (W * P);
       node.momentum = left_jacobian_inverse(W).transposed_times(P);
     }
-    add_inwards();
+    accumulate_to_base();
     for (std::size_t i = 0; i < v_.size(); ++i) mean()[i] = rate * work_.u[i];
     for (const Node<T>& node : tree_.nodes) {
       for (int k = node.v; k < node.v + node.dofs; ++k) {

@@ -20,7 +20,7 @@ VP_FLATTEN void inverse_dynamics_kernel(const Tree<base_t<T>>& tree, Work<T>& wo
                                           work.group(g).set(kF, body_force(body, V, A));
                                         });
   subtract_external<T, false>(tree, work, external);
-  LightChildSum<ChainSix<T>, Eight<T>> child_sum(work.force_flow);
+  LightChildSum<ChainSix<T>, PaddedSix<T>> child_sum(work.force_flow);
   const auto& groups = layout_of<T>(tree).groups;
   for (int g = static_cast<int>(groups.size()); g-- > 0;) {
     const int first = g * kSlots<T>, count = groups[static_cast<std::size_t>(g)].count;

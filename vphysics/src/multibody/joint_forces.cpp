@@ -18,7 +18,7 @@ T at_most(const T& x, const T& max_value) {
 
 // `outwards` is the distance of the coordinate beyond the limit, rate its rate of increase.
 template <class T>
-T stop_force(const JointForces& f, const T& outwards, const T& rate) {
+T limit_force(const JointForces& f, const T& outwards, const T& rate) {
   const T resistance = T(static_cast<base_t<T>>(f.limit_stiffness)) * outwards +
                        T(static_cast<base_t<T>>(f.limit_damping)) * rate;
   return select(both(outwards > T(0), resistance > T(0)), resistance, T(0));
@@ -29,8 +29,8 @@ T passive_force(const JointForces& f, const T& q, const T& v) {
   using B = base_t<T>;
   T sum = T(static_cast<B>(f.stiffness)) * (T(static_cast<B>(f.rest)) - q);
   if (f.limit_stiffness == JointForces::kNever) return sum;
-  if (f.lower > -JointForces::kNever) sum += stop_force<T>(f, T(static_cast<B>(f.lower)) - q, -v);
-  if (f.upper < JointForces::kNever) sum -= stop_force<T>(f, q - T(static_cast<B>(f.upper)), v);
+  if (f.lower > -JointForces::kNever) sum += limit_force<T>(f, T(static_cast<B>(f.lower)) - q, -v);
+  if (f.upper < JointForces::kNever) sum -= limit_force<T>(f, q - T(static_cast<B>(f.upper)), v);
   return sum;
 }
 

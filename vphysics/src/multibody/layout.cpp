@@ -44,13 +44,13 @@ class LayOut {
   // Masses and extents of the subtree of each slot.
   void measure() {
     composites_.assign(tree_.slots.size(), 0.0);
-    farthest_.assign(tree_.slots.size(), 0.0);
+    max_distance_.assign(tree_.slots.size(), 0.0);
     for (std::size_t i = 0; i < tree_.slots.size(); ++i) {
       const int parent = tree_.slots[i].parent;
       if (parent == kWorld) continue;
       const bool shifts = static_cast<int>(i) == node_of(i).slot;
-      farthest_[i] = farthest_[static_cast<std::size_t>(parent)] +
-                     (shifts ? norm(wider(node_of(i).T_parent.position())) : 0.0);
+      max_distance_[i] = max_distance_[static_cast<std::size_t>(parent)] +
+                         (shifts ? norm(wider(node_of(i).T_parent.position())) : 0.0);
     }
     for (std::size_t i = tree_.slots.size(); i-- > 0;) {
       const auto& J = node_of(i).J;
@@ -58,12 +58,12 @@ class LayOut {
       if (ends_node(i) && mass > 0.0) {
         composites_[i] += mass;
         const auto& I = J.rotational();
-        farthest_[i] += std::sqrt((wider(I.xx) + wider(I.yy) + wider(I.zz)) / mass);
+        max_distance_[i] += std::sqrt((wider(I.xx) + wider(I.yy) + wider(I.zz)) / mass);
       }
       if (tree_.slots[i].parent == kWorld) continue;
       const auto parent = static_cast<std::size_t>(tree_.slots[i].parent);
       composites_[parent] += composites_[i];
-      farthest_[parent] = std::max(farthest_[parent], farthest_[i]);
+      max_distance_[parent] = std::max(max_distance_[parent], max_distance_[i]);
     }
   }
   // Omega is a difference of numbers about the tree's origin, of the size of a mass times a squared
@@ -80,7 +80,7 @@ class LayOut {
       case NodeKind::prismatic:
         return mass;
       default:
-        return mass * farthest_[i] * farthest_[i];
+        return mass * max_distance_[i] * max_distance_[i];
     }
   }
 
@@ -88,7 +88,7 @@ class LayOut {
   int above(int slot) const { return tree_.slots[static_cast<std::size_t>(slot)].parent; }
 
   // Whether the numbers of adjacent slots are consecutive: all must have the same first index.
-  class Following {
+  class Consecutive {
    public:
     void see(int first) {
       follow_ &= first_ == kNone || first_ == first;
@@ -178,7 +178,7 @@ class LayOut {
     for (int g = 0; g < groups; ++g) {
       const int first = g * width, count = std::min(width, slots - first);
       typename Layout<B>::Group group{count, true, true, -1, -1, 0, 0, 0, 0};
-      Following q, v;
+      Consecutive q, v;
       for (int i = first; i < first + count; ++i) {
         const Slot& slot = tree_.slots[static_cast<std::size_t>(i)];
         const NodeKind kind = node_of(static_cast<std::size_t>(i)).kind;
@@ -258,7 +258,7 @@ class LayOut {
     set(kSlide, node.kind == NodeKind::prismatic ? 1.0 : helical ? wider(node.pitch) : 0.0);
     set(kArmature, wider(node.armature));
     set(kDamping, wider(node.damping));
-    set(kComposite, composites_[i]);
+    set(kSubtreeMass, composites_[i]);
     set(kMin, min_value(i));
     if (!ends_node(i) || node.J == InertiaT<B>{}) return;
     const auto& I = node.J.rotational();
@@ -274,14 +274,14 @@ class LayOut {
   }
 
   Tree<B>& tree_;
-  std::vector<double> composites_;  // [kg]
-  std::vector<double> farthest_;    // from the root, along the links [m]
+  std::vector<double> composites_;    // [kg]
+  std::vector<double> max_distance_;  // from the root, along the links [m]
 };
 
 }  // namespace
 
 template <class B>
-void Tree<B>::lay_out() {
+void Tree<B>::build_rows() {
   LayOut<B>(*this).run();
 }
 

@@ -47,7 +47,7 @@ VP_FLATTEN void mass_matrix_kernel(const Tree<base_t<T>>& tree, Work<T>& work, S
   outwards<T, PassDepth::poses>(
       tree, work, q, {}, {}, BodyInTree<T>(),
       [&](int g, const auto& body, const auto&, const auto&) { set_inertia(work, g, body); });
-  LightChildSum<Moments<T>, Nine<T>> child_sum(work.moment_flow);
+  LightChildSum<Moments<T>, MomentsRow<T>> child_sum(work.moment_flow);
   for (int i = static_cast<int>(tree.slots.size()); i-- > 0;) {
     const Slot& slot = tree.slots[static_cast<std::size_t>(i)];
     const auto fields = work.slot(i);
@@ -59,7 +59,7 @@ VP_FLATTEN void mass_matrix_kernel(const Tree<base_t<T>>& tree, Work<T>& work, S
   const auto& groups = layout_of<T>(tree).groups;
   for (int g = 0; g < static_cast<int>(groups.size()); ++g) {
     const auto fields = work.group(g);
-    const Wide<T> mass = group_constants<T>(tree, g).get(kComposite);
+    const Wide<T> mass = group_constants<T>(tree, g).get(kSubtreeMass);
     fields.set(kF, InertiaT<Wide<T>>(mass, fields.vec(kH), fields.sym(kI)) * fields.twist(kS));
   }
   if (!tree.all_related) std::fill(M.begin(), M.end(), T(0));
@@ -71,7 +71,7 @@ VP_FLATTEN void mass_matrix_kernel(const Tree<base_t<T>>& tree, Work<T>& work, S
     const auto fields = work.slot(static_cast<int>(i));
     if (slot.kind == SlotKind::root) {
       const Mat3T<T> R = fields.mat(kX);
-      const InertiaT<T> C(k.get(kComposite), fields.vec(kH), fields.sym(kI));
+      const InertiaT<T> C(k.get(kSubtreeMass), fields.vec(kH), fields.sym(kI));
       for (std::size_t c = 0; c < 6; ++c) {
         fill_root(R, C * column_of<T>(tree, work, slot.node, static_cast<int>(c)), row + c, row, n,
                   M);

@@ -57,7 +57,7 @@ std::array<Vec3, 2> axes_of(const Joint& joint) {
 // Whether a body can have this inertia: the matrix trace(I)/2 - I about the centre of mass, the
 // second moments of its mass, is positive semidefinite. I is then positive semidefinite too, and no
 // moment exceeds the sum of the other two.
-bool of_a_body(const Inertia& J) {
+bool physical(const Inertia& J) {
   if (J == Inertia{}) return true;
   if (!(J.mass() > 0.0)) return false;
   const Sym3 I = J.central();
@@ -258,7 +258,7 @@ Expected<int> ModelBuilder::add(LinkSpec link) {
   const Sym3& I = J.rotational();
   if (!std::isfinite(J.mass()) || !is_finite(J.first_moment()) ||
       !is_finite(Vec3{I.xx, I.yy, I.zz}) || !is_finite(Vec3{I.xy, I.yz, I.zx}) ||
-      !(link.inertia_as_stated || of_a_body(J))) {
+      !(link.inertia_as_stated || physical(J))) {
     return invalid(link,
                    "no body has this inertia: the mass must be positive, the moments about the "
                    "centre of mass positive and none larger than the two others together");
@@ -301,7 +301,7 @@ Expected<Model> ModelBuilder::build() const {
       }
     }
   }
-  tree->lay_out();
+  tree->build_rows();
   return Model(std::move(tree));
 }
 
@@ -321,7 +321,7 @@ ModelT<B>::ModelT(const ModelT<C>& other) {
   tree->links = from.links;
   tree->coordinates = from.coordinates;
   tree->velocities = from.velocities;
-  tree->lay_out();
+  tree->build_rows();
   tree_ = std::move(tree);
 }
 

@@ -138,7 +138,7 @@ class RowSolver {
     const std::size_t end = c + static_cast<std::size_t>(kSums) * kPack<T>;
     const std::size_t n = memory_.branches.size();
     for (std::size_t j = n; j-- > 0;) {
-      if (touched(j, memory_.branches[j].end).meets(c, end)) take_inwards<kSums>(j, X_ + c);
+      if (touched(j, memory_.branches[j].end).meets(c, end)) take_tip_to_base<kSums>(j, X_ + c);
     }
     for (std::size_t i = 0; i < n; ++i) {
       if (touched(i, memory_.branches[i].tree_end).meets(c, end))
@@ -147,7 +147,7 @@ class RowSolver {
   }
   // Subtracts the rows that were finished most recently last.
   template <int kSums>
-  VP_FLATTEN void take_inwards(std::size_t j, T* X) const {
+  VP_FLATTEN void take_tip_to_base(std::size_t j, T* X) const {
     RowSums<T, kSums> sums(X + j * stride_, T(1));
     const T* const L = memory_.factor.data() + j;
     for (auto i = static_cast<std::size_t>(memory_.branches[j].end); --i > j;) {

@@ -87,8 +87,8 @@ enum Constant : int {
   kAxisB = 22,
   kArmature = 25,
   kDamping = 26,
-  kComposite = 27,  // mass of its subtree
-  kMin = 28,        // rounding bound of Omega (layout.cpp)
+  kSubtreeMass = 27,  // mass of its subtree
+  kMin = 28,          // rounding bound of Omega (layout.cpp)
   kConstants = 29
 };
 
@@ -141,7 +141,7 @@ struct Tree {
   bool all_related = false;    // of any two slots one is an ancestor of the other
   Layout<B> one;               // for one state: groups of eight slots
   Layout<B> states;            // for packs of states: groups of one
-  void lay_out();
+  void build_rows();
 };
 
 template <class T>

@@ -35,7 +35,7 @@ enum RowField : int { kRowInertia = 0, kRowMoment = 8, kRowForce = 16, kRowSize 
 
 // A 6-vector, padded to a row.
 template <class T>
-struct alignas(kSlots<T> > 1 ? 8 * sizeof(T) : alignof(T)) Eight {
+struct alignas(kSlots<T> > 1 ? 8 * sizeof(T) : alignof(T)) PaddedSix {
   T x[8]{};
 };
 template <class T>
@@ -56,7 +56,8 @@ struct alignas(kSlots<T> > 1 ? 8 * sizeof(T) : alignof(T)) Factor {
 };
 
 // Loads of the child accumulation: an articulated inertia with its bias force; a force alone
-// (Eight); first moment and inertia of a composite body, whose mass is known (Nine, Moments).
+// (PaddedSix); first moment and inertia of a composite body, whose mass is known (MomentsRow,
+// Moments).
 template <class T>
 struct Articulated {
   AInertiaT<T> J;
@@ -67,7 +68,7 @@ Articulated<T> operator+(const Articulated<T>& a, const Articulated<T>& b) {
   return {a.J + b.J, a.p + b.p};
 }
 template <class T>
-struct Nine {
+struct MomentsRow {
   T x[9]{};
 };
 template <class T>
@@ -112,8 +113,8 @@ struct Work {
   std::vector<Articulated<T>> articulated_flow;
   struct None {};
   std::vector<std::conditional_t<(kSlots<T> > 1), ArticulatedRows<T>, None>> row_flow;
-  std::vector<Eight<T>> force_flow;
-  std::vector<Nine<T>> moment_flow;
+  std::vector<PaddedSix<T>> force_flow;
+  std::vector<MomentsRow<T>> moment_flow;
   std::vector<se3T<T>> added;       // joint part of A, for slots with branches
   std::vector<Columns<T>> columns;  // of each node that is not simple
   std::vector<int> columns_of;      // of each node, or -1

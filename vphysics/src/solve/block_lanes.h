@@ -48,10 +48,10 @@ class BlockLanes {
     F r[16];
     lanes::gather16<W>([this](int i) { return first_line(row_a(i)); }, r);
     take_velocity(r, v_a, w_a, mass_a_, falls_a);
-    read_displacement(r + 8, x_a, turn_a, carried_a_, fraction_minus_one_a_);
+    read_displacement(r + 8, x_a, rotation_a, carried_a_, fraction_minus_one_a_);
     lanes::gather16<W>([this](int i) { return first_line(row_b(i)); }, r);
     take_velocity(r, v_b, w_b, mass_b_, falls_b);
-    read_displacement(r + 8, x_b, turn_b, carried_b_, fraction_minus_one_b_);
+    read_displacement(r + 8, x_b, rotation_b, carried_b_, fraction_minus_one_b_);
   }
   void scatter_velocities() const { scatter_velocities(F(0.0f) < F(1.0f)); }
   // Writes only the lanes in `of`.
@@ -62,10 +62,10 @@ class BlockLanes {
     scatter([this](int i) { return row_b(i).velocity; }, b, both(is_movable_b(), of));
   }
   void scatter_displacements() const {
-    const F a[8] = {x_a.x,    x_a.y,    x_a.z,      turn_a.x,
-                    turn_a.y, turn_a.z, carried_a_, fraction_minus_one_a_};
-    const F b[8] = {x_b.x,    x_b.y,    x_b.z,      turn_b.x,
-                    turn_b.y, turn_b.z, carried_b_, fraction_minus_one_b_};
+    const F a[8] = {x_a.x,        x_a.y,        x_a.z,      rotation_a.x,
+                    rotation_a.y, rotation_a.z, carried_a_, fraction_minus_one_a_};
+    const F b[8] = {x_b.x,        x_b.y,        x_b.z,      rotation_b.x,
+                    rotation_b.y, rotation_b.z, carried_b_, fraction_minus_one_b_};
     scatter([this](int i) { return row_a(i).displacement; }, a, is_movable_a());
     scatter([this](int i) { return row_b(i).displacement; }, b, is_movable_b());
   }
@@ -119,7 +119,7 @@ class BlockLanes {
     }
   }
 
-  V v_a, w_a, v_b, w_b, x_a, turn_a, x_b, turn_b;
+  V v_a, w_a, v_b, w_b, x_a, rotation_a, x_b, rotation_b;
   F falls_a, falls_b;
 
  private:

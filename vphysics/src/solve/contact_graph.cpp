@@ -13,7 +13,7 @@ namespace {
 // unless it is the world itself.
 std::uint16_t region_of(const ContactGraph::End& a, const ContactGraph::End& b) {
   if (a.row == kWorldRow) return b.region;
-  return b.row == kWorldRow || a.region == b.region ? a.region : kBetween;
+  return b.row == kWorldRow || a.region == b.region ? a.region : kSharedRegion;
 }
 
 template <int P>
@@ -49,9 +49,9 @@ void ContactGraph::reserve(std::size_t bodies) {
   const double faces =
       within == 0 ? 0.0 : std::min(1.0, 2.0 / std::cbrt(all / static_cast<double>(within)));
   for (std::size_t region = 0; region < regions(); ++region) {
-    const std::size_t fraction = within == 0          ? bodies
-                                 : region == kBetween ? static_cast<std::size_t>(faces * all)
-                                                      : bodies / within + 1;
+    const std::size_t fraction = within == 0               ? bodies
+                                 : region == kSharedRegion ? static_cast<std::size_t>(faces * all)
+                                                           : bodies / within + 1;
     if (within > 0 && fraction < 2 * kLanes) continue;  // a block per colour would be too much
     const std::size_t blocks = fraction / (2 * kLanes) + 1;
     for (int c = 0; c < kFirstFixedColour + kReadyFixed; ++c) {
@@ -103,7 +103,7 @@ bool ContactGraph::append(std::uint32_t contact, const End& a, const End& b, int
   }
   slot.points = static_cast<std::uint8_t>(points);
   slot.colour = static_cast<std::uint8_t>(colour);
-  slot.region = colour == kParked ? kBetween : region_of(a, b);
+  slot.region = colour == kParked ? kSharedRegion : region_of(a, b);
   points == 1 ? add_slot<1>(contact, a, b, slot) : add_slot<4>(contact, a, b, slot);
   return true;
 }
@@ -122,7 +122,7 @@ std::uint32_t ContactGraph::remove(const ContactSlot& slot, const End& a, const 
 template <int P>
 void ContactGraph::ensure_capacity(const ContactSlot& slot) {
   const std::size_t capacity = 2 * of<P>(slot.region, slot.colour).blocks.capacity() + 1;
-  const bool of_all = slot.region != kBetween && slot.colour != kLastColour;
+  const bool of_all = slot.region != kSharedRegion && slot.colour != kLastColour;
   for (std::size_t region = 1; of_all && region < regions(); ++region) {
     of<P>(region, slot.colour).blocks.reserve(capacity);
   }

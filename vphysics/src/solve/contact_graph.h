@@ -11,9 +11,9 @@
 //
 // A large world is divided into regions (world/regions.cpp). A contact between two bodies of one
 // region, or between one of them and the fixed world, is stored in that region, colour by colour.
-// All others are stored in kBetween. So no two regions share a body, and each can be solved on its
-// own, for several iterations, while its data is in cache. Colours are global: a contact that moves
-// to another region keeps its colour.
+// All others are stored in kSharedRegion. So no two regions share a body, and each can be solved on
+// its own, for several iterations, while its data is in cache. Colours are global: a contact that
+// moves to another region keeps its colour.
 #pragma once
 
 #include <algorithm>
@@ -64,12 +64,12 @@ static_assert(kColours == 128 && kFirstFixedColour == 64);
 
 // The region of contacts between regions, of contacts of bodies in no region, and of all parked
 // slots.
-inline constexpr std::uint16_t kBetween = 0;
+inline constexpr std::uint16_t kSharedRegion = 0;
 
 // The location of a contact's slot. points: 1 or 4, or 0 if it has none.
 struct ContactSlot {
   std::uint8_t points = 0, colour = 0;
-  std::uint16_t region = kBetween;
+  std::uint16_t region = kSharedRegion;
   std::uint32_t index = 0;  // of the slot, among those of its region, colour and point count
 };
 
@@ -151,14 +151,14 @@ class ContactGraph {
   const ColourBlocks<P>& of(std::size_t region, int colour) const {
     return const_cast<ContactGraph*>(this)->of<P>(region, colour);
   }
-  // The number of regions: kBetween and those after it. Precondition of set_regions: the regions
-  // that are removed are empty. Their memory is kept for later use.
+  // The number of regions: kSharedRegion and those after it. Precondition of set_regions: the
+  // regions that are removed are empty. Their memory is kept for later use.
   std::size_t regions() const { return regions_in_use_; }
   void set_regions(std::size_t count) {
     if (count > regions_.size()) regions_.resize(count);
     regions_in_use_ = count;
   }
-  // Removes all slots and all regions except kBetween; keeps the memory.
+  // Removes all slots and all regions except kSharedRegion; keeps the memory.
   void clear();
   // resize: capacity for the rows. reserve: capacity for the first contacts of this many bodies, so
   // that a busy step need not allocate.

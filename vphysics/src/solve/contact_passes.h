@@ -43,10 +43,10 @@ struct Normals {
       arm_b[i] = c.get(c.block().arm[i].b);
     }
   }
-  // out_i = n . linear + (d x n) . turn_b + arm . (turn_b - turn_a), for all points.
-  void along(const V& linear, const V& turn_a, const V& turn_b, F* out) const {
-    const F common = dot(n, linear) + dot(d_n, turn_b);
-    const V rotation = turn_b - turn_a;
+  // out_i = n . linear + (d x n) . rotation_b + arm . (rotation_b - rotation_a), for all points.
+  void along(const V& linear, const V& rotation_a, const V& rotation_b, F* out) const {
+    const F common = dot(n, linear) + dot(d_n, rotation_b);
+    const V rotation = rotation_b - rotation_a;
     const F angular_t = dot(t, rotation), angular_about_b = dot(b, rotation);
     for (int i = 0; i < P; ++i) {
       out[i] = common + (arm_t[i] * angular_t + arm_b[i] * angular_about_b);
@@ -54,7 +54,7 @@ struct Normals {
   }
   void speeds(const LanesOf<W, P>& c, F* u) const { along(c.v_b - c.v_a, c.w_a, c.w_b, u); }
   void separations(const LanesOf<W, P>& c, F* s) const {
-    along(c.x_b - c.x_a, c.turn_a, c.turn_b, s);
+    along(c.x_b - c.x_a, c.rotation_a, c.rotation_b, s);
     for (int i = 0; i < P; ++i) s[i] += c.get(c.block().base[i]);
   }
   // Applies the changes of the points' impulses to the bodies.
@@ -146,34 +146,33 @@ struct Grip {
   V t, b, r_a, r_b;
 };
 
-// Updates two tangential impulses p at the slip velocity u, at most max_value long. Sticking: the
+// Updates two tangential impulses p at the slip velocity u, at most limit long. Sticking: the
 // full 2x2 block stops the slip. Sliding: one effective mass, since the block would rotate the
 // impulse away from the slip direction.
 template <int W, int P>
-void grip_or_slide(const LanesOf<W, P>& c, const Lanes<W>* u, const Lanes<W>& max_value,
-                   Lanes<W>* p) {
+void grip_or_slide(const LanesOf<W, P>& c, const Lanes<W>* u, const Lanes<W>& limit, Lanes<W>* p) {
   using F = Lanes<W>;
   auto& block = c.block();
   const F q0 = p[0], q1 = p[1], xy = c.get(block.stick[1]);
   p[0] = q0 - (c.get(block.stick[0]) * u[0] + xy * u[1]);
   p[1] = q1 - (xy * u[0] + c.get(block.stick[2]) * u[1]);
-  const auto slides = p[0] * p[0] + p[1] * p[1] > max_value * max_value;
+  const auto slides = p[0] * p[0] + p[1] * p[1] > limit * limit;
   if (none(slides)) return;
   const F mass = c.get(block.slide);
   const F s0 = q0 - mass * u[0], s1 = q1 - mass * u[1];
   const F size = sqrt(s0 * s0 + s1 * s1);
-  const F fraction = select(size > max_value, max_value / size, F(1.0f));
+  const F fraction = select(size > limit, limit / size, F(1.0f));
   p[0] = select(slides, fraction * s0, p[0]);
   p[1] = select(slides, fraction * s1, p[1]);
 }
 
 template <int W>
-LaneMask<W> within(const Lanes<W>& x, const Lanes<W>& max_value) {
-  return abs(x) <= max_value;
+LaneMask<W> within(const Lanes<W>& x, const Lanes<W>& limit) {
+  return abs(x) <= limit;
 }
 template <int W>
-Lanes<W> clamped(const Lanes<W>& x, const Lanes<W>& max_value) {
-  return larger(-max_value, smaller(x, max_value));
+Lanes<W> clamped(const Lanes<W>& x, const Lanes<W>& limit) {
+  return larger(-limit, smaller(x, limit));
 }
 
 // Changes only the lanes `acts`. Returns the lanes in which no impulse has changed by more than the
@@ -211,11 +210,11 @@ LaneMask<W> solve_friction(LanesOf<W, P>& c, const Normals<W, P>& normals,
   V moment = (next - twist) * n;
   const F mass = c.get(block.roll_mass);
   if (!none(mass > F(0.0f))) {
-    const F max_value = c.get(block.roll_arm) * load;
+    const F limit = c.get(block.roll_arm) * load;
     const F r0 = c.get(block.roll_impulse[0]), r1 = c.get(block.roll_impulse[1]);
     const F s0 = r0 - mass * dot(at.t, spin), s1 = r1 - mass * dot(at.b, spin);
     const F size = sqrt(s0 * s0 + s1 * s1);
-    const F fraction = select(size > max_value, max_value / size, F(1.0f));
+    const F fraction = select(size > limit, limit / size, F(1.0f));
     const F e0 = select(acts, fraction * s0, r0), e1 = select(acts, fraction * s1, r1);
     c.put(block.roll_impulse[0], e0);
     c.put(block.roll_impulse[1], e1);
@@ -348,7 +347,7 @@ bool solve_lanes(LanesOf<W, P>& c, const Soft& soft) {
   const Normals<W, P> normals(c);
   const auto grips = solve_friction(c, normals, acts);
 
-  F u[P], bias[P], p0[P], p[P], mass[P], fraction[P], max_value[P];
+  F u[P], bias[P], p0[P], p[P], mass[P], fraction[P], limit[P];
   normals.speeds(c, u);
   const auto too_deep = find_bias<W, P, kPass>(c, normals, soft, u, bias);
   for (int i = 0; i < P; ++i) {
@@ -362,14 +361,14 @@ bool solve_lanes(LanesOf<W, P>& c, const Soft& soft) {
       mass[i] = select(acts, mass[i], F(0.0f));
     }
     // The next sub-step handles a separation that closes in it: it may be a bounce.
-    if constexpr (!kUseBias) max_value[i] = select(open, p0[i], F(kLargestImpulse));
+    if constexpr (!kUseBias) limit[i] = select(open, p0[i], F(kLargestImpulse));
   }
   const Points<W, P> points(c, mass, fraction, u, p0);
   const auto sweep = [&](const auto& next_of) {
     F moved(0.0f), load(0.0f);
     for (int i = 0; i < P; ++i) {
       F next = larger(points.target(i, p), F(0.0f));
-      if constexpr (!kUseBias) next = smaller(next, max_value[i]);
+      if constexpr (!kUseBias) next = smaller(next, limit[i]);
       next = next_of(next, p[i]);
       moved = larger(moved, abs(next - p[i]));
       load += next;

@@ -265,7 +265,7 @@ void integrate_untouched(const StepContext& s) {
       return row.pair == kNoPair && row.articulation == own;
     };
     for (; end < s.joints.size() && is_own(s.joints[end]); ++end) {
-      coupled = coupled || feels_others(s.joints[end].side) ||
+      coupled = coupled || is_coupled(s.joints[end].side) ||
                 (end > begin && s.joints[end].dof == s.joints[end - 1].dof);
     }
     if (s.articulations[own].touched) continue;

@@ -48,22 +48,22 @@ inline void friction_after(const ContactConstraint& c, const ContactPoint& p, do
   const double before0 = impulse[0], before1 = impulse[1];
   impulse[0] = before0 - (p.tangent_mass[0] * u0 + p.tangent_mass[1] * u1);
   impulse[1] = before1 - (p.tangent_mass[1] * u0 + p.tangent_mass[2] * u1);
-  const double max_value = c.friction * normal_impulse;
-  if (impulse[0] * impulse[0] + impulse[1] * impulse[1] <= max_value * max_value) return;
+  const double limit = c.friction * normal_impulse;
+  if (impulse[0] * impulse[0] + impulse[1] * impulse[1] <= limit * limit) return;
   impulse[0] = before0 - p.slide_mass * u0;
   impulse[1] = before1 - p.slide_mass * u1;
   const double size = std::sqrt(impulse[0] * impulse[0] + impulse[1] * impulse[1]);
-  if (size <= max_value) return;
-  impulse[0] *= max_value / size;
-  impulse[1] *= max_value / size;
+  if (size <= limit) return;
+  impulse[0] *= limit / size;
+  impulse[1] *= limit / size;
 }
 // The next rolling impulse at the relative angular velocity `rotation` of a contact with the normal
 // load `load`.
 inline Vec3 rolling_after(const ContactConstraint& c, const Vec3& before, const Vec3& rotation,
                           double load) {
   const Vec3 next = before - c.rolling_mass * rotation;
-  const double max_value = c.rolling * load, size = norm(next);
-  return size > max_value ? (max_value / size) * next : next;
+  const double limit = c.rolling * load, size = norm(next);
+  return size > limit ? (limit / size) * next : next;
 }
 
 inline void apply(SolverBody& a, SolverBody& b, const ContactConstraint& c, const ContactPoint& p,

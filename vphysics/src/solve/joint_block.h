@@ -27,7 +27,7 @@
 namespace vphysics_solver {
 
 inline constexpr int kJointRows = 6;
-inline constexpr float kNowhere = 1e30f;        // an absent limit
+inline constexpr float kNoBound = 1e30f;        // an absent limit
 inline constexpr float kMaxAngularBias = 3.0f;  // maximum bias velocity of angular rows [rad/s]
 
 // What a row measures: slots 0 to 5 are those of JointAxis; the first three are displacements along

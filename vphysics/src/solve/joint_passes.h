@@ -330,7 +330,7 @@ Lanes<W> fastest_of(const JointLanes<W, B>& c, int i, float bias) {
                      F(kMaxAngularBias) * sqrt(larger(square(J.angular_a), square(J.angular_b))));
   }
   fastest = larger(fastest, c.rate(i) * (fastest * F(kBriefly)));
-  return select(c.relaxes(i) > F(0.0f), fastest, F(kNowhere));
+  return select(c.relaxes(i) > F(0.0f), fastest, F(kNoBound));
 }
 
 // Returns true if the error of a hard row is too large to be corrected at its full rate.
@@ -456,7 +456,7 @@ Lanes<W> stop_change(const JointLanes<W, B>& c, int i, const Lanes<W>& u, const 
                           : p - c.get(row.relaxes) * mass * speed;
   const F next = larger(select(separation > zero, unbiased, passed), zero);
   // The other limit is the closer one, or the limit is absent.
-  const LaneMask<W> lets_go = either(p < zero, !(separation < F(0.5f * kNowhere)));
+  const LaneMask<W> lets_go = either(p < zero, !(separation < F(0.5f * kNoBound)));
   return select(lets_go, -stop, side * (next - p));
 }
 

@@ -60,7 +60,7 @@ struct JointRow {
 };
 
 // Whether an impulse on this coordinate changes other coordinates.
-inline bool feels_others(const LinkSide& side) {
+inline bool is_coupled(const LinkSide& side) {
   for (std::uint32_t k = 1; k < side.depth; ++k) {
     if (side.rows[k] != 0.0) return true;
   }

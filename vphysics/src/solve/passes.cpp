@@ -12,7 +12,7 @@ namespace {
 
 constexpr int W = VP_LANES;
 
-// Eight floats of velocity, displacement or acceleration, in the memory layout of a row.
+// PaddedSix floats of velocity, displacement or acceleration, in the memory layout of a row.
 using Row8 = lanes::RawT<8>;
 
 void accelerate(BodyRow* rows, const std::uint32_t* bodies, std::size_t count, float h) {

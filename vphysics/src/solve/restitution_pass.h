@@ -124,9 +124,9 @@ bool apply_restitution_lanes(LanesOf<W, P>& c, float h, float threshold) {
   const auto moves = both(bounces, gained > F(1e-9f));
   const F part = select(moves, clamped(error / larger(gained, F(1e-9f)), F(h)), F(0.0f));
   c.x_a += part * (c.v_a - v_a);
-  c.turn_a += part * (c.w_a - w_a);
+  c.rotation_a += part * (c.w_a - w_a);
   c.x_b += part * (c.v_b - v_b);
-  c.turn_b += part * (c.w_b - w_b);
+  c.rotation_b += part * (c.w_b - w_b);
   c.scatter_displacements();
 
   // Friction during the bounce.
@@ -157,9 +157,9 @@ std::uint32_t find_moved_slots(LanesOf<W, P>& c, float dt, float rotation) {
   const V r_a = c.get(block.grip), r_b = r_a + c.get(block.d);
   const F step(dt);
   const V x_a = c.x_a + step * c.v_a, x_b = c.x_b + step * c.v_b;
-  const V turn_a = c.turn_a + step * c.w_a, turn_b = c.turn_b + step * c.w_b;
-  const V slid = x_b + cross(turn_b, r_b) - x_a - cross(turn_a, r_a) - c.get(block.slid);
-  const V by_a = turn_a - c.get(block.rotated_a), by_b = turn_b - c.get(block.rotated_b);
+  const V rotation_a = c.rotation_a + step * c.w_a, rotation_b = c.rotation_b + step * c.w_b;
+  const V slid = x_b + cross(rotation_b, r_b) - x_a - cross(rotation_a, r_a) - c.get(block.slid);
+  const V by_a = rotation_a - c.get(block.rotated_a), by_b = rotation_b - c.get(block.rotated_b);
   const F limit = c.get(block.slid_limit), own(rotation * rotation),
           driven(kDrivenRotation * kDrivenRotation);
   const auto still = both(both(dot(slid, slid) <= limit * limit,
@@ -206,21 +206,21 @@ std::uint32_t find_closer_pairs(const SpeculativePair* pairs, BodyRow* rows, flo
     rotation = V{displacement[3], displacement[4], displacement[5]} +
                step * V{velocity[3], velocity[4], velocity[5]};
   };
-  V x_a, turn_a, x_b, turn_b;
-  gather(&SpeculativePair::a, x_a, turn_a);
-  gather(&SpeculativePair::b, x_b, turn_b);
-  turn_a -= get3(3);
-  turn_b -= get3(9);
+  V x_a, rotation_a, x_b, rotation_b;
+  gather(&SpeculativePair::a, x_a, rotation_a);
+  gather(&SpeculativePair::b, x_b, rotation_b);
+  rotation_a -= get3(3);
+  rotation_b -= get3(9);
   const V arm_a = get3(12), arm_b = get3(15);
-  const V by_a = x_a - get3(0) + cross(turn_a, arm_a);
-  const V by_b = x_b - get3(6) + cross(turn_b, arm_b);
+  const V by_a = x_a - get3(0) + cross(rotation_a, arm_a);
+  const V by_b = x_b - get3(6) + cross(rotation_b, arm_b);
   const auto size = [](const V& v) { return sqrt(dot(v, v)); };
   // A rotating arm leaves its tangent by half of the squared angle.
-  const auto bow = [&](const V& rotation, const V& arm) {
+  const auto arc_error = [&](const V& rotation, const V& arm) {
     return F(0.5f) * dot(rotation, rotation) * size(arm);
   };
-  const F gone = size(by_b - by_a) + of_pair[18] * size(turn_b - turn_a) + bow(turn_a, arm_a) +
-                 bow(turn_b, arm_b);
+  const F gone = size(by_b - by_a) + of_pair[18] * size(rotation_b - rotation_a) +
+                 arc_error(rotation_a, arm_a) + arc_error(rotation_b, arm_b);
   const auto stays = gone <= of_pair[19];
   return lanes::bits_of(!stays);
 }

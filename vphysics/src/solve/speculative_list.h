@@ -65,7 +65,9 @@ class SpeculativeList {
 
   std::uint32_t size() const { return size_; }
   std::span<SpeculativeBlock> blocks() { return blocks_; }
-  SpeculativePair& pair(std::uint32_t index) { return blocks_[index / kLanes].pairs[index % kLanes]; }
+  SpeculativePair& pair(std::uint32_t index) {
+    return blocks_[index / kLanes].pairs[index % kLanes];
+  }
   const SpeculativePair& pair(std::uint32_t index) const {
     return blocks_[index / kLanes].pairs[index % kLanes];
   }

@@ -157,7 +157,7 @@ class Builder {
   }
 
  private:
-  struct Waiting {
+  struct PendingJoint {
     const urdf::Joint* joint;
     int parent;
   };
@@ -180,7 +180,7 @@ class Builder {
     const std::size_t first = waiting_.size();
     for (const auto& joint : link.child_joints) waiting_.push_back({joint.get(), number});
     std::sort(waiting_.begin() + static_cast<std::ptrdiff_t>(first), waiting_.end(),
-              [&](const Waiting& a, const Waiting& b) { return order(a) > order(b); });
+              [&](const PendingJoint& a, const PendingJoint& b) { return order(a) > order(b); });
   }
   int add(LinkSpec spec, int line) {
     links_.push_back(std::move(spec));
@@ -193,7 +193,7 @@ class Builder {
     const urdf::Inertial& i = *link.inertial;
     Sym3 moments{i.ixx, i.iyy, i.izz, i.ixy, i.iyz, i.ixz};
     const StatedMoments stated = judged(i.mass, moments);
-    if (stated != StatedMoments::of_a_body) {
+    if (stated != StatedMoments::physical) {
       std::string what = "no body has the inertia of link \"" + link.name + "\": ";
       if (stated == StatedMoments::negative) {
         moments = without_negative(moments);
@@ -209,7 +209,7 @@ class Builder {
   }
 
   Expected<Model> model() {
-    for (const int link : give_armatures(links_)) {
+    for (const int link : add_armatures(links_)) {
       const auto i = static_cast<std::size_t>(link);
       notes_.push_back(urdf_note(link_lines_[i],
                                  "the joint above this link moves no mass in some direction, and "
@@ -231,7 +231,9 @@ class Builder {
     }
     return model;
   }
-  int order(const Waiting& waiting) const { return lines_.joints.at(waiting.joint->name).order; }
+  int order(const PendingJoint& waiting) const {
+    return lines_.joints.at(waiting.joint->name).order;
+  }
 
   void joint(const urdf::Joint& joint, int parent, const urdf::Link& child) {
     LinkSpec spec;
@@ -280,7 +282,7 @@ class Builder {
   std::vector<std::string>& notes_;
   std::vector<LinkSpec> links_;
   std::vector<int> link_lines_;
-  std::vector<Waiting> waiting_;
+  std::vector<PendingJoint> waiting_;
   std::vector<UrdfJoint> joints_;
   std::vector<UrdfCollision> collisions_;
 };

@@ -30,7 +30,7 @@ std::vector<se3> columns_of(const Joint& joint) {
 
 // Eliminates the joint's columns from J: the articulated inertia seen by the parent. Returns false
 // if the inertia along a column is zero, or negligible beside the size of J.
-bool let_go(AInertia& J, const std::vector<se3>& columns, double armature) {
+bool eliminate_joint(AInertia& J, const std::vector<se3>& columns, double armature) {
   const double angular = size_of(J.angular()), linear = size_of(J.linear());
   for (const se3& S : columns) {
     const dse3 F = J * S;
@@ -71,7 +71,7 @@ StatedMoments judged(double mass, const Sym3& moments) {
   if (m[0] < -slack) return StatedMoments::negative;
   const bool too_much = m[2] > m[0] + m[1] + 2.0 * slack;
   const bool without_mass = !(mass > 0.0) && moments != Sym3{};
-  return too_much || without_mass ? StatedMoments::of_no_body : StatedMoments::of_a_body;
+  return too_much || without_mass ? StatedMoments::non_physical : StatedMoments::physical;
 }
 
 Sym3 without_negative(const Sym3& moments) {
@@ -81,7 +81,7 @@ Sym3 without_negative(const Sym3& moments) {
   return out;
 }
 
-std::vector<int> give_armatures(std::vector<LinkSpec>& links) {
+std::vector<int> add_armatures(std::vector<LinkSpec>& links) {
   std::vector<int> given;
   const Scale scale = scale_of(links);
   std::vector<AInertia> carried(links.size());  // of each link's descendants
@@ -90,12 +90,12 @@ std::vector<int> give_armatures(std::vector<LinkSpec>& links) {
     const AInertia J = carried[i] + link.inertia;
     const std::vector<se3> columns = columns_of(link.joint);
     AInertia beyond = J;
-    if (!let_go(beyond, columns, link.armature)) {
+    if (!eliminate_joint(beyond, columns, link.armature)) {
       const bool slides = std::holds_alternative<PrismaticJoint>(link.joint);
       link.armature = 1e-6 * scale.mass * (slides ? 1.0 : scale.length * scale.length);
       given.push_back(static_cast<int>(i));
       beyond = J;
-      let_go(beyond, columns, link.armature);
+      eliminate_joint(beyond, columns, link.armature);
     }
     if (link.parent == kWorld) continue;
     AInertia& below = carried[static_cast<std::size_t>(link.parent)];

@@ -11,9 +11,9 @@ namespace vp::detail {
 
 // Validity of the moments about the centre of mass.
 enum class StatedMoments {
-  of_a_body,
-  of_no_body,  // positive semidefinite, but one exceeds the sum of the others, or no mass
-  negative,    // a negative principal moment
+  physical,
+  non_physical,  // positive semidefinite, but one exceeds the sum of the others, or no mass
+  negative,      // a negative principal moment
 };
 StatedMoments judged(double mass, const Sym3& moments);
 // The nearest positive semidefinite moments: negative principal moments become zero.
@@ -23,6 +23,6 @@ Sym3 without_negative(const Sym3& moments);
 // forward dynamics would divide by zero. The armature is a millionth of the robot's mass (times its
 // squared length), which is negligible beside any link with mass. Returns these links in order.
 // Precondition: parents come before their children.
-std::vector<int> give_armatures(std::vector<LinkSpec>& links);
+std::vector<int> add_armatures(std::vector<LinkSpec>& links);
 
 }  // namespace vp::detail

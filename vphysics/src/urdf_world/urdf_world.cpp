@@ -17,7 +17,7 @@
 namespace vp {
 namespace {
 
-constexpr double kThinnest = 1e-4;  // [m], for a box or cylinder with an extent of zero
+constexpr double kMinExtent = 1e-4;  // [m], for a box or cylinder with an extent of zero
 
 // Whether only the root moves: then the robot is a single body.
 bool is_one_body(const Model& model) {
@@ -90,7 +90,7 @@ class Importer {
     const auto thick = [&](double length) {
       if (length != 0.0) return length;
       note_collision(collision, "an extent of zero is taken as 0.1 mm");
-      return kThinnest;
+      return kMinExtent;
     };
     const Vec3& size = collision.size;
     switch (collision.kind) {

@@ -21,8 +21,9 @@ Velocity Approach::pull_of(const Body& body) const {
     if (dot(gravity, gravity) <= kBornePull * kBornePull) return {};
   }
   const Velocity a = loads.acceleration(body, desc.gravity);
-  const double max_value = norm(a.v) + body.bounding_radius * norm(a.w);
-  if (max_value <= kBornePull || dt * dt * max_value <= desc.contact_slop) return {};
+  const double acceleration_bound = norm(a.v) + body.bounding_radius * norm(a.w);
+  if (acceleration_bound <= kBornePull || dt * dt * acceleration_bound <= desc.contact_slop)
+    return {};
   const double mean = 0.5 * dt * (1.0 + 1.0 / sub_steps_in(desc, speed_unit, dt));
   return {mean * a.w, mean * a.v};
 }
@@ -59,14 +60,15 @@ double Approach::of(const Collider& a, const Collider& b) const {
   const Body &body_a = bodies[a.body], &body_b = bodies[b.body];
   const Approaching by_a(body_a, pull_of(body_a)), by_b(body_b, pull_of(body_b));
   const Vicinity at = vicinity_of(bodies, a, b);
-  const double together = norm(by_b.velocity(at.centre) - by_a.velocity(at.centre)) +
-                          at.radius * norm(body_b.w - body_a.w) +
-                          by_a.pulled_by(at.centre, at.radius) +
-                          by_b.pulled_by(at.centre, at.radius);
+  const double coupled_speed = norm(by_b.velocity(at.centre) - by_a.velocity(at.centre)) +
+                               at.radius * norm(body_b.w - body_a.w) +
+                               by_a.pulled_by(at.centre, at.radius) +
+                               by_b.pulled_by(at.centre, at.radius);
   const Vec3 end_a = body_a.T * a.centre, end_b = body_b.T * b.centre;
-  const double separation = norm(by_b.velocity(end_b) - by_a.velocity(end_a)) +
-                            by_a.pulled_by(end_a, 0.0) + by_b.pulled_by(end_b, 0.0);
-  return std::min(dt * together, dt * separation + by_a.rotated(a, dt) + by_b.rotated(b, dt));
+  const double independent_speed = norm(by_b.velocity(end_b) - by_a.velocity(end_a)) +
+                                   by_a.pulled_by(end_a, 0.0) + by_b.pulled_by(end_b, 0.0);
+  return std::min(dt * coupled_speed,
+                  dt * independent_speed + by_a.rotated(a, dt) + by_b.rotated(b, dt));
 }
 
 }  // namespace vp

@@ -25,9 +25,9 @@ using detail::NodeKind;
 // A joint approaches its motor's target ever more slowly, and after some seconds would compute with
 // denormal numbers, which take a hundred times as long as others. Below this speed [m/s], [rad/s]
 // it is set to rest: in the age of the universe it would move less than an atom's size.
-constexpr double kStanding = 1e-28;
-double standing_or(double speed) {
-  return std::fabs(speed) < kStanding ? 0.0 : speed;
+constexpr double kRestSpeed = 1e-28;
+double flush_small_speed(double speed) {
+  return std::fabs(speed) < kRestSpeed ? 0.0 : speed;
 }
 
 // The node's joint moves about or along its parent's axis, and its mass is balanced on that axis.
@@ -71,8 +71,9 @@ Articulation::Articulation(const Model& model, const Vec3& gravity)
   const auto n = static_cast<std::size_t>(model.velocities());
   v.resize(n);
   dofs.resize(n);
-  for (std::vector<double>* scratch : {&damping_, &forced_, &moving_, &drift_, &rate_, &change_,
-                                       &force_, &zero_, &impulse_applied_, &velocity_, &shift_}) {
+  for (std::vector<double>* scratch :
+       {&damping_, &forced_, &sub_step_velocity_, &drift_, &rate_, &change_, &force_, &zero_,
+        &applied_forces_, &velocity_, &shift_}) {
     scratch->resize(n);
   }
   composites_.resize(floating_.size());
@@ -114,7 +115,7 @@ Articulation::Articulation(const Model& model, const Vec3& gravity)
   factored_ = Factored::without_damping;
   factor_.twists(zero_);
   find_change(1.0, zero_);
-  fall_ = change_;
+  gravity_acceleration_ = change_;
   if (constant_) {
     find_lines();
     find_responses();
@@ -165,28 +166,28 @@ void Articulation::find_lines() {
     const bool plain = X.rotation().cx == Vec3{1, 0, 0} && X.rotation().cy == Vec3{0, 1, 0} &&
                        X.rotation().cz == Vec3{0, 0, 1} && X.position().x == 0.0 &&
                        X.position().y == 0.0;
-    is_plain_.push_back(node != kWorld && plain ? 1 : 0);
+    is_axial_.push_back(node != kWorld && plain ? 1 : 0);
   }
-  keeps_twists_ = std::all_of(is_plain_.begin(), is_plain_.end(), [](auto p) { return p != 0; });
+  keeps_twists_ = std::all_of(is_axial_.begin(), is_axial_.end(), [](auto p) { return p != 0; });
 }
 
 void Articulation::find_responses() {
   for (std::size_t i = 0; i < v.size(); ++i) {
     const auto dof = static_cast<std::uint32_t>(i);
     const auto row = factor_.joint_row(dof);
-    const bool feels_others = std::any_of(row.y + 1, row.y + factor_.depth_of_dof(dof),
-                                          [](double y) { return y != 0.0; });
-    if (feels_others || dofs[i].passive || dofs[i].locked || fall_[i] != 0.0) {
+    const bool is_coupled = std::any_of(row.y + 1, row.y + factor_.depth_of_dof(dof),
+                                        [](double y) { return y != 0.0; });
+    if (is_coupled || dofs[i].passive || dofs[i].locked || gravity_acceleration_[i] != 0.0) {
       responses_.clear();
       return;
     }
     responses_.push_back(row.response);
   }
-  driven_alike_.assign(v.size(), 0);
+  same_drive_as_previous_.assign(v.size(), 0);
 }
 
 // All stops are so far that none gets a row (add_stops(), articulations.cpp).
-bool Articulation::stops_are_far(double h) const {
+bool Articulation::stops_are_inactive(double h) const {
   for (const std::size_t i : stopped_) {
     const JointDof& dof = dofs[i];
     const double x = q[static_cast<std::size_t>(dof.coordinate)];
@@ -199,29 +200,30 @@ bool Articulation::stops_are_far(double h) const {
 void Articulation::compare_drives() {
   drives_are_compared_ = true;
   for (std::size_t i = 1; i < v.size(); ++i) {
-    driven_alike_[i] = responses_[i] == responses_[i - 1] && dofs[i].drive == dofs[i - 1].drive &&
-                       dofs[i].forces.motor_limit == dofs[i - 1].forces.motor_limit;
+    same_drive_as_previous_[i] = responses_[i] == responses_[i - 1] &&
+                                 dofs[i].drive == dofs[i - 1].drive &&
+                                 dofs[i].forces.motor_limit == dofs[i - 1].forces.motor_limit;
   }
 }
 
 // p = constant - gain (v + response p). Neighbours with equal state and drive have equal impulses,
 // computed once. There is one coordinate for each velocity (constant_).
-bool Articulation::integrate_alone(double h) {
-  if (responses_.empty() || !stops_are_far(h)) return false;
+bool Articulation::solve_decoupled(double h) {
+  if (responses_.empty() || !stops_are_inactive(h)) return false;
   if (!drives_are_compared_) compare_drives();
   double impulse = 0.0, x_before = 0.0, v_before = 0.0, v_after = 0.0;
   const std::size_t n = v.size();
   for (std::size_t i = 0; i < n; ++i) {
     JointDof& dof = dofs[i];
     const double x = q[i], speed = v[i];
-    const bool alike = driven_alike_[i] && speed == v_before && x == x_before;
+    const bool alike = same_drive_as_previous_[i] && speed == v_before && x == x_before;
     if (!alike) {
       x_before = x;
       v_before = speed;
       const Motor motor = motor_of(dof, h, x);
       const double p = (motor.constant - motor.gain * speed) / (1.0 + motor.gain * responses_[i]);
       impulse = std::clamp(p, -motor.limit, motor.limit);
-      v_after = standing_or(speed + responses_[i] * impulse);
+      v_after = flush_small_speed(speed + responses_[i] * impulse);
     }
     dof.impulses = {impulse};
     v[i] = v_after;
@@ -246,7 +248,7 @@ double Articulation::slides_since_remote(double h) const {
 
 Vec3 Articulation::line_of(int link) const {
   const auto l = static_cast<std::size_t>(link);
-  return constant_ && is_plain_[l] ? T_world_line_[l].rotation().cz : Vec3{};
+  return constant_ && is_axial_[l] ? T_world_line_[l].rotation().cz : Vec3{};
 }
 
 void Articulation::update_line_poses() {
@@ -292,7 +294,7 @@ SE3 Articulation::T_world_link(int link) const {
   const Mat3& R = X.rotation();
   const SE3 moved(Mat3{c * R.cx + s * R.cy, c * R.cy - s * R.cx, R.cz},
                   X.position() + on.slide * R.cz);
-  if (!is_plain_[l]) return moved * T_line_link_[l];
+  if (!is_axial_[l]) return moved * T_line_link_[l];
   return SE3(moved.rotation(), moved.position() + T_line_link_[l].position().z * R.cz);
 }
 
@@ -336,8 +338,8 @@ void Articulation::advance(double h) {
   refresh();
 }
 
-// Updates only the poses, until look_back().
-void Articulation::look_ahead(double h) {
+// Updates only the poses, until restore_poses().
+void Articulation::predict_poses(double h) {
   for (std::size_t i = 0; i < v.size(); ++i) rate_[i] = h * v[i];
   moved_q_ = q;
   if (constant_) {
@@ -348,7 +350,7 @@ void Articulation::look_ahead(double h) {
   integrate<double>(model_, moved_q_, rate_, q);
   forward_kinematics<double>(model_, data_, q, v);
 }
-void Articulation::look_back() {
+void Articulation::restore_poses() {
   q = moved_q_;
   if (constant_) return update_line_poses();
   forward_kinematics<double>(model_, data_, q, v);
@@ -387,16 +389,16 @@ void Articulation::advance_floating(double h) {
   detail::ImpulseFactor::kinematics_of(model_, data_, q, v);
 }
 
-void Articulation::mark_moving() {
+void Articulation::store_sub_step_velocity() {
   change_ = velocity_;
   factor_.to_velocities(change_);
-  for (std::size_t i = 0; i < v.size(); ++i) moving_[i] = v[i] + change_[i];
+  for (std::size_t i = 0; i < v.size(); ++i) sub_step_velocity_[i] = v[i] + change_[i];
 }
 
 void Articulation::advance_sub_step(double h) {
-  for (std::size_t i = 0; i < v.size(); ++i) change_[i] = v[i] - moving_[i];
+  for (std::size_t i = 0; i < v.size(); ++i) change_[i] = v[i] - sub_step_velocity_[i];
   velocity_ = change_;  // advance() uses the other scratch vectors
-  v = moving_;
+  v = sub_step_velocity_;
   twists_ = false;
   sub_stepped = false;
   advance(h);
@@ -429,7 +431,7 @@ Articulation::Change Articulation::end_solve() {
   const bool moved = pushed(shift_);
   if (!moved && !pushed(velocity_)) return Change::none;
   factor_.to_velocities(velocity_);
-  for (std::size_t i = 0; i < v.size(); ++i) v[i] = standing_or(v[i] + velocity_[i]);
+  for (std::size_t i = 0; i < v.size(); ++i) v[i] = flush_small_speed(v[i] + velocity_[i]);
   if (damped_ && factored_ == Factored::for_the_step) add_damping_efforts(velocity_);
   if (!moved) {
     update_twists();

@@ -98,9 +98,9 @@ class Articulation {
   // Calls f(link, T_world_link) for all links at the poses after h at the velocities v.
   template <class F>
   void for_poses_after(double h, const F& f) {
-    look_ahead(h);
+    predict_poses(h);
     for (int link = 0; link < static_cast<int>(bodies.size()); ++link) f(link, T_world_link(link));
-    look_back();
+    restore_poses();
   }
   // Centre of mass in the link frame; the link's origin if it has no mass.
   Vec3 centre_of(int link) const {
@@ -111,8 +111,8 @@ class Articulation {
   // Replaces the solver at the first instant of a step for an articulation that nothing touches and
   // whose joints are not coupled: computes its motors' impulses over h directly. False, with no
   // change, if it needs the solver.
-  bool integrate_alone(double h);
-  bool settles_alone() const { return !responses_.empty(); }
+  bool solve_decoupled(double h);
+  bool is_decoupled() const { return !responses_.empty(); }
   // Call after a change of any dof's drive.
   void drives_changed() { drives_are_compared_ = false; }
   // Prepares the solver: the response in the current configuration, with zero impulses. end_solve()
@@ -147,12 +147,12 @@ class Articulation {
   }
 
   // --- in sub-steps, while sub-stepped bodies are on its links (link_contacts.cpp)
-  bool sub_stepped = false;  // in this step
-  bool touched = false;      // by a contact of the current instant, in the impact stage
-  bool wants_next = false;   // scratch of find_next_poses (link_joints.cpp)
+  bool sub_stepped = false;      // in this step
+  bool touched = false;          // by a contact of the current instant, in the impact stage
+  bool needs_next_pose = false;  // scratch of find_next_poses (link_joints.cpp)
   // Stores the velocities at which advance_sub_step() moves: v with the solver's changes so far.
   // end_solve() may still change v.
-  void mark_moving();
+  void store_sub_step_velocity();
   void advance_sub_step(double h);
   // Returns to the pose at the start of the step; advance() then moves to the end pose again, and v
   // is that of the end. Until refresh(), drift_of() returns the mean velocity of a link over the
@@ -200,14 +200,14 @@ class Articulation {
   const JointReactions* reactions();
 
  private:
-  void look_ahead(double h);
-  void look_back();
+  void predict_poses(double h);
+  void restore_poses();
   void update_factor();
   void update_twists();
   void find_lines();
   void find_responses();
   void compare_drives();
-  bool stops_are_far(double h) const;
+  bool stops_are_inactive(double h) const;
   void update_line_poses();
   se3 twist_in_data(int link, const Vec3& point) const;
   void find_change(double dt, std::span<const double> at);
@@ -250,13 +250,13 @@ class Articulation {
   std::vector<OnLine> on_line_;         // of each node
   std::vector<SE3> T_world_line_;       // of each link: frame of its line,
   std::vector<SE3> T_line_link_;        // and its pose in that frame at zero coordinates
-  std::vector<std::uint8_t> is_plain_;  // this pose only shifts along the line
+  std::vector<std::uint8_t> is_axial_;  // this pose only shifts along the line
   bool keeps_twists_ = false;           // all links are plain
   // Velocity change of each coordinate per unit impulse of its own motor. Empty: joints are
   // coupled, or have more than motors and stops.
   std::vector<double> responses_;
   // Of each velocity: drive and response equal those of the previous one.
-  std::vector<std::uint8_t> driven_alike_;
+  std::vector<std::uint8_t> same_drive_as_previous_;
   bool drives_are_compared_ = false;
   enum class Factored : std::uint8_t { no, without_damping, for_the_step };
   Factored factored_ = Factored::no;  // of the current configuration
@@ -271,13 +271,14 @@ class Articulation {
   JointReactions reactions_;
 
   // Scratch.
-  std::vector<double> moving_, drift_;  // sub-steps: v while moving; mean velocity less v
-  std::vector<double> forced_;          // velocity changes from the forces of this step
-  std::vector<double> start_q_, moved_q_, rate_, change_, force_, zero_, impulse_applied_,
-      velocity_, shift_;
+  std::vector<double> sub_step_velocity_,
+      drift_;                   // sub-steps: v while moving; mean velocity less v
+  std::vector<double> forced_;  // velocity changes from the forces of this step
+  std::vector<double> start_q_, moved_q_, rate_, change_, force_, zero_, applied_forces_, velocity_,
+      shift_;
   std::vector<double> remote_q_;
   std::vector<CompositeBody> composites_;
-  std::vector<double> fall_;  // acceleration from gravity if constant_
+  std::vector<double> gravity_acceleration_;  // acceleration from gravity if constant_
 };
 
 }  // namespace vp

@@ -17,7 +17,7 @@ void Articulation::find_change(double dt, std::span<const double> at) {
     factor_.bias(gravity_, force_);
   }
   for (std::size_t i = 0; i < v.size(); ++i) {
-    change_[i] = dt * (impulse_applied_[i] - force_[i] - damping_[i] * v[i]);
+    change_[i] = dt * (applied_forces_[i] - force_[i] - damping_[i] * v[i]);
   }
   factor_.solve(change_);
 }
@@ -27,16 +27,16 @@ void Articulation::clear_loads() {
   loaded_ = false;
   std::fill(loads_.begin(), loads_.end(), dse3{});
   std::fill(joint_loads_.begin(), joint_loads_.end(), 0.0);
-  std::fill(impulse_applied_.begin(), impulse_applied_.end(), 0.0);
+  std::fill(applied_forces_.begin(), applied_forces_.end(), 0.0);
 }
 
 // All the user's forces as joint forces.
 void Articulation::find_force_response() {
-  impulse_applied_ = joint_loads_;
+  applied_forces_ = joint_loads_;
   for (std::size_t l = 0; l < loads_.size(); ++l) {
     if (loads_[l] == dse3{}) continue;
     const int link = static_cast<int>(l);
-    factor_.add_load(link, T_world_link(link).position(), loads_[l], impulse_applied_);
+    factor_.add_load(link, T_world_link(link).position(), loads_[l], applied_forces_);
   }
 }
 
@@ -64,8 +64,8 @@ void Articulation::add_loads_of_trees(double dt) {
 bool Articulation::add_constant_forces(double dt) {
   bool falls = false;
   for (std::size_t i = 0; i < v.size(); ++i) {
-    v[i] += dt * fall_[i];
-    falls = falls || fall_[i] != 0.0;
+    v[i] += dt * gravity_acceleration_[i];
+    falls = falls || gravity_acceleration_[i] != 0.0;
   }
   if (loaded_) {
     std::fill(velocity_.begin(), velocity_.end(), 0.0);

@@ -172,7 +172,7 @@ void World::Impl::add_joint_rows(double h, double dt, RowsOf of) {
   for (std::uint32_t a = 0; a < articulations.size(); ++a) {
     Articulation& art = articulations[a];
     if (!art.alive || (of == RowsOf::sub_step && !art.sub_stepped)) continue;
-    if (of == RowsOf::first_instant && !art.sub_stepped && !art.touched && art.integrate_alone(h)) {
+    if (of == RowsOf::first_instant && !art.sub_stepped && !art.touched && art.solve_decoupled(h)) {
       if (!art.remote) follow_velocities(art, false);
       continue;
     }

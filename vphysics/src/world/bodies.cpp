@@ -59,7 +59,7 @@ bool may_overlap(const Body& a, const Body& b) {
 
 solve::ContactGraph::End end_of(const Bodies& bodies, std::uint32_t body) {
   const Body& b = bodies[body];
-  if (b.motion == Motion::fixed) return {solve::kWorldRow, false, solve::kBetween};
+  if (b.motion == Motion::fixed) return {solve::kWorldRow, false, solve::kSharedRegion};
   return {body + 1, b.motion == Motion::dynamic, b.region};
 }
 
@@ -147,7 +147,7 @@ void World::Impl::load_rows(double dt) {
 }
 
 // Passes the bounds of colliders that may have left their enlarged ones to the broad phase.
-void World::Impl::update_bounds(std::uint32_t index, double dt, bool by_rows) {
+void World::Impl::update_bounds(std::uint32_t index, double dt, bool is_solver_driven) {
   Body& body = bodies[index];
   pose_colliders(bodies[index], colliders);
   const Velocity pull = approach_in(dt).pull_of(body);
@@ -167,7 +167,7 @@ void World::Impl::update_bounds(std::uint32_t index, double dt, bool by_rows) {
     finder.set_bounds(collider.proxy, bounds_along(start, displacement, more + half), half,
                       2.0 * (displacement + pulled));
   }
-  if (by_rows) std::copy_n(body_rows[index + 1].displacement, 6, body.bounded_at);
+  if (is_solver_driven) std::copy_n(body_rows[index + 1].displacement, 6, body.bounded_at);
 }
 
 Velocity World::Impl::settle(const BodyRows& rows, std::uint32_t index) {

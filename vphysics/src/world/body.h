@@ -39,15 +39,15 @@ struct alignas(64) Body {
   // posed and bounded are updated from the pose on demand. A link's T, w and v are refreshed only
   // if is_followed(); otherwise ask its articulation.
   bool asleep = false;
-  bool target = false;     // its colliders' poses are queued for computation
-  bool posed = false;      // the colliders' poses and bounds match T
-  bool bounded = false;    // `bounds` matches T
+  bool pose_pending = false;  // its colliders' poses are queued for computation
+  bool posed = false;         // the colliders' poses and bounds match T
+  bool bounded = false;       // `bounds` matches T
   bool untouched = false;  // nothing changed its row's rotation in this step: it has rotated freely
   bool allow_sleep = true;
-  bool mass_from_colliders = false;        // updated as colliders are added and removed
-  bool wants_continuous = false;           // when it is dynamic
-  std::uint16_t region = solve::kBetween;  // regions.cpp
-  std::uint32_t lanes = 0;                 // number of its contact slots in the solver
+  bool mass_from_colliders = false;             // updated as colliders are added and removed
+  bool requested_continuous = false;            // when it is dynamic
+  std::uint16_t region = solve::kSharedRegion;  // regions.cpp
+  std::uint32_t lanes = 0;                      // number of its contact slots in the solver
   std::uint32_t first_joint = kNone, first_collider = kNone;
   std::uint32_t load = kNone;  // index into the world's loads; kNone for links
   float bounded_at[6] = {};    // displacement of its row when its proxies' bounds were last set
@@ -90,9 +90,9 @@ struct alignas(64) Body {
   // Of a link: T, w and v are kept up to date.
   bool is_followed() const { return first_collider != kNone || first_joint != kNone; }
   // Its solver row moves it; otherwise it falls freely.
-  bool by_rows() const { return lanes > 0 || first_joint != kNone || on_link; }
+  bool is_solver_driven() const { return lanes > 0 || first_joint != kNone || on_link; }
   bool tumbles() const { return motion == Motion::dynamic && !is_link && !isotropic; }
-  bool rotates_freely() const { return !by_rows() || untouched; }
+  bool rotates_freely() const { return !is_solver_driven() || untouched; }
   void moved() {
     posed = bounded = false;
     ++pose_number;

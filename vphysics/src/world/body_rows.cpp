@@ -24,7 +24,7 @@ constexpr float kMaxDisplacement = 0.0625f, kFarSteps = 8.0f, kMaxRotation = 0.2
 // The nearest rotation to a matrix with accumulated rounding errors: one step of Newton's method,
 //   M (3 - M^T M) / 2,
 // which unlike Gram-Schmidt adds no rotation.
-Mat3 straightened(const Mat3& M) {
+Mat3 orthonormalized_by_newton(const Mat3& M) {
   const Vec3 &x = M.cx, &y = M.cy, &z = M.cz;
   const double xy = 0.5 * dot(x, y), yz = 0.5 * dot(y, z), zx = 0.5 * dot(z, x);
   return {(1.5 - 0.5 * dot(x, x)) * x - xy * y - zx * z,
@@ -47,9 +47,9 @@ Mat3 rotated_approximately(const Mat3& R, const Vec3& t) {
 
 // Rounding errors accumulate over thousands of steps. Two of the six orthonormality errors suffice
 // to detect it.
-bool is_worn(const Mat3& R) {
-  constexpr double kWorn = 1e-13;
-  return std::fabs(dot(R.cx, R.cx) - 1.0) + std::fabs(dot(R.cy, R.cz)) > kWorn;
+bool needs_orthonormalizing(const Mat3& R) {
+  constexpr double kMaxOrthonormalError = 1e-13;
+  return std::fabs(dot(R.cx, R.cx) - 1.0) + std::fabs(dot(R.cy, R.cz)) > kMaxOrthonormalError;
 }
 
 // The angular acceleration that changes w over dt as torque-free rotation does in the body frame.
@@ -71,7 +71,7 @@ Rotated rotated_freely(const Body& body, double h, const Vec3& more_w) {
   const Vec3 mean = more_w == Vec3{} ? w : transposed_times(R, body.w + more_w);
   const FreeRotation rotation = free_rotation(body.central, body.inverse_central, mean, h);
   Mat3 next = R * from_quaternion(rotation.q);
-  next = straightened(next);
+  next = orthonormalized_by_newton(next);
   // Angular momentum in the world frame is conserved to rounding.
   return {next, next * (body.inverse_central * transposed_times(next, L))};
 }
@@ -86,7 +86,7 @@ Vec3 rate_at(const Body& body, const Mat3& R) {
 // R after a small rotation by the vector t: Rodrigues' formula with coefficients to sixth order,
 // exact to rounding for the rotations of a step. Larger rotations use the exponential map.
 Mat3 rotated(const Mat3& R, const Vec3& t) {
-  return straightened(rotated_approximately(R, t));
+  return orthonormalized_by_newton(rotated_approximately(R, t));
 }
 
 bool BodyRows::load(Body& body, std::uint32_t index) const {
@@ -105,9 +105,9 @@ bool BodyRows::load(Body& body, std::uint32_t index) const {
   }
   row.displacement[solve::kCarried] = 0.0f;
   row.displacement[solve::kFractionMinusOne] = 0.0f;
-  if (pushed && body.lanes > kCrowd)
+  if (pushed && body.lanes > kMaxUnscaledContacts)
     row.displacement[solve::kFractionMinusOne] =
-        static_cast<float>(kCrowd / static_cast<double>(body.lanes) - 1.0);
+        static_cast<float>(kMaxUnscaledContacts / static_cast<double>(body.lanes) - 1.0);
   const float* displacement = row.displacement;
   if (!pushed) {
     std::fill(std::begin(row.rate), std::end(row.rate), 0.0f);
@@ -160,7 +160,7 @@ bool BodyRows::settle(Body& body, std::uint32_t index, Velocity& more) const {
   solve::BodyRow& row = rows[index + 1];
   body.rested = row.displacement[solve::kCarried] > 0.0f;
   more = {};
-  if (!body.by_rows()) {
+  if (!body.is_solver_driven()) {
     const double half = 0.5 * dt * (1.0 + 1.0 / sub_steps);
     const Vec3 v = body.v, w = body.w;
     const Velocity a = loads.acceleration(body, desc.gravity);
@@ -203,7 +203,7 @@ bool BodyRows::advance(Body& body, std::uint32_t index) const {
     body.w = free.w;
   } else {
     R = rotated_approximately(body.T.rotation(), rotation);
-    if (is_worn(R)) R = straightened(R);
+    if (needs_orthonormalizing(R)) R = orthonormalized_by_newton(R);
     body.w = w;
     if (!body.isotropic && !hardly_rotates(w, dt)) body.w = rate_at(body, R);
   }

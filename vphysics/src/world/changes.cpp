@@ -64,7 +64,7 @@ std::optional<std::string> World::Impl::problem_with_mass(const Body& body, cons
   if (!is_slow_enough(V, inertia.centre_of_mass())) {
     return "the centre of mass would move faster than 1e9 m/s";
   }
-  if (!loads.can_bear(body, inertia, body.T)) return kUnbearable;
+  if (!loads.load_in_range(body, inertia, body.T)) return kLoadOutOfRange;
   return std::nullopt;
 }
 
@@ -124,7 +124,7 @@ Expected<void> World::set_motion(BodyId id, Motion motion) {
       return invalid("set_motion: a joint would be left without a dynamic body; destroy it first");
     }
     if (motion == Motion::dynamic && other.motion == Motion::dynamic &&
-        !can_be_joined(body->wants_continuous, other)) {
+        !can_be_joined(body->requested_continuous, other)) {
       return invalid(Errc::unsupported, std::string("set_motion: it is joined, and ") + kNotJoined);
     }
   }
@@ -163,9 +163,9 @@ void World::Impl::change_motion(std::uint32_t index, Motion motion,
   }
   forget_joints(bodies[index], joints);
   body.motion = motion;
-  body.continuous = body.wants_continuous && motion == Motion::dynamic;
+  body.continuous = body.requested_continuous && motion == Motion::dynamic;
   body.rested = false;
-  body.region = solve::kBetween;
+  body.region = solve::kSharedRegion;
   body.w = body.v = {};
   body.prescribed = motion == Motion::kinematic ? V : se3{};
   if (motion == Motion::dynamic) {
@@ -313,7 +313,7 @@ Expected<void> World::remove_collider(ColliderId id) {
 void World::Impl::take_collider_off(std::uint32_t index) {
   const std::uint32_t owner = colliders[index].body;
   Body& body = bodies[owner];
-  if (body.is_link) look_at(articulations[body.articulation]);
+  if (body.is_link) update_if_remote(articulations[body.articulation]);
   release_collider(index);
   std::uint32_t previous = kNone;
   for (std::uint32_t c = body.first_collider; c != index; c = colliders[c].next) previous = c;
@@ -348,7 +348,7 @@ bool World::contains(ArticulationId id) const {
 Expected<void> World::destroy_articulation(ArticulationId id) {
   Articulation* art = impl_->find(id);
   if (!art) return invalid("destroy_articulation: no such articulation");
-  impl_->look_at(*art);
+  impl_->update_if_remote(*art);
   for (const std::uint32_t b : art->bodies) {
     Body& body = impl_->bodies[b];
     for (std::uint32_t c = body.first_collider; c != kNone; c = impl_->colliders[c].next) {

@@ -12,11 +12,11 @@ namespace {
 double size_of(const collide::Geometry& g) {
   if (collide::is_surface(g)) return 0.0;
   if (g.kind == collide::Kind::compound) {
-    double min_value = collide::kFar;
+    double min_size = collide::kFar;
     for (const collide::Geometry& part : g.compound->geometries) {
-      min_value = std::min(min_value, size_of(part));
+      min_size = std::min(min_size, size_of(part));
     }
-    return min_value;
+    return min_size;
   }
   const collide::Bounds own = bounds_of(g, SE3{});
   const Vec3 extents = own.upper - own.lower;
@@ -58,7 +58,7 @@ const collide::Bounds& bounds_at_pose(Body& body, Colliders& colliders) {
 }
 
 void pose_colliders(Body& body, Colliders& colliders) {
-  body.target = false;
+  body.pose_pending = false;
   if (body.posed) return;
   body.posed = true;
   for (std::uint32_t c = body.first_collider; c != kNone; c = colliders[c].next) {
@@ -116,7 +116,8 @@ bool should_collide(const Collider& a, const Collider& b) {
 
 Vicinity vicinity_of(const Bodies& bodies, const Collider& a, const Collider& b) {
   const Collider& smaller = a.radius <= b.radius ? a : b;
-  const bool turns = smaller.geometry.kind != collide::Kind::sphere && smaller.radius < kEndless;
+  const bool turns =
+      smaller.geometry.kind != collide::Kind::sphere && smaller.radius < kUnboundedRadius;
   return {bodies[smaller.body].T * smaller.centre, turns ? smaller.radius : 0.0,
           smaller.geometry.kind == collide::Kind::compound};
 }

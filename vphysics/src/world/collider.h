@@ -11,7 +11,7 @@
 
 namespace vp {
 
-inline constexpr double kEndless = 1e30;  // the bounding radius of a half-space [m]
+inline constexpr double kUnboundedRadius = 1e30;  // the bounding radius of a half-space [m]
 
 // Data that every narrow-phase test of its contacts reads come first.
 struct alignas(64) Collider {
@@ -24,8 +24,8 @@ struct alignas(64) Collider {
   // Half of its smallest extent [m], for a compound that of its smallest part. 0 for half-spaces,
   // meshes and height fields.
   double size = 0.0;
-  // Bounding sphere, body frame; kEndless for a half-space.
-  double radius = kEndless;
+  // Bounding sphere, body frame; kUnboundedRadius for a half-space.
+  double radius = kUnboundedRadius;
   Vec3 centre;
   std::uint32_t generation = 0;
   std::uint32_t serial = 0;  // order of creation

@@ -54,7 +54,7 @@ class ContactState {
     double rest_time = 0.0;
     float displacement[6] = {}, bounded_at[6] = {};
     std::uint32_t first_edge = kNone, lanes = 0;
-    std::uint16_t region = solve::kBetween;
+    std::uint16_t region = solve::kSharedRegion;
   };
   void clear();
   void read_body(Reader& in, OfBody& body);

@@ -13,7 +13,7 @@ namespace {
 // the error bound of that displacement.
 struct Gone {
   Vec3 displacement, rotation;
-  double bow;
+  double arc_error;
 };
 
 }  // namespace
@@ -143,8 +143,8 @@ void ContactStore::set_clearance(const Contact& c, double clearance, const BodyS
     std::copy_n(displacement + 3, 3, rotation);
     put(arm, row == solve::kWorldRow ? Vec3{} : at.centre - reference_point(body));
   };
-  put_end(pair.a, on.bodies[a.body], pair.x_a, pair.turn_a, pair.arm_a);
-  put_end(pair.b, on.bodies[b.body], pair.x_b, pair.turn_b, pair.arm_b);
+  put_end(pair.a, on.bodies[a.body], pair.x_a, pair.rotation_a, pair.arm_a);
+  put_end(pair.b, on.bodies[b.body], pair.x_b, pair.rotation_b, pair.arm_b);
   pair.clearance = static_cast<float>(clearance);
   pair.radius = static_cast<float>(at.radius);
 }
@@ -173,11 +173,11 @@ void ContactStore::use_clearance(const Contact& c, const BodySet& on) {
     return Gone{vector_of(displacement) - vector_of(x) + cross(by, r), by,
                 0.5 * dot(by, by) * norm(r)};
   };
-  const Gone a = gone(pair.a, pair.x_a, pair.turn_a, pair.arm_a);
-  const Gone b = gone(pair.b, pair.x_b, pair.turn_b, pair.arm_b);
+  const Gone a = gone(pair.a, pair.x_a, pair.rotation_a, pair.arm_a);
+  const Gone b = gone(pair.b, pair.x_b, pair.rotation_b, pair.arm_b);
   const double rotated = static_cast<double>(pair.radius) * norm(b.rotation - a.rotation);
-  pair.clearance -=
-      static_cast<float>(norm(b.displacement - a.displacement) + rotated + a.bow + b.bow);
+  pair.clearance -= static_cast<float>(norm(b.displacement - a.displacement) + rotated +
+                                       a.arc_error + b.arc_error);
 }
 
 // Does nothing if something awake may change the contact: a speculative pair with one body awake or

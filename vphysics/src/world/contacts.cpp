@@ -26,13 +26,13 @@ bool touches(std::span<const PairRecord> of_pair) {
 const PairPoint* point_of(std::span<const PairRecord> of_pair, const collide::ManifoldPoint& p,
                           double range) {
   const PairPoint* nearest = nullptr;
-  double min_value = range * range;
+  double min_distance_squared = range * range;
   for (const PairRecord& record : of_pair) {
     for (std::uint32_t i = 0; i < record.count; ++i) {
       if (record.points[i].feature == p.feature) return &record.points[i];
       const Vec3 d = record.points[i].position - p.position;
-      if (dot(d, d) < min_value) {
-        min_value = dot(d, d);
+      if (dot(d, d) < min_distance_squared) {
+        min_distance_squared = dot(d, d);
         nearest = &record.points[i];
       }
     }

@@ -47,7 +47,7 @@ struct JointAxes {
 
 }  // namespace
 
-std::uint32_t usual_colour(DebugCategory category) {
+std::uint32_t default_colour(DebugCategory category) {
   constexpr std::array<std::uint32_t, kDebugCategories> kColours{
       0x8a8f98, 0x8e5bd0, 0x2f8fd8, 0x3fb6a8, 0x6d7787, 0xf5c518, 0xf08a24, 0xe0413a,
       0xd06fc0, 0xe23b3b, 0x36a852, 0x3f6fe0, 0x1a1a1a, 0xc8a165, 0xe8d9b0};
@@ -229,7 +229,7 @@ Expected<void> World::debug_draw(const DebugDrawOptions& options, DebugDraw& dra
     if (!(size > 0.0 && size <= kLargestSize))
       return invalid("debug_draw: every size and scale must be positive and at most 1e6");
   }
-  impl_->look_at_all();
+  impl_->update_all_remote();
   Impl::Drawing(*impl_, options, draw).draw();
   return {};
 }

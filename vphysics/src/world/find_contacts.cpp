@@ -23,7 +23,7 @@ namespace {
 // arm r then has an error of r angle^2 / 2: a thirtieth of a millimetre for a box of a metre.
 constexpr double kSlide = 0.01;
 constexpr double kRevolution = 0.01;
-constexpr std::size_t kLookGrain = 16;  // contacts: some microseconds
+constexpr std::size_t kNarrowPhaseGrain = 16;  // contacts: some microseconds
 
 // A sphere touches a convex shape at one point.
 int points_of(const Contact& c, const Collider& a, const Collider& b) {
@@ -56,12 +56,12 @@ SlotImpulses impulses_in(const solve::ContactBlock<P>& block, int lane) {
 float impulse_of(const Contact& contact, const SlotImpulses& impulses,
                  const collide::ManifoldPoint& p, double range) {
   float nearest = 0.0f;
-  double min_value = range * range;
+  double min_distance_squared = range * range;
   for (std::size_t i = 0; i < contact.count; ++i) {
     if (contact.feature[i] == p.feature) return impulses.normal[i];
     const Vec3 d = contact.position[i] - p.position;
-    if (dot(d, d) >= min_value) continue;
-    min_value = dot(d, d);
+    if (dot(d, d) >= min_distance_squared) continue;
+    min_distance_squared = dot(d, d);
     nearest = impulses.normal[i];
   }
   return nearest;
@@ -78,8 +78,8 @@ struct NarrowPhaseInput {
 // The narrow phase of one contact. Contacts with parts are tested in take_over().
 void find_manifold_of(Contact& c, NarrowPhaseResult& found, const NarrowPhaseInput& in) {
   const Collider &a = in.colliders[c.a], &b = in.colliders[c.b];
-  const double leeway = kSlide * smaller_size(a, b);
-  found.margin_at_rest = c.sensor ? 0.0 : in.slop + leeway;
+  const double slide_limit = kSlide * smaller_size(a, b);
+  found.margin_at_rest = c.sensor ? 0.0 : in.slop + slide_limit;
   found.margin = c.sensor ? 0.0 : found.margin_at_rest + in.approach.of(a, b);
   // If the smaller one is a compound, its parts are tested within a smaller margin where they are
   // slower.
@@ -200,7 +200,7 @@ void World::Impl::find_dirty_contacts(double dt) {
 
 // Tests dirty contacts in the order of their indices, then those of bodies that these have woken.
 void World::Impl::update_dirty_contacts(double dt) {
-  narrow.look_again.clear();
+  narrow.dirty_next_step.clear();
   for (bool first = true; first || !contact_store.dirty.empty(); first = false) {
     std::size_t done = 0;
     do {
@@ -210,12 +210,12 @@ void World::Impl::update_dirty_contacts(double dt) {
         const std::span<const std::uint32_t> left = std::span(narrow.dirty).subspan(done);
         find_manifolds_of(left.first(std::min(left.size(), kNarrowPhaseBatch)), dt);
       }
-      const auto stage = in(Stage::lanes);
+      const auto stage = in(Stage::contact_slots);
       for (const NarrowPhaseResult& found : narrow.results) take_over(found);
       done += narrow.results.size();
     } while (done < narrow.dirty.size());
   }
-  contact_store.dirty.swap(narrow.look_again);
+  contact_store.dirty.swap(narrow.dirty_next_step);
 }
 
 // Those that have to be looked at; what has parted is dropped.
@@ -236,8 +236,8 @@ void World::Impl::list_dirty_contacts(double dt, bool first) {
     narrow.dirty[count++] = index;
     for (const std::uint32_t collider : {c.a, c.b}) {
       Body& body = bodies[colliders[collider].body];
-      if (body.posed || body.target) continue;
-      body.target = true;
+      if (body.posed || body.pose_pending) continue;
+      body.pose_pending = true;
       to_pose.push_back(colliders[collider].body);
     }
   }
@@ -251,7 +251,7 @@ void World::Impl::find_manifolds_of(std::span<const std::uint32_t> contacts, dou
   std::vector<NarrowPhaseResult>& results = narrow.results;
   results.resize(contacts.size());
   const NarrowPhaseInput input{bodies, colliders, joints, approach_in(dt), desc.contact_slop};
-  workers.in_parallel(results.size(), kLookGrain, [&](std::size_t begin, std::size_t end) {
+  workers.in_parallel(results.size(), kNarrowPhaseGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       results[k].contact = contacts[k];
       find_manifold_of(contact_store[contacts[k]], results[k], input);
@@ -296,7 +296,7 @@ void World::Impl::take_over(const NarrowPhaseResult& found) {
     }
   }
   contact_store.park(index, body_set);  // it has no points: parks it if nothing awake may change it
-  if (c.sensor && !c.parked) narrow.look_again.push_back(index);  // in the next step
+  if (c.sensor && !c.parked) narrow.dirty_next_step.push_back(index);  // in the next step
 }
 
 void World::Impl::assign_slot(std::uint32_t index, const collide::Manifold& m) {
@@ -323,10 +323,10 @@ void World::Impl::assign_slot(std::uint32_t index, const collide::Manifold& m) {
   if (end_a.row == solve::kWorldRow) n.x_a = n.x_b;
   if (end_b.row == solve::kWorldRow) n.x_b = n.x_a;
   n.count = std::min<int>(m.count, c.slot.points);
-  const double leeway = kSlide * smaller_size(a, b);
+  const double slide_limit = kSlide * smaller_size(a, b);
   for (int i = 0; i < n.count; ++i) {
     const collide::ManifoldPoint& p = m.points[i];
-    n.points[i] = {p.position, p.separation, impulse_of(c, impulses, p, 4.0 * leeway)};
+    n.points[i] = {p.position, p.separation, impulse_of(c, impulses, p, 4.0 * slide_limit)};
   }
   n.friction = std::sqrt(a.material.friction * b.material.friction);
   n.restitution = std::max(a.material.restitution, b.material.restitution);
@@ -335,7 +335,7 @@ void World::Impl::assign_slot(std::uint32_t index, const collide::Manifold& m) {
   n.surface_velocity = a.T.rotate(a.surface_velocity) - b.T.rotate(b.surface_velocity);
   n.old_friction = impulses.friction;
   n.old_moment = impulses.moment;
-  n.slid_limit = leeway;
+  n.slid_limit = slide_limit;
   contact_store.points += static_cast<std::uint32_t>(n.count) - c.count;
   c.count = static_cast<std::uint8_t>(n.count);
   for (int i = 0; i < n.count; ++i) {

@@ -39,7 +39,7 @@ CompositeBody FloatingTree::composite(const Data& data, const detail::ImpulseFac
 }
 
 CompositeBody FloatingTree::composite_of_twists(const Data& data,
-                                            const detail::ImpulseFactor& factor) const {
+                                                const detail::ImpulseFactor& factor) const {
   const auto sum = factor.momentum_of_twists(nodes_, data);
   return composite(data, sum.inertia, sum.momentum);
 }

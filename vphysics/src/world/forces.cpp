@@ -27,18 +27,18 @@ Velocity BodyLoads::acceleration(const Body& body, const Vec3& gravity) const {
   return a;
 }
 
-bool can_bear(const Body& body, const Mat3& R, const Vec3& force, const Vec3& torque) {
+bool load_in_range(const Body& body, const Mat3& R, const Vec3& force, const Vec3& torque) {
   const Vec3 w = rotated(R, body.inverse_central) * torque;
   return in_range((kLongestStep * body.inverse_mass) * force) && in_range(kLongestStep * w);
 }
 
-bool BodyLoads::can_bear(const Body& body, const Inertia& inertia, const SE3& T) const {
+bool BodyLoads::load_in_range(const Body& body, const Inertia& inertia, const SE3& T) const {
   if (body.load == kNone) return true;
   const BodyLoad& load = loads_[body.load];
   Body changed = body;
   set_mass(changed, inertia);
   const Vec3 arm = T.rotate(body.centre - changed.centre);
-  return vp::can_bear(changed, T.rotation(), load.force, load.torque + cross(arm, load.force));
+  return vp::load_in_range(changed, T.rotation(), load.force, load.torque + cross(arm, load.force));
 }
 
 void BodyLoads::set(Bodies& bodies, std::uint32_t index, const Vec3& force, const Vec3& torque) {
@@ -92,7 +92,7 @@ Expected<void> World::Impl::add_load(const char* call, BodyId id, const Vec3& fo
     M += before->torque;
   }
   const bool good =
-      body.is_link ? in_range(F) && in_range(M) : can_bear(body, body.T.rotation(), F, M);
+      body.is_link ? in_range(F) && in_range(M) : load_in_range(body, body.T.rotation(), F, M);
   if (!good) {
     return invalid(std::string(call) +
                    ": the body would become faster than 1e9 m/s or rad/s, or a link bear more than "
@@ -100,7 +100,7 @@ Expected<void> World::Impl::add_load(const char* call, BodyId id, const Vec3& fo
   }
   if (body.is_link) {
     Articulation& art = articulations[body.articulation];
-    look_at(art);
+    update_if_remote(art);
     art.set_load(body.link, {M, F});
   } else {
     wake(index);
@@ -118,7 +118,7 @@ Expected<void> World::apply_force(BodyId id, const Vec3& force, const Vec3& poin
   }
   Vec3 from = reference_point(*body);
   if (body->is_link) {
-    impl_->look_at(impl_->articulations[body->articulation]);
+    impl_->update_if_remote(impl_->articulations[body->articulation]);
     from = impl_->articulations[body->articulation].T_world_link(body->link).position();
   }
   const auto added = impl_->add_load("apply_force", id, force, cross(point - from, force));
@@ -154,7 +154,7 @@ Expected<void> World::apply_joint_force(ArticulationId id, int link, int dof, do
   if (!in_range(sum)) {
     return invalid("apply_joint_force: the sum of the forces must be finite and at most 1e9");
   }
-  impl_->look_at(*art);
+  impl_->update_if_remote(*art);
   art->set_joint_load(static_cast<std::size_t>(i), sum);
   if (impl_->recorder) {
     impl_->log({calls::ApplyJointForce{id, static_cast<std::uint32_t>(link),

@@ -60,13 +60,13 @@ struct ImpactStage {
 
   // --- of each body
   std::vector<SE3> start_poses;
-  std::vector<collide::Motion> motions;  // for the rest of the step
-  std::vector<collide::Bounds> bounds;   // swept bounds for the rest of the step
-  std::vector<Velocity> drift;           // mean velocity over the step less that at its end
-  std::vector<Velocity> forced;          // velocity change from the step's forces
-  std::vector<std::uint8_t> stopped;     // at rest for the rest of the step
-  std::vector<std::uint8_t> in_contact;  // in a swept contact of the last solve
-  std::vector<std::uint8_t> as_swept;    // moves to its next impact at the twist of its sweep
+  std::vector<collide::Motion> motions;     // for the rest of the step
+  std::vector<collide::Bounds> bounds;      // swept bounds for the rest of the step
+  std::vector<Velocity> drift;              // mean velocity over the step less that at its end
+  std::vector<Velocity> forced;             // velocity change from the step's forces
+  std::vector<std::uint8_t> stopped;        // at rest for the rest of the step
+  std::vector<std::uint8_t> in_contact;     // in a swept contact of the last solve
+  std::vector<std::uint8_t> moves_rigidly;  // moves to its next impact at the twist of its sweep
   // Of a free body: the time within the step of its pose. Links are at the last impact.
   std::vector<double> times;
   std::vector<std::uint8_t> brought;  // has advanced within the step

@@ -33,7 +33,7 @@ void World::Impl::queue_swept_pairs(double now, double h) {
   const auto body_of = [&](std::uint32_t collider) { return colliders[collider].body; };
   for (const SweptPair& swept : impacts.swept_pairs) {
     for (const std::uint32_t b : {body_of(swept.pair.a), body_of(swept.pair.b)}) {
-      impacts.as_swept[b] = 1;
+      impacts.moves_rigidly[b] = 1;
       impacts.first_impacts[b] = h;
     }
   }
@@ -238,10 +238,10 @@ void World::Impl::concern_what_touches(const Instant& now) {
 void World::Impl::bring_concerned(std::uint32_t index, const Instant& now) {
   if (impacts.times[index] != now.time && !is_still(bodies[index]) && !impacts.locked[index]) {
     const double h = now.since(std::exchange(impacts.times[index], now.time));
-    move_within_step(index, h, !impacts.as_swept[index] && !impacts.brought[index]);
+    move_within_step(index, h, !impacts.moves_rigidly[index] && !impacts.brought[index]);
   }
   impacts.times[index] = now.time;
-  impacts.as_swept[index] = impacts.brought[index] = 0;
+  impacts.moves_rigidly[index] = impacts.brought[index] = 0;
 }
 
 void World::Impl::find_swept_pairs_of_concerned(const Instant& now) {

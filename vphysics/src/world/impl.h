@@ -122,7 +122,7 @@ struct World::Impl {
   void note_collider(std::uint32_t index);
   void drop_contacts(std::uint32_t collider);
   void release_collider(std::uint32_t index);
-  void give_velocity(std::uint32_t body, const se3& V);
+  void set_body_velocity(std::uint32_t body, const se3& V);
 
   // changes.cpp
   Body* find_body_to_change(BodyId id);
@@ -164,8 +164,8 @@ struct World::Impl {
   bool is_near_awake_body(const collide::Bounds& box) const;
   void collide_remote(double h);
   void make_remote();
-  void look_at(Articulation& articulation);
-  void look_at_all();
+  void update_if_remote(Articulation& articulation);
+  void update_all_remote();
 
   // step.cpp
   void begin_step(double dt);
@@ -225,7 +225,7 @@ struct World::Impl {
   void load_rows(double dt);
   void restart_displacement(std::uint32_t body);
   Velocity settle(const BodyRows& rows, std::uint32_t body);
-  void update_bounds(std::uint32_t body, double dt, bool by_rows);
+  void update_bounds(std::uint32_t body, double dt, bool is_solver_driven);
   void add_proxy(std::uint32_t collider);
   void forget_lost_bodies();
   void forget_contacts(std::uint32_t body);

@@ -47,19 +47,19 @@ struct BodyJointRow {
   bool bounded_hold = false;
   double min_impulse = 0.0, max_impulse = 0.0;
   double stiffness = 0.0, damping = 0.0, position = 0.0, speed = 0.0;
-  double lower = -kNowhere, upper = kNowhere;
+  double lower = -kNoBound, upper = kNoBound;
 
-  static constexpr double kNowhere = static_cast<double>(solve::kNowhere);
+  static constexpr double kNoBound = static_cast<double>(solve::kNoBound);
 };
 
 // The derivative of a residual by the velocities of the centres of mass and the angular velocities,
 // world axes.
-struct Twelve {
+struct RowJacobian {
   Vec3 linear_a, angular_a, linear_b, angular_b;
 };
 // Jacobian and residual of each row, at given poses.
-struct JointMeasure {
-  Twelve jacobian[solve::kJointRows];
+struct JointEvaluation {
+  RowJacobian jacobian[solve::kJointRows];
   double residual[solve::kJointRows] = {};
 };
 
@@ -82,8 +82,8 @@ struct BodyJoint {
   // impulse along the world's axes.
   BodyJointRow rows[solve::kJointRows];
   int count = 0, locked = 0;
-  double laid_out_for = 0.0;  // the sub-step length of the rows; 0: the rows must be laid out
-  Vec3 force, torque;         // of the last step
+  double rows_sub_step = 0.0;  // the sub-step length of the rows; 0: the rows must be laid out
+  Vec3 force, torque;          // of the last step
 
   bool holds_point() const {
     return spec.form == JointSpec::Form::axes && locked >= 3 && rows[2].slot == 2;
@@ -110,9 +110,9 @@ void forget_joints(const Body& body, Joints& joints);
 
 // Builds the joint's rows, with their force laws for sub-steps h. A row keeps the impulses of its
 // coordinate.
-void lay_out(BodyJoint& joint, double h);
+void build_rows(BodyJoint& joint, double h);
 // Jacobians and residuals of all rows at the given poses. Updates the revolution counts.
-void evaluate(BodyJoint& joint, const BodyPose& a, const BodyPose& b, JointMeasure& out);
+void evaluate(BodyJoint& joint, const BodyPose& a, const BodyPose& b, JointEvaluation& out);
 // Updates the twist to the given poses, counting full revolutions.
 void count_revolutions(BodyJoint& joint, const BodyPose& a, const BodyPose& b);
 // One coordinate; empty if the joint does not have it.

@@ -225,7 +225,7 @@ Vec3 World::acceleration_at(BodyId id, const Vec3& point) const {
   VP_ASSERT(has && "acceleration_at: the body is not a link of an articulation (any more)");
   if (!has) return {};
   Articulation& art = impl_->articulations[body->articulation];
-  impl_->look_at(art);
+  impl_->update_if_remote(art);
   const Vec3 in_link = inverse_times(art.T_world_link(body->link), point);
   const JointReactions* found = art.reactions();
   return found ? found->acceleration(body->link, in_link) : Vec3{};

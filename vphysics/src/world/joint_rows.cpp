@@ -102,7 +102,7 @@ Vec3 twist_axis(const Ends& e) {
   return (1.0 / std::max(1.0 + dot(e.R_a.cz, e.R_b.cz), 1e-3)) * (e.R_a.cz + e.R_b.cz);
 }
 
-void evaluate_axes(BodyJoint& joint, const BodyPose& a, const BodyPose& b, JointMeasure& out) {
+void evaluate_axes(BodyJoint& joint, const BodyPose& a, const BodyPose& b, JointEvaluation& out) {
   const Ends e(joint, a, b);
   const Swing swing(e);
   const double twist = twist_of(e);
@@ -112,7 +112,7 @@ void evaluate_axes(BodyJoint& joint, const BodyPose& a, const BodyPose& b, Joint
   const Mat3 world = Mat3::identity();
   for (int i = 0; i < joint.count; ++i) {
     const int slot = joint.rows[i].slot;
-    Twelve& J = out.jacobian[i];
+    RowJacobian& J = out.jacobian[i];
     double& residual = out.residual[i];
     if (slot < 3) {
       const Vec3 n = column(joint.holds_point() ? world : e.R_a, slot);
@@ -136,7 +136,7 @@ void evaluate_axes(BodyJoint& joint, const BodyPose& a, const BodyPose& b, Joint
 }
 
 void evaluate_distance(const BodyJoint& joint, const BodyPose& a, const BodyPose& b,
-                       JointMeasure& out) {
+                       JointEvaluation& out) {
   const Ends e(joint, a, b);
   const double length = norm(e.d);
   const Vec3 n = length > 1e-9 ? (1.0 / length) * e.d : e.R_a.cx;
@@ -146,13 +146,13 @@ void evaluate_distance(const BodyJoint& joint, const BodyPose& a, const BodyPose
   }
 }
 
-void evaluate_gear(BodyJoint& joint, const BodyPose& a, const BodyPose& b, JointMeasure& out) {
+void evaluate_gear(BodyJoint& joint, const BodyPose& a, const BodyPose& b, JointEvaluation& out) {
   const double q_a = gear_side(joint, a.T, 0), q_b = gear_side(joint, b.T, 1);
   if (!joint.spec.slides_a) joint.rotated[0] = q_a;
   if (!joint.spec.slides_b) joint.rotated[1] = q_b;
   const Ends e(joint, a, b);
   const Vec3 &z_a = e.R_a.cz, &z_b = e.R_b.cz;
-  Twelve& J = out.jacobian[0];
+  RowJacobian& J = out.jacobian[0];
   J = {};
   const double ratio = joint.spec.ratio;
   if (joint.spec.slides_a) {
@@ -178,21 +178,21 @@ void carry_over(const BodyPose& body, const dse3& F, Vec3& linear, Vec3& angular
   linear = body.T.rotate(F.f);
   angular = body.T.rotate(F.m) - cross(body.centre - body.T.position(), linear);
 }
-bool finite(const Twelve& J) {
+bool finite(const RowJacobian& J) {
   const double sum = dot(J.linear_a, J.linear_a) + dot(J.angular_a, J.angular_a) +
                      dot(J.linear_b, J.linear_b) + dot(J.angular_b, J.angular_b);
   return sum <= 1e18;
 }
 
 void evaluate_user(const BodyJoint& joint, const BodyPose& a, const BodyPose& b,
-                   JointMeasure& out) {
+                   JointEvaluation& out) {
   double residual[6] = {};
   PairRow rows[6];
   const auto n = static_cast<std::size_t>(joint.spec.user_rows);
   joint.spec.user->evaluate(a.T, b.T, std::span(residual, n), std::span(rows, n));
   for (int i = 0; i < joint.count; ++i) {
     const int slot = joint.rows[i].slot;
-    Twelve& J = out.jacobian[i];
+    RowJacobian& J = out.jacobian[i];
     carry_over(a, rows[slot].a, J.linear_a, J.angular_a);
     carry_over(b, rows[slot].b, J.linear_b, J.angular_b);
     out.residual[i] = residual[slot];
@@ -204,7 +204,7 @@ void evaluate_user(const BodyJoint& joint, const BodyPose& a, const BodyPose& b,
 
 }  // namespace
 
-void evaluate(BodyJoint& joint, const BodyPose& a, const BodyPose& b, JointMeasure& out) {
+void evaluate(BodyJoint& joint, const BodyPose& a, const BodyPose& b, JointEvaluation& out) {
   switch (joint.spec.form) {
     case JointSpec::Form::axes:
       return evaluate_axes(joint, a, b, out);

@@ -81,9 +81,9 @@ void soften(BodyJointRow& row, double frequency, double damping_ratio, double h)
     row.relaxes = true;
     return;
   }
-  const double rotation = 2.0 * kPi * frequency, both = 2.0 * damping_ratio + h * rotation;
-  row.rate = rotation / both;
-  row.loss = std::min(1.0 / (h * rotation * both), kMaxLoss);
+  const double omega = 2.0 * kPi * frequency, both = 2.0 * damping_ratio + h * omega;
+  row.rate = omega / both;
+  row.loss = std::min(1.0 / (h * omega * both), kMaxLoss);
   row.relaxes = false;
 }
 
@@ -93,7 +93,7 @@ BodyJointRow locked_row(int slot) {
   return row;
 }
 void set_drive(BodyJointRow& row, const JointDrive& drive, double h) {
-  row.max_impulse = std::min(h * drive.max_force, BodyJointRow::kNowhere);
+  row.max_impulse = std::min(h * drive.max_force, BodyJointRow::kNoBound);
   row.min_impulse = -row.max_impulse;
   row.stiffness = drive.stiffness;
   row.damping = drive.damping;
@@ -133,8 +133,8 @@ Rows rows_of_axes(const JointSpec& spec, double h) {
     } else {
       set_drive(row, desc.drive, h);
       if (desc.motion == AxisMotion::limited) {
-        row.lower = std::max(desc.lower, -BodyJointRow::kNowhere);
-        row.upper = std::min(desc.upper, BodyJointRow::kNowhere);
+        row.lower = std::max(desc.lower, -BodyJointRow::kNoBound);
+        row.upper = std::min(desc.upper, BodyJointRow::kNoBound);
       }
       if (of_cone) row.lower = 0.0;
     }
@@ -150,8 +150,8 @@ Rows rows_of_user(const JointSpec& spec, double h) {
     BodyJointRow row = locked_row(i);
     const bool locked = own.min_force == -kNoLimit && own.max_force == kNoLimit;
     row.bounded_hold = !locked;
-    row.min_impulse = std::max(h * own.min_force, -BodyJointRow::kNowhere);
-    row.max_impulse = std::min(h * own.max_force, BodyJointRow::kNowhere);
+    row.min_impulse = std::max(h * own.min_force, -BodyJointRow::kNoBound);
+    row.max_impulse = std::min(h * own.max_force, BodyJointRow::kNoBound);
     out.add(row, locked);
   }
   return out;
@@ -166,7 +166,7 @@ std::optional<std::string> problem_with_limits(double lower, double upper) {
   if (sane) return std::nullopt;
   return "limits: lower must not be above upper, each within 1e9 or infinite on its own side";
 }
-bool gain(double x) {
+bool is_valid_gain(double x) {
   return x >= 0.0 && x <= 1e15;
 }
 std::optional<std::string> problem_with_axis(double lower, double upper, const JointDrive& drive) {
@@ -196,7 +196,7 @@ std::optional<std::string> problem_in(const Distance& distance) {
 std::optional<std::string> problem_in(const Spring& spring) {
   if (!in_range(spring.length) || spring.length < 0.0)
     return "spring: the length must be zero or more and at most 1e9";
-  if (!gain(spring.stiffness) || !gain(spring.damping))
+  if (!is_valid_gain(spring.stiffness) || !is_valid_gain(spring.damping))
     return "spring: stiffness and damping must be zero or more and at most 1e15";
   return std::nullopt;
 }
@@ -273,7 +273,7 @@ int main_slot(const JointKind& kind) {
   return -1;
 }
 
-void lay_out(BodyJoint& joint, double h) {
+void build_rows(BodyJoint& joint, double h) {
   const bool user = joint.spec.form == JointSpec::Form::user;
   Rows laid = user ? rows_of_user(joint.spec, h) : rows_of_axes(joint.spec, h);
   for (int i = 0; i < laid.count; ++i) {

@@ -135,9 +135,10 @@ void JointSteps::for_runs(const F& f) {
     const auto& passes = passes_for(run);
     const auto part = [&](std::size_t begin, std::size_t end) {
       using Run = typename std::remove_cvref_t<decltype(passes)>::Run;
-      f(passes, Run{run.blocks.data() + begin, end - begin, &run.form, context_.rows.data(),
-                    scratch_.displacements.data(),
-                    static_cast<float>(kFastestJoint * context_.speed_unit), some_are_far_});
+      f(passes,
+        Run{run.blocks.data() + begin, end - begin, &run.form, context_.rows.data(),
+            scratch_.displacements.data(),
+            static_cast<float>(kMaxJointCorrectionSpeed * context_.speed_unit), some_are_far_});
     };
     if (run.alone) {
       part(0, run.blocks.size());
@@ -191,8 +192,8 @@ JointSteps::JointSteps(const JointContext& context, JointScratch& scratch, doubl
     BodyJoint& joint = joints[i];
     if (!is_active(joint)) continue;
     scratch_.active.push_back(i);
-    if (joint.laid_out_for != h) lay_out(joint, h);
-    joint.laid_out_for = h;
+    if (joint.rows_sub_step != h) build_rows(joint, h);
+    joint.rows_sub_step = h;
     fill(i);
   }
   if (empty()) return;
@@ -223,14 +224,14 @@ BodyPose JointSteps::pose_within_step(std::uint32_t body) const {
 
 // For rows that the SIMD passes do not evaluate.
 void JointSteps::evaluate_rows(solve::RowsBlock& block) {
-  JointMeasure found;
+  JointEvaluation found;
   for (int lane = 0; lane < kLanes; ++lane) {
     if (block.a.lane[lane] + block.b.lane[lane] == 2 * solve::kWorldRow) return;  // empty
     BodyJoint& joint = context_.joints[block.joint.lane[lane]];
     const BodyPose b = pose_within_step(joint.b);
     evaluate(joint, pose_within_step(joint.a), b, found);
     for (int i = 0; i < joint.count; ++i) {
-      const Twelve& J = found.jacobian[i];
+      const RowJacobian& J = found.jacobian[i];
       put(block.rows[i].residual, lane, found.residual[i]);
       put(block.jacobian[i].linear_a, lane, J.linear_a);
       put(block.jacobian[i].angular_a, lane, J.angular_a);
@@ -274,9 +275,9 @@ void JointSteps::relax() {
   for_runs([&](const auto& passes, const auto& run) { passes.relax(run, static_cast<float>(h_)); });
 }
 
-// Whether a hard constraint of the joint is open by more than kOpen times the smaller body's
-// radius, or by more than kRotationError. Tests only errors whose bias velocity has reached its
-// limit. A gear and a user constraint have no size to compare with.
+// Whether a hard constraint of the joint is open by more than kMaxJointSeparation times the smaller
+// body's radius, or by more than kRotationError. Tests only errors whose bias velocity has reached
+// its limit. A gear and a user constraint have no size to compare with.
 template <class BLOCK>
 bool JointSteps::is_far_open(const BodyJoint& joint, const BLOCK& block, int lane) const {
   constexpr float kAtLimit = 0.999f;
@@ -295,9 +296,9 @@ bool JointSteps::is_far_open(const BodyJoint& joint, const BLOCK& block, int lan
   const auto is_open = [&](double gap) {
     find_size(joint.a, joint.T_a_joint);
     find_size(joint.b, joint.T_b_joint);
-    return gap > kOpen * size;
+    return gap > kMaxJointSeparation * size;
   };
-  const double fastest = kFastestJoint * context_.speed_unit;
+  const double fastest = kMaxJointCorrectionSpeed * context_.speed_unit;
   constexpr int kPoint = BLOCK::kPointRows;
   if (kPoint > 0 && joint.rows[0].relaxes &&
       (exceeds(0, fastest) || exceeds(1, fastest) || exceeds(2, fastest))) {

@@ -146,7 +146,7 @@ Expected<void> drive_slot(BodyJoint& joint, int slot, const JointDrive& drive) {
   if (desc.motion == AxisMotion::locked)
     return invalid("set_drive: the joint holds this coordinate; drive one that it leaves free");
   desc.drive = drive;
-  joint.laid_out_for = 0.0;
+  joint.rows_sub_step = 0.0;
   return {};
 }
 

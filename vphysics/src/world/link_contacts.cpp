@@ -118,7 +118,7 @@ solve::StepContext World::Impl::link_context(double h) {
           desc.restitution_threshold,
           desc.velocity_iterations,
           kUseBias / h,
-          kFastestShift * speed_unit};
+          kMaxCorrectionSpeed * speed_unit};
 }
 
 // Loads the velocities that the contact blocks and joints have computed.
@@ -213,7 +213,7 @@ void World::Impl::solve_links(double h) {
 void World::Impl::move_links(double h) {
   load_bodies_on_links();
   for (Articulation& art : articulations) {
-    if (art.sub_stepped) art.mark_moving();
+    if (art.sub_stepped) art.store_sub_step_velocity();
   }
   solve::advance_contacts(link_context(h), h);
 }

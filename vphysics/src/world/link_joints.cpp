@@ -55,11 +55,11 @@ void World::Impl::find_next_poses(double h) {
   impacts.next_poses.resize(bodies.size());
   for (const std::uint32_t i : impacts.row_joints) {
     for (const std::uint32_t b : {joints[i].a, joints[i].b}) {
-      if (bodies[b].is_link) articulations[bodies[b].articulation].wants_next = true;
+      if (bodies[b].is_link) articulations[bodies[b].articulation].needs_next_pose = true;
     }
   }
   for (Articulation& art : articulations) {
-    if (!std::exchange(art.wants_next, false) || art.sub_stepped) continue;
+    if (!std::exchange(art.needs_next_pose, false) || art.sub_stepped) continue;
     art.for_poses_after(h, [&](int link, const SE3& T) {
       impacts.next_poses[art.bodies[static_cast<std::size_t>(link)]] = T;
     });

@@ -27,7 +27,7 @@ class BodyLoads {
   // Of a dynamic body that is not a link, due to gravity and its load; w is 0 without a torque.
   Velocity acceleration(const Body& body, const Vec3& gravity) const;
   // Whether its load would be valid for this inertia and this pose.
-  bool can_bear(const Body& body, const Inertia& inertia, const SE3& T) const;
+  bool load_in_range(const Body& body, const Inertia& inertia, const SE3& T) const;
 
   void set(Bodies& bodies, std::uint32_t body, const Vec3& force, const Vec3& torque);
   // The body's centre of mass, the reference point of the torque, has moved by -arm.
@@ -41,8 +41,8 @@ class BodyLoads {
 
 // Whether a body that is not a link, at rest with rotation R, stays within 1e9 m/s and rad/s over
 // the longest step.
-bool can_bear(const Body& body, const Mat3& R, const Vec3& force, const Vec3& torque);
-inline constexpr const char* kUnbearable =
+bool load_in_range(const Body& body, const Mat3& R, const Vec3& force, const Vec3& torque);
+inline constexpr const char* kLoadOutOfRange =
     "the forces that it has for the next step would then make it faster than 1e9 m/s or rad/s; "
     "apply them afterwards";
 

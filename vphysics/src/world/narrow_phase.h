@@ -26,8 +26,9 @@ inline constexpr std::size_t kNarrowPhaseBatch = 512;
 // Kept for its capacity.
 struct NarrowPhaseScratch {
   std::vector<collide::ProxyPair> new_pairs;
-  std::vector<std::uint32_t> dirty, look_again;  // contacts: of this iteration, of the next step
-  std::vector<std::uint32_t> to_pose;            // bodies
+  std::vector<std::uint32_t> dirty,
+      dirty_next_step;                 // contacts: of this iteration, of the next step
+  std::vector<std::uint32_t> to_pose;  // bodies
   std::vector<NarrowPhaseResult> results;
   std::uint32_t renewed = 0;  // manifolds put into contact slots in this step
   // Of a contact with parts (part_contacts.cpp).

@@ -122,17 +122,17 @@ double ImpactTimes::separation(const Collider& moving, const Collider& other, do
     const Vec3 local = inverse_times(other.T, moving.T.position());
     return signed_distance(other.geometry, local).distance - moving.geometry.radius;
   }
-  double min_value = margin;
+  double min_separation = margin;
   manifolds.clear();
   collide::PairCache cache;
   find_manifolds(moving.geometry, moving.T, other.geometry, other.T, slop, cache, {}, scratch,
                  manifolds);
   for (const collide::SubManifold& found : manifolds) {
     for (int k = 0; k < found.manifold.count; ++k) {
-      min_value = std::min(min_value, found.manifold.points[k].separation);
+      min_separation = std::min(min_separation, found.manifold.points[k].separation);
     }
   }
-  return min_value;
+  return min_separation;
 }
 
 namespace {

@@ -26,7 +26,7 @@ void put_deepest_first(collide::Manifold& m) {
 std::uint32_t claim_part(const ContactStore& contacts, const Colliders& colliders,
                          std::vector<std::uint32_t>& old_parts, const collide::SubManifold& found) {
   std::uint32_t* best = nullptr;
-  double max_value = kSameNormal;
+  double best_alignment = kSameNormal;
   for (std::uint32_t& p : old_parts) {
     if (p == kNone) continue;
     const Contact& part = contacts[p];
@@ -44,8 +44,8 @@ std::uint32_t claim_part(const ContactStore& contacts, const Colliders& collider
       const std::uint32_t* end = part.feature + part.count;
       if (std::find(part.feature, end, found.manifold.points[i].feature) != end) alike += 0.4;
     }
-    if (alike <= max_value) continue;
-    max_value = alike;
+    if (alike <= best_alignment) continue;
+    best_alignment = alike;
     best = &p;
   }
   if (!best) return kNone;

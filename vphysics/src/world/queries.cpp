@@ -97,11 +97,11 @@ struct Query {
   template <class F>
   void for_swept(const collide::Sweep& sweep, const F& collide) {
     double limit = 1.0;
-    const collide::BoxSweep lanes(sweep);
+    const collide::BoxSweep box_sweep(sweep);
     for (const std::uint32_t i : scratch.strays) {
       float entry = 0.0f;
       const Collider& c = colliders[i];
-      if (lanes.overlaps(rounded_outward(c.bounds), limit, entry) && is_asked_for(c)) {
+      if (box_sweep.overlaps(rounded_outward(c.bounds), limit, entry) && is_asked_for(c)) {
         limit = collide(c);
       }
     }
@@ -203,7 +203,7 @@ struct Query {
 
 void World::Impl::find_strays() {
   if (ready_for_queries) return;
-  look_at_all();
+  update_all_remote();
   ready_for_queries = true;
   queries.strays.clear();
   queries.strays.reserve(colliders.size());

@@ -12,10 +12,10 @@ constexpr double kDivisionTime = 0.25;  // [s]
 
 // Number of regions for a number of bodies, given the present number `now`: a power of two, or 0
 // instead of 1. It decreases only if the fewer regions would be at most three quarters full.
-std::size_t regions_for(std::size_t bodies, std::size_t max_value, std::size_t now) {
+std::size_t regions_for(std::size_t bodies, std::size_t max_bodies, std::size_t now) {
   std::size_t count = 1;
-  while (count < kMaxRegions && bodies > count * max_value) count *= 2;
-  if (now == 2 * count && 4 * bodies > 3 * count * max_value) return now;
+  while (count < kMaxRegions && bodies > count * max_bodies) count *= 2;
+  if (now == 2 * count && 4 * bodies > 3 * count * max_bodies) return now;
   return count > 1 ? count : 0;
 }
 
@@ -41,8 +41,8 @@ std::uint8_t Regions::axis_of(std::span<const Key> keys, std::uint8_t before) {
 }
 
 bool Regions::divide(Bodies& bodies, std::span<const std::uint32_t> awake_bodies,
-                     std::size_t max_value, double dt) {
-  const std::size_t target = regions_for(awake_bodies.size(), max_value, state.count);
+                     std::size_t max_bodies, double dt) {
+  const std::size_t target = regions_for(awake_bodies.size(), max_bodies, state.count);
   state.age = target == 0 ? 0.0 : state.age + dt;
   if (target == state.count && (target == 0 || state.age < kDivisionTime)) return false;
   const auto before = std::exchange(state.count, static_cast<std::uint16_t>(target));
@@ -53,7 +53,7 @@ bool Regions::divide(Bodies& bodies, std::span<const std::uint32_t> awake_bodies
   if (state.count != before) {
     state.axes.assign(state.count, kNoAxis);
     for (std::uint32_t i = 0; i < bodies.size(); ++i) {
-      if (bodies[i].region > state.count) set(bodies, i, solve::kBetween);
+      if (bodies[i].region > state.count) set(bodies, i, solve::kSharedRegion);
     }
   }
   if (state.count > 0) assign(bodies, awake_bodies);

@@ -22,15 +22,15 @@ class Regions {
  public:
   // State that persists between steps and is part of snapshots.
   struct State {
-    std::uint16_t count = 0;         // without kBetween: a power of two, or 0
+    std::uint16_t count = 0;         // without kSharedRegion: a power of two, or 0
     std::vector<std::uint8_t> axes;  // split axis of each node
     double age = 0.0;                // time since the last division [s]
   };
   State state;
 
-  // Divides the bodies into regions of at most max_value, if it is time. False: nothing has
+  // Divides the bodies into regions of at most max_bodies, if it is time. False: nothing has
   // changed.
-  bool divide(Bodies& bodies, std::span<const std::uint32_t> awake_bodies, std::size_t max_value,
+  bool divide(Bodies& bodies, std::span<const std::uint32_t> awake_bodies, std::size_t max_bodies,
               double dt);
   // Bodies that divide() has moved to another region, ascending.
   std::span<const std::uint32_t> changed() const { return changed_; }

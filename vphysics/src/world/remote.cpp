@@ -39,7 +39,7 @@ const std::vector<std::uint32_t>& World::Impl::impact_bodies() {
 
 // Valid until a body or a collider is added or removed.
 bool World::Impl::can_be_remote(const Articulation& art) const {
-  if (!art.keeps_twists() || !art.settles_alone()) return false;
+  if (!art.keeps_twists() || !art.is_decoupled()) return false;
   for (const std::uint32_t b : art.bodies) {
     if (bodies[b].first_joint != kNone) return false;
     if (bodies[b].first_collider == kNone) continue;
@@ -58,7 +58,7 @@ void World::Impl::list_remote_articulations() {
   impacts.bodies_are_dirty = impacts.scratch_is_dirty = true;
   for (Articulation& art : articulations) {
     if (!art.alive) continue;
-    look_at(art);
+    update_if_remote(art);
     art.can_be_remote = few && can_be_remote(art);
   }
 }
@@ -108,11 +108,11 @@ void World::Impl::make_remote() {
 }
 
 // Updates a remote articulation before its links are read.
-void World::Impl::look_at(Articulation& art) {
+void World::Impl::update_if_remote(Articulation& art) {
   if (art.remote) follow(art);
 }
-void World::Impl::look_at_all() {
-  for (Articulation& art : articulations) look_at(art);
+void World::Impl::update_all_remote() {
+  for (Articulation& art : articulations) update_if_remote(art);
 }
 
 }  // namespace vp

@@ -34,10 +34,10 @@ Expected<ArticulationDesc> articulation_of(const std::vector<LinkSpec>& links, b
 }
 
 // Makes a call and discards its result, except errors.
-class Doer {
+class CallPlayer {
  public:
   using Done = Expected<void>;
-  explicit Doer(World& world) : world_(world) {}
+  explicit CallPlayer(World& world) : world_(world) {}
   Done operator()(const calls::CreateBody& c) { return only(world_.create_body(c.desc)); }
   Done operator()(const calls::DestroyBody& c) { return world_.destroy_body(c.body); }
   Done operator()(const calls::AddCollider& c) { return only(world_.add_collider(c.body, c.desc)); }
@@ -247,7 +247,7 @@ Expected<void> Replay::play(std::span<const std::byte> bytes) {
 }
 
 Expected<void> Replay::make(const RecordedCall& call, std::uint64_t topology_hash) {
-  if (const auto made = std::visit(Doer(world_), call.what); !made) {
+  if (const auto made = std::visit(CallPlayer(world_), call.what); !made) {
     return bad("a recorded call is refused: " + made.error().message);
   }
   if (recording::builds(call) && topology_hash != world_.impl_->topology_hash) {

@@ -128,7 +128,7 @@ JointState read(Reader& in, const BodyJoint& joint) {
 void adopt(BodyJoint& joint, const JointState& state) {
   std::copy_n(state.rotated, 2, joint.rotated);
   joint.count = joint.locked = 0;
-  joint.laid_out_for = 0.0;
+  joint.rows_sub_step = 0.0;
   joint.force = joint.torque = {};
   const bool axes = joint.spec.form == JointSpec::Form::axes;
   if (joint.spec.form == JointSpec::Form::gear) std::copy_n(state.start, 2, joint.start);
@@ -257,7 +257,7 @@ void World::Impl::Incoming::read_loads(Reader& in) {
     const Body& body = world.bodies[load.body];
     in.check(body.alive && !body.is_link && body.motion == Motion::dynamic);
     if (!in.ok()) return;
-    in.check(can_bear(body, bodies[state].T.rotation(), 0.5 * load.force, 0.5 * load.torque));
+    in.check(load_in_range(body, bodies[state].T.rotation(), 0.5 * load.force, 0.5 * load.torque));
     loads.push_back(load);
   }
   for (std::size_t n = in.count(1); n > 0 && in.ok(); --n) {

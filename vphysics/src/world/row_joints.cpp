@@ -23,7 +23,7 @@ bool is_angle(const BodyJoint& joint, const BodyJointRow& row) {
 class RowsOfJoint {
  public:
   RowsOfJoint(BodyJoint& joint, std::uint32_t index, const RowJointStep& step, const Vec3& anchor,
-              const JointMeasure& measure, const double* speeds, const double* curves,
+              const JointEvaluation& measure, const double* speeds, const double* curves,
               std::vector<solve::JointRow>& rows, std::vector<solve::JointPair>& pairs)
       : joint_(joint),
         index_(index),
@@ -47,7 +47,7 @@ class RowsOfJoint {
   double residual(int i) const { return measure_.residual[i]; }
   double fastest(const BodyJointRow& row) const {
     return is_angle(joint_, row) ? double{solve::kMaxAngularBias}
-                                 : kFastestJoint * step_.speed_unit;
+                                 : kMaxJointCorrectionSpeed * step_.speed_unit;
   }
   bool in_instant() const { return step_.of != RowsOf::sub_step; }
 
@@ -59,7 +59,7 @@ class RowsOfJoint {
     row.lower = lower;
     row.upper = upper;
     solve::JointPair& pair = pairs_.emplace_back();
-    const Twelve& J = measure_.jacobian[i];
+    const RowJacobian& J = measure_.jacobian[i];
     pair.a.body = joint_.a;
     pair.a.linear = J.linear_a;
     pair.a.angular = J.angular_a;
@@ -108,7 +108,7 @@ class RowsOfJoint {
     const bool open = (from.min_impulse >= 0.0 && C > 0.0) || (from.max_impulse <= 0.0 && C < 0.0);
     // A bounded force has no time to act in an impact.
     const auto bound = [&](double x) {
-      return step_.with_memory() || std::fabs(x) >= BodyJointRow::kNowhere ? x : 0.0;
+      return step_.with_memory() || std::fabs(x) >= BodyJointRow::kNoBound ? x : 0.0;
     };
     const double lower = bound(from.min_impulse), upper = bound(from.max_impulse);
     if (!open) return add_locked(i, lower, upper);
@@ -147,7 +147,7 @@ class RowsOfJoint {
   std::uint32_t index_;
   const RowJointStep& step_;
   const Vec3& anchor_;
-  const JointMeasure& measure_;
+  const JointEvaluation& measure_;
   const double *speeds_, *curves_;  // of each row
   std::vector<solve::JointRow>& rows_;
   std::vector<solve::JointPair>& pairs_;
@@ -163,11 +163,11 @@ bool is_in_rows(const Bodies& bodies, const BodyJoint& joint) {
 void add_rows(BodyJoint& joint, std::uint32_t index, const RowEnd& a, const RowEnd& b,
               const RowJointStep& step, std::vector<solve::JointRow>& rows,
               std::vector<solve::JointPair>& pairs) {
-  if (joint.laid_out_for != step.h) lay_out(joint, step.h);
-  joint.laid_out_for = step.h;
+  if (joint.rows_sub_step != step.h) build_rows(joint, step.h);
+  joint.rows_sub_step = step.h;
   // speeds: the rate of each residual. curves: by how much its mean rate over the step exceeds
   // that.
-  JointMeasure measure, next;
+  JointEvaluation measure, next;
   double speeds[solve::kJointRows] = {}, curves[solve::kJointRows] = {};
   evaluate(joint, a.now, b.now, measure);
   if (step.of == RowsOf::first_instant) {
@@ -176,7 +176,7 @@ void add_rows(BodyJoint& joint, std::uint32_t index, const RowEnd& a, const RowE
     std::copy_n(rotated, 2, joint.rotated);
   }
   for (int i = 0; i < joint.count; ++i) {
-    const Twelve& J = measure.jacobian[i];
+    const RowJacobian& J = measure.jacobian[i];
     speeds[i] = dot(J.linear_a, a.velocity.v) + dot(J.angular_a, a.velocity.w) +
                 dot(J.linear_b, b.velocity.v) + dot(J.angular_b, b.velocity.w);
     if (step.of != RowsOf::first_instant) continue;
@@ -215,7 +215,7 @@ bool is_far_open(const BodyJoint& joint, const BodyPose& a, const BodyPose& b, d
     const BodyJointRow& row = joint.rows[i];
     if (!row.relaxes) continue;
     const double error = std::fabs(coordinate(joint, a, b, row.slot).value_or(0.0) - row.position);
-    if (error > (is_angle(joint, row) ? kRotationError : kOpen * size)) return true;
+    if (error > (is_angle(joint, row) ? kRotationError : kMaxJointSeparation * size)) return true;
   }
   return false;
 }

@@ -1,4 +1,5 @@
-// Loops over the contacts of all regions and colours: one region after the other, then kBetween.
+// Loops over the contacts of all regions and colours: one region after the other, then
+// kSharedRegion.
 #pragma once
 
 #include <algorithm>
@@ -48,10 +49,10 @@ struct ContactRuns {
   template <class F>
   void for_runs(const F& f) const {
     for (std::size_t region = 1; region <= regions(); ++region) for_runs_of(region, f);
-    for_runs_of(solve::kBetween, f);
+    for_runs_of(solve::kSharedRegion, f);
   }
 
-  // Calls f(region) for all but kBetween, in parallel: no two regions share a body, except the
+  // Calls f(region) for all but kSharedRegion, in parallel: no two regions share a body, except the
   // fixed world.
   template <class F>
   void for_regions(const F& f) const {
@@ -61,8 +62,8 @@ struct ContactRuns {
   }
 
   // Calls f(passes, part of a run, index of its first block as number() counts), one colour after
-  // the other. In kBetween the parts of a colour run in parallel. Contacts of the last colour share
-  // bodies and are not divided into parts.
+  // the other. In kSharedRegion the parts of a colour run in parallel. Contacts of the last colour
+  // share bodies and are not divided into parts.
   template <class F>
   void for_parts_of(std::size_t region, const F& f) const {
     constexpr std::size_t kGrain = 8;  // blocks: some microseconds
@@ -76,7 +77,7 @@ struct ContactRuns {
             std::min(run.lanes - skipped, static_cast<std::uint32_t>(end - begin) * run.stride);
         f(passes, part, first + begin);
       };
-      if (region == solve::kBetween && run.stride > 1) {
+      if (region == solve::kSharedRegion && run.stride > 1) {
         workers.in_parallel(blocks.size(), kGrain, part_of);
       } else {
         part_of(0, blocks.size());
@@ -85,11 +86,11 @@ struct ContactRuns {
     });
   }
 
-  // The same, and then kBetween.
+  // The same, and then kSharedRegion.
   template <class F>
   void everywhere(const F& f) const {
     for_regions(f);
-    f(std::size_t{solve::kBetween});
+    f(std::size_t{solve::kSharedRegion});
   }
 
   template <class F>
@@ -106,13 +107,13 @@ struct ContactRuns {
       for_runs_of(region, [&](const auto&, const auto&, const auto& b) { count += b.size(); });
     };
     for (std::size_t region = 1; region <= regions(); ++region) number(region);
-    number(solve::kBetween);
+    number(solve::kSharedRegion);
     block_bits.words.resize(std::max(block_bits.words.size(), count));
     return count;
   }
 
  private:
-  std::size_t regions() const { return graph.regions() - 1; }  // without kBetween
+  std::size_t regions() const { return graph.regions() - 1; }  // without kSharedRegion
 };
 
 }  // namespace vp

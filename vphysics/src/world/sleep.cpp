@@ -53,7 +53,7 @@ bool SleepIslands::rests(const IslandGraph& graph, std::uint32_t seed, std::uint
   const std::uint64_t island = ++found_;
   bool rests = true;
   island_.clear();
-  const auto bounding_radius = [&](std::uint32_t index) {
+  const auto visit = [&](std::uint32_t index) {
     Body& body = graph.bodies[index];
     if (body.motion == Motion::fixed || body.island == island) return;
     if (body.motion == Motion::kinematic) {
@@ -64,9 +64,8 @@ bool SleepIslands::rests(const IslandGraph& graph, std::uint32_t seed, std::uint
     body.island = island;
     island_.push_back(index);
   };
-  bounding_radius(seed);
-  for (std::size_t i = 0; i < island_.size() && rests; ++i)
-    for_partners(graph, island_[i], bounding_radius);
+  visit(seed);
+  for (std::size_t i = 0; i < island_.size() && rests; ++i) for_partners(graph, island_[i], visit);
   if (rests) return true;
   for (const std::uint32_t i : island_) {
     double& time = graph.bodies[i].rest_time;
@@ -77,15 +76,15 @@ bool SleepIslands::rests(const IslandGraph& graph, std::uint32_t seed, std::uint
 
 std::span<const std::uint32_t> SleepIslands::wake(const IslandGraph& graph, std::uint32_t seed) {
   woken_.clear();
-  const auto bounding_radius = [&](std::uint32_t index) {
+  const auto visit = [&](std::uint32_t index) {
     Body& body = graph.bodies[index];
     if (!body.asleep) return;
     body.asleep = false;
     body.rest_time = 0.0;
     woken_.push_back(index);
   };
-  bounding_radius(seed);
-  for (std::size_t i = 0; i < woken_.size(); ++i) for_partners(graph, woken_[i], bounding_radius);
+  visit(seed);
+  for (std::size_t i = 0; i < woken_.size(); ++i) for_partners(graph, woken_[i], visit);
   return woken_;
 }
 

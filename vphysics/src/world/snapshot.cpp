@@ -68,13 +68,13 @@ void put(Sink& sink, const PairRecord& r) {
   }
 }
 
-std::uint64_t change_bits(ColliderId id) {
+std::uint64_t id_bits(ColliderId id) {
   return (std::uint64_t{id.index} << 32) | id.generation;
 }
 template <class Sink>
 void put(Sink& sink, const DestroyedPair& pair) {
-  sink.u64(change_bits(pair.a));
-  sink.u64(change_bits(pair.b));
+  sink.u64(id_bits(pair.a));
+  sink.u64(id_bits(pair.b));
   sink.u64(pair.sensor ? 1u : 0u);
 }
 

@@ -6,7 +6,7 @@
 namespace vp {
 
 const char* name_of(Stage stage) {
-  constexpr const char* kNames[] = {"prepare",   "broad phase", "narrow phase", "lanes",
+  constexpr const char* kNames[] = {"prepare",   "broad phase", "narrow phase", "contact slots",
                                     "sub-steps", "report",      "forces",       "impacts",
                                     "advance",   "sleep"};
   const auto index = static_cast<std::size_t>(stage);

@@ -42,7 +42,7 @@ void World::Impl::begin_step(double dt) {
   status = {};
   position_error_now = false;
   counters = {};
-  narrow.manifold_scratch.narrow_phase_pairs = 0;
+  narrow.manifold_scratch.triangles_tested = 0;
   narrow.manifold_scratch.crowded = narrow.manifold_scratch.rough = false;
   narrow.renewed = 0;
   events.clear();
@@ -54,7 +54,7 @@ void World::Impl::begin_step(double dt) {
   impacts.records.reserve(capacity);
   impacts.next_records.reserve(capacity);
   contact_store.reserve(capacity);
-  for (auto* list : {&narrow.dirty, &narrow.look_again})
+  for (auto* list : {&narrow.dirty, &narrow.dirty_next_step})
     list->reserve(contact_store.dirty.capacity());
   narrow.results.reserve(std::min(capacity, kNarrowPhaseBatch));
   narrow.to_pose.reserve(n);
@@ -156,7 +156,7 @@ void World::Impl::begin_impact_stage(double dt) {
   impacts.start_poses.resize(n);
   impacts.stopped.assign(n, 0);
   impacts.in_contact.assign(n, 0);
-  impacts.as_swept.assign(n, 0);
+  impacts.moves_rigidly.assign(n, 0);
   impacts.brought.assign(n, 0);
   impacts.times.assign(n, 0.0);
   impacts.concerns.assign(n, Concern::none);
@@ -332,7 +332,7 @@ void World::Impl::advance_all(double dt) {
       lists.awake_bodies.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
           Body& body = bodies[lists.awake_bodies[k]];
-          const bool led = body.motion == Motion::dynamic && body.by_rows();
+          const bool led = body.motion == Motion::dynamic && body.is_solver_driven();
           sub_step.awake_body_changed[k] = led && rows.advance(body, lists.awake_bodies[k]) ? 0 : 1;
         }
       });
@@ -427,7 +427,7 @@ void World::Impl::feel_forces(double dt) {
   for (const std::uint32_t i : lists.awake_bodies) {
     if (joins_sub_steps(bodies[i]) && bodies[i].motion == Motion::dynamic) {
       impacts.drift[i] = settle(rows, i);
-      if (bodies[i].by_rows()) continue;
+      if (bodies[i].is_solver_driven()) continue;
       const Velocity a = acceleration_of(bodies[i]);
       impacts.forced[i] = {dt * a.w, dt * a.v};
     }
@@ -438,7 +438,7 @@ void World::Impl::feel_forces(double dt) {
 void World::Impl::count_contacts() {
   status.manifold_limit |= narrow.manifold_scratch.crowded;
   status.distance_limit |= narrow.manifold_scratch.rough;
-  counters.triangles = narrow.manifold_scratch.narrow_phase_pairs;
+  counters.triangles = narrow.manifold_scratch.triangles_tested;
   solve::ColourSet colours;
   for (std::size_t region = 0; region < contact_store.graph.regions(); ++region) {
     colours.insert(contact_store.graph.colours_in_use(region));

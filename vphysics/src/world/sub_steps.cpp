@@ -14,11 +14,11 @@ namespace {
 // Fraction of the accumulated impulse that a sub-step discards before it solves again. It damps the
 // effect of warm starting on loads that have not converged: without it a wall of 47 bodies never
 // comes to rest. Together with kUseBias, a load L, in impulse per sub-step, sinks by
-//   h (kLoss / kUseBias) L / m:  0.07 mm under ten boxes at 1 ms.
-constexpr double kLoss = 0.07;
+//   h (kImpulseDecay / kUseBias) L / m:  0.07 mm under ten boxes at 1 ms.
+constexpr double kImpulseDecay = 0.07;
 // Rate at which the sub-step length of the bias velocity (last_step_length) follows the actual one
 // when that becomes shorter [s/s].
-constexpr double kHurry = 0.02;
+constexpr double kBiasStepRate = 0.02;
 // Iterations with bias velocity in one sub-step.
 constexpr int kIterations = 3;
 // Max restitution passes in one sub-step: an impact may have to propagate through as many contacts
@@ -48,7 +48,7 @@ void rescale_impulses(solve::ContactGraph& graph, Joints& joints, double ratio) 
 }
 
 // Operations of a sub-step on the bodies and contacts of one region. Several workers share the
-// region kBetween; one worker does each of the others.
+// region kSharedRegion; one worker does each of the others.
 struct SubStepContext {
   ContactRuns contacts;
   const Regions& regions;
@@ -129,9 +129,9 @@ class SubSteps {
     move(region);
     relax(region, last);
   }
-  bool some_too_deep() const { return some_too_deep_; }
+  bool has_deep_contacts() const { return some_too_deep_; }
   // Call it after the first sub-step: from then on the recorded impulses accumulate.
-  void go_on() { soft_.keeps_load = 1.0f; }
+  void accumulate_impulses() { soft_.keeps_load = 1.0f; }
 
  private:
   // Sets the word of each block in which something bounces to 1.
@@ -145,7 +145,7 @@ class SubSteps {
   template <class F>
   void for_moving_bodies(std::size_t region, const F& f) const {
     const std::span<const std::uint32_t> some = context_.regions.awake_bodies_of(region);
-    if (region != solve::kBetween) return f(some.data(), some.size());
+    if (region != solve::kSharedRegion) return f(some.data(), some.size());
     context_.workers.in_parallel(some.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
       f(some.data() + begin, end - begin);
     });
@@ -186,20 +186,21 @@ void World::Impl::take_sub_steps(double dt, int n) {
   if (before > h) rescale_impulses(contact_store.graph, joints, h / before);
   // A penetration from longer sub-steps must not be pushed out abruptly by shorter ones: the bias
   // velocity approaches that of the shorter ones gradually.
-  state.last_step_length = std::max(static_cast<double>(h), state.last_step_length - kHurry * dt);
+  state.last_step_length =
+      std::max(static_cast<double>(h), state.last_step_length - kBiasStepRate * dt);
   const double fastest =
       std::clamp(kUseBias / state.last_step_length * kSmallDepth * desc.length_unit,
-                 kMaxBiasVelocity * speed_unit, kFastestShift * speed_unit);
+                 kMaxBiasVelocity * speed_unit, kMaxCorrectionSpeed * speed_unit);
   const ContactRuns runs = contact_runs();
   SubSteps steps({runs, regions, workers, body_rows, sub_step.velocity_changes,
                   static_cast<float>(desc.restitution_threshold)},
                  h,
                  {.rate = static_cast<float>(kUseBias / state.last_step_length),
-                  .fraction = static_cast<float>(1.0 - kLoss),
+                  .fraction = static_cast<float>(1.0 - kImpulseDecay),
                   .max_bias_velocity = static_cast<float>(fastest),
                   .inverse_h = 1.0f / h,
                   .keeps_load = 0.0f,
-                  .fastest_shift = static_cast<float>(kFastestShift * speed_unit),
+                  .fastest_shift = static_cast<float>(kMaxCorrectionSpeed * speed_unit),
                   .h = h,
                   .idle_speed = static_cast<float>(speed_unit)});
   JointSteps joint_steps(
@@ -230,13 +231,13 @@ void World::Impl::take_sub_steps(double dt, int n) {
       // All consecutive operations on one region are done at once, so that its contacts are read
       // from memory once, except by the restitution pass and the first warm start.
       for (int iteration = 0; iteration < kIterations; ++iteration)
-        steps.solve_contacts(solve::kBetween, iteration);
+        steps.solve_contacts(solve::kSharedRegion, iteration);
       runs.for_regions([&](std::size_t region) {
         for (int iteration = 0; iteration < kIterations; ++iteration)
           steps.solve_contacts(region, iteration);
         steps.move_and_relax(region, last);
       });
-      steps.move_and_relax(solve::kBetween, last);
+      steps.move_and_relax(solve::kSharedRegion, last);
     } else {
       for (int iteration = 0; iteration < kIterations; ++iteration) {
         joint_steps.solve(iteration);
@@ -250,10 +251,10 @@ void World::Impl::take_sub_steps(double dt, int n) {
       runs.everywhere([&](std::size_t region) { steps.relax(region, last); });
       if (links) relax_links(h);
     }
-    steps.go_on();
+    steps.accumulate_impulses();
   }
   const bool some_are_far_open = joint_steps.end(dt);
-  if (steps.some_too_deep() || some_are_far_open) position_error_now = true;
+  if (steps.has_deep_contacts() || some_are_far_open) position_error_now = true;
 }
 
 }  // namespace vp

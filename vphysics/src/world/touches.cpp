@@ -57,11 +57,11 @@ struct TouchReport {
     });
     for (std::size_t k = 0; k < changed.size();) {
       PartEvent sum = changed[k];
-      double max_value = sum.impulse;
+      double max_impulse = sum.impulse;
       for (++k; k < changed.size() && changed[k].aggregate == sum.aggregate; ++k) {
         const PartEvent& other = changed[k];
-        if (other.impulse > max_value) {
-          max_value = other.impulse;
+        if (other.impulse > max_impulse) {
+          max_impulse = other.impulse;
           sum.point = other.point;
           sum.normal = other.normal;
         }

@@ -215,8 +215,9 @@ std::optional<std::string> problem_with(const ArticulationDesc& desc) {
       return "link " + std::to_string(l) + ": every number of the model" + kRange;
     }
     for (const JointForces& f : link.forces) {
-      const bool separated = f.lower < kLargest && f.upper > -kLargest && f.lower <= f.upper;
-      if (!separated || !in_range(f.rest) || !(f.stiffness <= 1e30) || !(f.limit_damping <= 1e30)) {
+      const bool valid_limits = f.lower < kLargest && f.upper > -kLargest && f.lower <= f.upper;
+      if (!valid_limits || !in_range(f.rest) || !(f.stiffness <= 1e30) ||
+          !(f.limit_damping <= 1e30)) {
         return "link " + std::to_string(l) +
                ": limits and the spring's rest must lie within 1e9, stiffness within 1e30";
       }

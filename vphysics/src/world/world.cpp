@@ -41,7 +41,7 @@ World& World::operator=(World&& other) noexcept {
 Vec3 World::Impl::centre_of_mass(const Body& body) {
   if (!body.is_link) return reference_point(body);
   Articulation& art = articulations[body.articulation];
-  look_at(art);
+  update_if_remote(art);
   const Inertia& inertia = art.model().link(body.link).inertia;
   const SE3 T = art.T_world_link(body.link);
   return inertia.mass() > 0.0 ? T * inertia.centre_of_mass() : T.position();
@@ -52,7 +52,7 @@ Expected<BodyId> World::create_body(const BodyDesc& desc) {
   const std::uint32_t index = impl_->bodies.take();
   Body& body = impl_->bodies[index];
   body.motion = desc.motion;
-  body.wants_continuous = desc.continuous;
+  body.requested_continuous = desc.continuous;
   body.continuous = desc.continuous && desc.motion == Motion::dynamic;
   body.user_data = desc.user_data;
   body.T = SE3(orthonormalized(desc.T_world_body.rotation()), desc.T_world_body.position());
@@ -67,7 +67,7 @@ Expected<BodyId> World::create_body(const BodyDesc& desc) {
   TopologyHash(impl_->topology_hash).add(0x100u + index, desc);
   const BodyId id = impl_->bodies.id(index);
   impl_->lists.invalidate();
-  if (desc.motion != Motion::fixed) impl_->give_velocity(index, desc.velocity);
+  if (desc.motion != Motion::fixed) impl_->set_body_velocity(index, desc.velocity);
   if (impl_->recorder) impl_->log({calls::CreateBody{desc}});
   return id;
 }
@@ -190,7 +190,7 @@ SE3 World::pose(BodyId id) const {
   const Body* body = impl_->find(id);
   VP_ASSERT(body && "pose: the body does not exist (any more)");
   if (!body) return {};
-  if (body->is_link) impl_->look_at(impl_->articulations[body->articulation]);
+  if (body->is_link) impl_->update_if_remote(impl_->articulations[body->articulation]);
   return body->is_link ? impl_->articulations[body->articulation].T_world_link(body->link)
                        : body->T;
 }
@@ -202,7 +202,7 @@ se3 World::velocity(BodyId id) const {
   if (body->motion == Motion::kinematic) return body->prescribed;
   if (body->is_link) {
     Articulation& art = impl_->articulations[body->articulation];
-    impl_->look_at(art);
+    impl_->update_if_remote(art);
     const SE3 T = art.T_world_link(body->link);
     const se3 V = art.link_velocity(body->link, T.position());
     return {T.unrotate(V.w), T.unrotate(V.v)};
@@ -242,8 +242,8 @@ Expected<void> World::set_pose(BodyId id, const SE3& T) {
   if (!body) return unknown_id("set_pose", "the body");
   if (body->is_link) return invalid("set_pose: a link is placed by its joint; use set_joint_state");
   if (!is_pose(T)) return invalid("set_pose: the pose must be a finite rotation and position");
-  if (!impl_->loads.can_bear(*body, inertia(id), T)) {
-    return invalid(std::string("set_pose: ") + kUnbearable);
+  if (!impl_->loads.load_in_range(*body, inertia(id), T)) {
+    return invalid(std::string("set_pose: ") + kLoadOutOfRange);
   }
   body->T = SE3(orthonormalized(T.rotation()), T.position());
   body->moved();
@@ -262,12 +262,12 @@ Expected<void> World::set_velocity(BodyId id, const se3& V) {
   if (!nearly_in_range(V.v + cross(V.w, body->centre))) {
     return invalid("set_velocity: the centre of mass would move faster than 1e9 m/s");
   }
-  impl_->give_velocity(id.index - 1, V);
+  impl_->set_body_velocity(id.index - 1, V);
   if (impl_->recorder) impl_->log({calls::SetVelocity{id, V}});
   return {};
 }
 
-void World::Impl::give_velocity(std::uint32_t index, const se3& V) {
+void World::Impl::set_body_velocity(std::uint32_t index, const se3& V) {
   Body& body = bodies[index];
   if (body.motion == Motion::kinematic) {
     body.prescribed = V;
