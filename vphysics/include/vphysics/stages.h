@@ -15,7 +15,7 @@ enum class Stage : std::uint8_t {
   // Manifolds of those pairs that have moved by more than a small distance.
   narrow_phase,
   // Adds these manifolds to the contact slots and colours of the solver, or removes them.
-  lanes,
+  contact_slots,
   // Forces, restitution, joints and contacts of the sub-stepped solver.
   sub_steps,
   // Contact events of the sub-steps.

@@ -124,7 +124,7 @@ void World::Impl::bring(std::uint32_t index, const Instant& now) {
   Body& body = bodies[index];
   if (body.is_link || impacts.times[index] == now.time) return;
   const double h = now.since(std::exchange(impacts.times[index], now.time));
-  if (is_still(body) || impacts.locked[index]) return;
+  if (is_still(body) || impacts.stopped[index]) return;
   impacts.brought[index] = 1;
   move_within_step(index, h, false);
   impacts.motions[index].x = reference_point(body);
@@ -133,7 +133,7 @@ void World::Impl::bring(std::uint32_t index, const Instant& now) {
 void World::Impl::move_within_step(std::uint32_t index, double h, bool freely) {
   advance_body(bodies[index], impacts.motions[index], h, freely, impacts.drift[index].w);
   if (!stop_if_out_of_range(index, impacts.start_poses[index])) return;
-  impacts.locked[index] = 1;
+  impacts.stopped[index] = 1;
   refresh_motion_of(index, dt_now - impacts.times[index]);
   refresh_bounds_of(index, dt_now - impacts.times[index]);
 }
@@ -236,7 +236,7 @@ void World::Impl::concern_what_touches(const Instant& now) {
 
 // Nothing has been found on its way: it goes freely.
 void World::Impl::bring_concerned(std::uint32_t index, const Instant& now) {
-  if (impacts.times[index] != now.time && !is_still(bodies[index]) && !impacts.locked[index]) {
+  if (impacts.times[index] != now.time && !is_still(bodies[index]) && !impacts.stopped[index]) {
     const double h = now.since(std::exchange(impacts.times[index], now.time));
     move_within_step(index, h, !impacts.moves_rigidly[index] && !impacts.brought[index]);
   }
@@ -308,7 +308,7 @@ void World::Impl::stop_what_would_hit(const Instant& now) {
     again = false;
     for (const SweptPair& swept : impacts.swept_pairs) {
       const std::uint32_t a = colliders[swept.pair.a].body, b = colliders[swept.pair.b].body;
-      if (swept.sensor || (impacts.locked[a] && impacts.locked[b])) continue;
+      if (swept.sensor || (impacts.stopped[a] && impacts.stopped[b])) continue;
       if (time_of(swept, h) < 0.0) continue;
       again = true;
       hold(a);
@@ -327,7 +327,7 @@ void World::Impl::stop_what_would_hit(const Instant& now) {
 void World::Impl::advance_to_end(const Instant& now) {
   for (const std::uint32_t i : impact_bodies()) {
     const Body& body = bodies[i];
-    if (body.is_link || is_still(body) || impacts.locked[i]) continue;
+    if (body.is_link || is_still(body) || impacts.stopped[i]) continue;
     const double h = dt_now - std::exchange(impacts.times[i], dt_now);
     move_within_step(i, h, !impacts.in_contact[i] && !impacts.brought[i]);
   }
