@@ -286,7 +286,7 @@ TEST(Network, InTrainingAKeyChoosesTheManToWhomTheBallIsServed) {
     const std::int64_t now = os::monotonic_us();
     const auto sample = ann->sample(now);
     hand.update(events, sample.any ? &sample.state : nullptr, now);
-    for (const wire::Wish& wish : hand.wishes()) ann->wish(session, wish);
+    for (const wire::MatchRequest& request : hand.requests()) ann->request(session, request);
     ann->drive(session, hand.rods());
     for (const wire::EventSnapshot& event : ann->take_events()) {
       if (event.kind != number(wire::EventKind::serve)) continue;

@@ -281,20 +281,20 @@ TEST_F(ConnectionTest, NothingOfAnOldMatchReachesANewServer) {
   const std::uint64_t sent = connection->inputs_sent();
   join(43);
   connection->drive(42, old_rods);  // a window that has not heard of the new match yet
-  connection->wish(42, {0, 0, 0});
+  connection->request(42, {0, 0, 0});
   ASSERT_TRUE(hears_twice(43));
   EXPECT_EQ(connection->inputs_sent(), sent);
   server.forget_inputs();
-  connection->wish(43, {2, 0, 1});
+  connection->request(43, {2, 0, 1});
   connection->drive(43, new_rods);
   const auto input = server.next_input();
   ASSERT_TRUE(input);
   EXPECT_EQ(input->session, 43u);
   EXPECT_FALSE(input->rods[3].driven);
   EXPECT_TRUE(input->rods[5].driven);
-  const auto wish = server.next_message();
-  ASSERT_TRUE(wish && std::holds_alternative<wire::Wish>(*wish));
-  EXPECT_EQ(std::get<wire::Wish>(*wish).kind, 2);
+  const auto request = server.next_message();
+  ASSERT_TRUE(request && std::holds_alternative<wire::MatchRequest>(*request));
+  EXPECT_EQ(std::get<wire::MatchRequest>(*request).kind, 2);
 }
 
 TEST_F(ConnectionTest, AServerJoinedAgainGetsNoInputUntilTheHandMovesAnew) {
@@ -315,13 +315,13 @@ TEST_F(ConnectionTest, AServerJoinedAgainGetsNoInputUntilTheHandMovesAnew) {
   EXPECT_TRUE(server.next_input());
 }
 
-TEST_F(ConnectionTest, WishesAndGoodByeReachTheServer) {
+TEST_F(ConnectionTest, RequestsAndGoodByeReachTheServer) {
   open();
   join(42);
-  connection->wish(42, {2, 0, 1});
-  const auto wish = server.next_message();
-  ASSERT_TRUE(wish && std::holds_alternative<wire::Wish>(*wish));
-  EXPECT_EQ(std::get<wire::Wish>(*wish).kind, 2);
+  connection->request(42, {2, 0, 1});
+  const auto request = server.next_message();
+  ASSERT_TRUE(request && std::holds_alternative<wire::MatchRequest>(*request));
+  EXPECT_EQ(std::get<wire::MatchRequest>(*request).kind, 2);
   connection.reset();
   const auto bye = server.next_message();
   EXPECT_TRUE(bye && std::holds_alternative<wire::Bye>(*bye));
@@ -351,19 +351,19 @@ TEST_F(ConnectionTest, TheGoodByeReachesAServerThatReadsLate) {
   server.take_little();
   open();
   join(42);
-  constexpr int kWishes = 5000;
-  for (int i = 0; i < kWishes; ++i) connection->wish(42, {2, 0, 1});
+  constexpr int kRequests = 5000;
+  for (int i = 0; i < kRequests; ++i) connection->request(42, {2, 0, 1});
   std::vector<std::byte> pongs;
   while (pongs.size() < 100'000) wire::encode_control(wire::Pong{1}, pongs);
   server.send_bytes(pongs);  // not all read at the end
   auto end = std::async(std::launch::async, [this] { connection.reset(); });
   end.wait_for(std::chrono::milliseconds(20));  // one that waits for nothing is gone by then
-  int wishes = 0;
+  int requests = 0;
   std::optional<wire::ControlMessage> message;
-  while ((message = server.next_message()) && std::holds_alternative<wire::Wish>(*message))
-    ++wishes;
+  while ((message = server.next_message()) && std::holds_alternative<wire::MatchRequest>(*message))
+    ++requests;
   end.wait();
-  EXPECT_TRUE(message && std::holds_alternative<wire::Bye>(*message)) << wishes;
+  EXPECT_TRUE(message && std::holds_alternative<wire::Bye>(*message)) << requests;
 }
 
 TEST_F(ConnectionTest, APingIsAnswered) {

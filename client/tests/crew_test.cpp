@@ -187,9 +187,9 @@ TEST(Crew, EachPersonAsksForTheOwnTeam) {
   for (const int rod : {2, 4, 6, 7}) table.crew.give(rod, kPad2);
   table.input.button(1, PadButton::time_out, true);
   table.frame();
-  ASSERT_EQ(table.crew.wishes().size(), 1u);
-  EXPECT_EQ(table.crew.wishes()[0].kind, number(wire::WishKind::time_out));
-  EXPECT_EQ(table.crew.wishes()[0].team, 1);
+  ASSERT_EQ(table.crew.requests().size(), 1u);
+  EXPECT_EQ(table.crew.requests()[0].kind, number(wire::RequestKind::time_out));
+  EXPECT_EQ(table.crew.requests()[0].team, 1);
 }
 
 // --- assists -------------------------------------------------------------------------------------
@@ -310,12 +310,12 @@ TEST(Crew, InTrainingAKeyOrAPadsButtonChoosesTheNextManOfTheRodInHand) {
   table.scene.feed_man = 1;
   const auto asked = [&] {
     table.frame();
-    const auto wishes = table.crew.wishes();
-    if (wishes.empty()) return -1;
-    EXPECT_EQ(wishes.size(), 1u);
-    EXPECT_EQ(wishes[0].kind, number(wire::WishKind::feed));
-    EXPECT_EQ(wishes[0].team, 0);
-    return int{wishes[0].value};
+    const auto requests = table.crew.requests();
+    if (requests.empty()) return -1;
+    EXPECT_EQ(requests.size(), 1u);
+    EXPECT_EQ(requests[0].kind, number(wire::RequestKind::feed));
+    EXPECT_EQ(requests[0].team, 0);
+    return int{requests[0].value};
   };
   const auto press = [&] {
     table.input.key(key("F"), true);

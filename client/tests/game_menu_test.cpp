@@ -216,8 +216,8 @@ TEST(Menu, AsksForARestartFromThePageOfTheGame) {
   menu.toggle(Menu::Page::game);
   EXPECT_EQ(menu.page(context).title, "Game");
   const auto outcome = menu.step({.down = menu.game().rows() - 1, .confirm = true}, 0, context);
-  ASSERT_EQ(outcome.asked.wishes.size(), 1u);
-  EXPECT_EQ(outcome.asked.wishes[0].kind, number(wire::WishKind::restart));
+  ASSERT_EQ(outcome.asked.requests.size(), 1u);
+  EXPECT_EQ(outcome.asked.requests[0].kind, number(wire::RequestKind::restart));
 }
 
 }  // namespace

@@ -42,13 +42,13 @@ class TuningPanel : public testing::Test {
   }
   ~TuningPanel() override { std::filesystem::remove_all(folder); }
   int row(const std::string& label) const { return row_of(menu.page(0), label); }
-  // A server that grants every wish, for so long; what it was asked.
-  std::vector<wire::Wish> grant(std::int64_t long_us, std::uint64_t session = 1) {
-    std::vector<wire::Wish> all;
+  // A server that grants every request, for so long; what it was asked.
+  std::vector<wire::MatchRequest> grant(std::int64_t long_us, std::uint64_t session = 1) {
+    std::vector<wire::MatchRequest> all;
     for (const std::int64_t end = now + long_us; now < end; now += 16'000) {
-      for (const wire::Wish& wish : menu.wishes(now)) {
-        all.push_back(wish);
-        told.*foosball::kTuningFields[wish.value].value = wish.amount;
+      for (const wire::MatchRequest& request : menu.requests(now)) {
+        all.push_back(request);
+        told.*foosball::kTuningFields[request.value].value = request.amount;
       }
       menu.hear(session, told, true);
     }
@@ -83,11 +83,11 @@ TEST_F(TuningPanel, AsksNoFasterThanAServerHearsAndUntilItIsGranted) {
   EXPECT_TRUE(grant(kSecond).empty());
 }
 
-TEST_F(TuningPanel, GivesUpAWishThatHasNoEffectAndSaysSo) {
+TEST_F(TuningPanel, GivesUpARequestThatHasNoEffectAndSaysSo) {
   menu.step(row("gravity"), {.right = 1});
   int asked = 0;
   for (int i = 0; i < 600; ++i, now += 16'000) {
-    asked += static_cast<int>(menu.wishes(now).size());
+    asked += static_cast<int>(menu.requests(now).size());
     menu.hear(1, told, true);
   }
   EXPECT_EQ(asked, TuningMenu::kTries);
@@ -98,9 +98,9 @@ TEST_F(TuningPanel, GivesUpAWishThatHasNoEffectAndSaysSo) {
 TEST_F(TuningPanel, ForgetsWhatWasWantedOfAServerThatRestarted) {
   menu.step(row("gravity"), {.right = 5});
   menu.hear(2, std::nullopt, true);
-  EXPECT_TRUE(menu.wishes(now).empty());
+  EXPECT_TRUE(menu.requests(now).empty());
   menu.hear(2, told, true);
-  EXPECT_TRUE(menu.wishes(now).empty());
+  EXPECT_TRUE(menu.requests(now).empty());
 }
 
 TEST_F(TuningPanel, ShowsTheValuesToOthersAndAsksNothingForThem) {
@@ -111,7 +111,7 @@ TEST_F(TuningPanel, ShowsTheValuesToOthersAndAsksNothingForThem) {
     menu.step(i, {.right = 1});
     menu.step(i, {.confirm = true});
   }
-  EXPECT_TRUE(menu.wishes(now).empty());
+  EXPECT_TRUE(menu.requests(now).empty());
   const MenuPage page = menu.page(row("gravity"));
   EXPECT_EQ(page.rows[static_cast<std::size_t>(row("gravity"))].value, "9.5 m/s\u00B2");
   EXPECT_TRUE(page.rows[static_cast<std::size_t>(row("gravity"))].fixed);
@@ -149,7 +149,7 @@ TEST_F(TuningPanel, SaysFileAndLineOfAProfileThatIsNone) {
   ASSERT_EQ(menu.page(0).rows[0].value, "a");
   menu.step(row("Load the profile"), {.confirm = true});
   EXPECT_NE(menu.page(0).problem.find("a.toml:2: hop_gain must be a number"), std::string::npos);
-  EXPECT_TRUE(menu.wishes(now).empty()) << "nothing of it is taken";
+  EXPECT_TRUE(menu.requests(now).empty()) << "nothing of it is taken";
 }
 
 // --- seats ---------------------------------------------------------------------------------------
@@ -211,18 +211,18 @@ TEST(SeatsMenu, SidesAreChangedAndRodsGivenUp) {
 TEST(SeatsMenu, VotesAreStartedAndAnswered) {
   SeatsPage page;
   SeatsAsked asked = page.at("Back to the start", {.confirm = true});
-  ASSERT_EQ(asked.wishes.size(), 1u);
-  EXPECT_EQ(asked.wishes[0].kind, number(wire::WishKind::restart));
+  ASSERT_EQ(asked.requests.size(), 1u);
+  EXPECT_EQ(asked.requests[0].kind, number(wire::RequestKind::restart));
   asked = page.at("Time-out", {.confirm = true});
-  ASSERT_EQ(asked.wishes.size(), 1u);
-  EXPECT_EQ(asked.wishes[0].kind, number(wire::WishKind::time_out));
-  page.view.notices = {{wire::Notice::Level::info, wire::vote_topic(wire::WishKind::pause, 1),
+  ASSERT_EQ(asked.requests.size(), 1u);
+  EXPECT_EQ(asked.requests[0].kind, number(wire::RequestKind::time_out));
+  page.view.notices = {{wire::Notice::Level::info, wire::vote_topic(wire::RequestKind::pause, 1),
                         "Ann asks for a pause: 1 of 2 votes"},
                        {wire::Notice::Level::info, 7, "something else"}};
   asked = page.at("Agree to the vote", {.confirm = true});
-  ASSERT_EQ(asked.wishes.size(), 1u);
-  EXPECT_EQ(asked.wishes[0].kind, number(wire::WishKind::pause));
-  EXPECT_EQ(asked.wishes[0].value, 1);
+  ASSERT_EQ(asked.requests.size(), 1u);
+  EXPECT_EQ(asked.requests[0].kind, number(wire::RequestKind::pause));
+  EXPECT_EQ(asked.requests[0].value, 1);
 }
 
 TEST(SeatsMenu, APlayerIsPutOutWhenItIsAskedForTwiceAndNeverAHostOrOneself) {

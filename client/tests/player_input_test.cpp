@@ -112,7 +112,7 @@ TEST(PlayerInput, NumberKeysReachEachCharacterOfTheSelection) {
     events.number = key;
     scene.character[0] = static_cast<std::uint8_t>(now);
     player.update(events, &scene, kFrame);
-    return player.wishes().size() == 1 ? static_cast<int>(player.wishes()[0].value) : -1;
+    return player.requests().size() == 1 ? static_cast<int>(player.requests()[0].value) : -1;
   };
   for (int i = 0; i < built_in; ++i) EXPECT_EQ(chosen(i + 1, i == 0 ? 1 : 0), i);
   EXPECT_EQ(chosen(7, 0), -1) << "there is none";
@@ -124,8 +124,8 @@ TEST(PlayerInput, NumberKeysReachEachCharacterOfTheSelection) {
   beyond.wheel = 1;
   scene.character[0] = 0;
   player.update(beyond, &scene, kFrame);
-  ASSERT_EQ(player.wishes().size(), 1u);
-  EXPECT_EQ(player.wishes()[0].value, 11) << "and the wheel goes on past the tenth";
+  ASSERT_EQ(player.requests().size(), 1u);
+  EXPECT_EQ(player.requests()[0].value, 11) << "and the wheel goes on past the tenth";
 }
 
 TEST(PlayerInput, PushStartsOnTheLogoAndDoesNothingInPlay) {
@@ -135,11 +135,11 @@ TEST(PlayerInput, PushStartsOnTheLogoAndDoesNothingInPlay) {
   events.push = true;
   scene.screen = 0;
   player.update(events, &scene, kFrame);
-  ASSERT_EQ(player.wishes().size(), 1u);
-  EXPECT_EQ(player.wishes()[0].kind, 0);
+  ASSERT_EQ(player.requests().size(), 1u);
+  EXPECT_EQ(player.requests()[0].kind, 0);
   scene.screen = 2;
   player.update(events, &scene, 2 * kFrame);
-  EXPECT_TRUE(player.wishes().empty());
+  EXPECT_TRUE(player.requests().empty());
 }
 
 TEST(PlayerInput, PauseAsksForTheOppositeOfWhatIs) {
@@ -148,12 +148,12 @@ TEST(PlayerInput, PauseAsksForTheOppositeOfWhatIs) {
   InputEvents events;
   events.toggle_pause = true;
   player.update(events, &scene, kFrame);
-  ASSERT_EQ(player.wishes().size(), 1u);
-  EXPECT_EQ(player.wishes()[0].value, 1);
+  ASSERT_EQ(player.requests().size(), 1u);
+  EXPECT_EQ(player.requests()[0].value, 1);
   scene.paused = true;
   player.update(events, &scene, 2 * kFrame);
-  ASSERT_EQ(player.wishes().size(), 1u);
-  EXPECT_EQ(player.wishes()[0].value, 0);
+  ASSERT_EQ(player.requests().size(), 1u);
+  EXPECT_EQ(player.requests()[0].value, 0);
 }
 
 TEST(PlayerInput, AHeldArrowChoosesOneCharacterNotMany) {
@@ -164,11 +164,11 @@ TEST(PlayerInput, AHeldArrowChoosesOneCharacterNotMany) {
   InputEvents events;
   events.key_spin = 1;
   player.update(events, &scene, kFrame);
-  ASSERT_EQ(player.wishes().size(), 1u);
-  EXPECT_EQ(player.wishes()[0].kind, 1);
-  EXPECT_EQ(player.wishes()[0].value, 1);
+  ASSERT_EQ(player.requests().size(), 1u);
+  EXPECT_EQ(player.requests()[0].kind, 1);
+  EXPECT_EQ(player.requests()[0].value, 1);
   player.update(events, &scene, 2 * kFrame);
-  EXPECT_TRUE(player.wishes().empty());
+  EXPECT_TRUE(player.requests().empty());
 }
 
 TEST(PlayerInput, TheRodsOfAnotherMatchAreNotTakenForItsBeginning) {
@@ -183,7 +183,7 @@ TEST(PlayerInput, TheRodsOfAnotherMatchAreNotTakenForItsBeginning) {
                                       static_cast<const wire::Snapshot*>(&old_match)}) {
     player.update(events, scene, kFrame);
     EXPECT_FALSE(player.begun());
-    EXPECT_TRUE(player.wishes().empty());
+    EXPECT_TRUE(player.requests().empty());
     for (const wire::InputRod& rod : player.rods()) EXPECT_FALSE(rod.driven);
   }
   player.update({}, &match, 2 * kFrame);

@@ -177,7 +177,7 @@ MenuPage menu_page(Menu::Page page, int row, bool host = true,
                         {2, "Annemarie", 1, 0b11000000, 1, true},
                         {3, "지훈", 1, 0b00010000, 1, false},
                         {4, "an onlooker", wire::kWatchOnly, 0, 0, false}};
-  seats.notices = {{wire::Notice::Level::info, wire::vote_topic(wire::WishKind::restart, 0),
+  seats.notices = {{wire::Notice::Level::info, wire::vote_topic(wire::RequestKind::restart, 0),
                     "Annemarie asks for a restart: 1 of 2 votes. Ask for it too to agree"}};
   static Crew crew(1, 0, foosball::Layout::tournament, 0b00101011);
   crew.give(0, static_cast<int>(Device::pad_1));

@@ -87,7 +87,7 @@ MenuPage menu_page(Menu::Page page) {
   static SeatsView seats;
   seats.scene = scripted_play(0.35);
   seats.roster.seats = {{1, "me", 0, 1, 2, false}, {2, std::string(64, 'W'), 1, 0x80, 1, true}};
-  seats.notices = {{wire::Notice::Level::info, wire::vote_topic(wire::WishKind::pause, 1),
+  seats.notices = {{wire::Notice::Level::info, wire::vote_topic(wire::RequestKind::pause, 1),
                     "somebody with a long name asks for a pause: 1 of 3 votes. Ask for it too"}};
   static Crew crew(1, 0, foosball::Layout::tournament, 1);
   static Settings settings;

@@ -8,7 +8,7 @@
 namespace foosball {
 namespace {
 
-// A push in the same breath as the goal is the end of the shot, not a wish to go on.
+// A push in the same breath as the goal is the end of the shot, not a request to go on.
 constexpr double kCeremonyAtLeast = 0.5;  // [s]
 
 }  // namespace

@@ -17,7 +17,7 @@ TEST_F(MatchTest, APushOfAnyRodLeavesTheLogo) {
     ASSERT_EQ(view().screen, Screen::logo);
     push(rod);
     EXPECT_EQ(view().screen, Screen::selection) << rod;
-    EXPECT_FALSE(view().confirmed[0] || view().confirmed[1]) << "one push is one wish";
+    EXPECT_FALSE(view().confirmed[0] || view().confirmed[1]) << "one push is one request";
   }
 }
 
@@ -130,7 +130,7 @@ TEST_F(MatchTest, ATuningCommandTakesEffectInItsTickAndOneOutOfRangeDoesNot) {
   EXPECT_TRUE(view().tuning == expected);
 }
 
-TEST_F(MatchTest, WishesOutOfRangeAreIgnored) {
+TEST_F(MatchTest, RequestsOutOfRangeAreIgnored) {
   command(Command::Kind::push, 2);
   EXPECT_EQ(view().screen, Screen::logo);
   command(Command::Kind::push, 0);
@@ -290,8 +290,8 @@ TEST_F(MatchTest, AContactWhoseEndIsNeverSeenDoesNotOutliveTheNextServe) {
 }
 
 TEST_F(MatchTest, EventsBeyondTheBoundOfAStepAreCounted) {
-  constexpr std::size_t kWishes = kMaxEventsPerStep + 72;
-  commands.assign(kWishes, {Command::Kind::restart});  // a screen event each
+  constexpr std::size_t kRequests = kMaxEventsPerStep + 72;
+  commands.assign(kRequests, {Command::Kind::restart});  // a screen event each
   step();
   EXPECT_EQ(events.size(), kMaxEventsPerStep);
   EXPECT_EQ(view().events_dropped, 72u);

@@ -26,25 +26,25 @@ class SandboxPanel : public ::testing::Test {
   }
   void TearDown() override { ImGui::DestroyContext(); }
 
-  // What a frame wishes in which the keys are down that were not in the last one.
-  Wishes frame(std::initializer_list<int> keys) {
+  // What a frame requests in which the keys are down that were not in the last one.
+  Requests frame(std::initializer_list<int> keys) {
     ImGuiIO& io = ImGui::GetIO();
     for (const bool down : {false, true}) {
       for (const int key : keys) io.KeysDown[key] = down;
       io.DeltaTime = 0.01f;
       ImGui::NewFrame();
-      wishes = {};
-      read_keys(simulation, controls, wishes);
-      draw_panel(simulation, meter, 0.003, "", controls, wishes);
+      requests = {};
+      read_keys(simulation, controls, requests);
+      draw_panel(simulation, meter, 0.003, "", controls, requests);
       ImGui::Render();
     }
-    return wishes;
+    return requests;
   }
 
   Simulation simulation = Simulation::open("tower10", 1000, kStopped).value();
   Meter meter;
   Controls controls;
-  Wishes wishes;
+  Requests requests;
 };
 
 TEST_F(SandboxPanel, SpacePausesAndGoesOn) {
@@ -56,7 +56,7 @@ TEST_F(SandboxPanel, SpacePausesAndGoesOn) {
   EXPECT_FALSE(controls.paused);
 }
 
-TEST_F(SandboxPanel, EachKeyWishesItsOwn) {
+TEST_F(SandboxPanel, EachKeyRequestsItsOwn) {
   EXPECT_TRUE(frame({GLFW_KEY_S}).step);
   EXPECT_TRUE(frame({GLFW_KEY_R}).reset);
   EXPECT_TRUE(frame({GLFW_KEY_T}).throw_one);
@@ -64,7 +64,7 @@ TEST_F(SandboxPanel, EachKeyWishesItsOwn) {
   EXPECT_TRUE(frame({GLFW_KEY_ESCAPE}).leave);
   EXPECT_EQ(frame({GLFW_KEY_N}).scene, "pyramid10");
   EXPECT_EQ(frame({GLFW_KEY_B}).scene, "bridge");
-  const Wishes none = frame({});
+  const Requests none = frame({});
   EXPECT_FALSE(none.step || none.reset || none.throw_one || none.show_all || none.leave);
   EXPECT_FALSE(none.scene);
 }

@@ -9,10 +9,10 @@
 
 #include "os/file_descriptor.h"
 #include "os/socket_address.h"
+#include "request_rules.h"
 #include "wire/control.h"
 #include "wire/enums.h"
 #include "wire/password_exchange.h"
-#include "wish_rules.h"
 
 namespace server {
 
@@ -62,7 +62,7 @@ class ControlConnection {
   std::int64_t deadline_us;               // greeting, closing
   std::uint32_t client = 0;               // joined: whose seat it is
   wire::Role role = wire::Role::watcher;  // that the password gave, or this machine
-  WishAllowance wishes;
+  RequestAllowance requests;
   RateLimit device_queries{4, 20'000};
   bool awaits_devices = false;  // has asked
   bool try_charged = false;     // a password was tried, and is not known to be right

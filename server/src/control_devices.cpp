@@ -19,7 +19,7 @@ void ControlServer::take_device_query(ControlConnection& connection) {
   const Seat* seat = seats_.find(connection.client);
   const bool may = seat != nullptr && seat->role == wire::Role::host;
   if (!may || !connection.device_queries.take(os::monotonic_us())) {
-    count(Count::wishes_dropped);
+    count(Count::requests_dropped);
     return;
   }
   connection.awaits_devices = true;

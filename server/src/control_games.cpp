@@ -27,11 +27,11 @@ bool ControlServer::in_challenge() const {
 void ControlServer::take_game(ControlConnection& connection, wire::Game game) {
   const Seat* seat = seats_.find(connection.client);
   const auto refuse_it = [&](const wire::Sentence& why_not) {
-    count(Count::wishes_dropped);
+    count(Count::requests_dropped);
     answer(connection, wire::kGameAnswerTopic, why_not);
   };
-  if (seat == nullptr || !connection.wishes.take(os::monotonic_us())) {
-    count(Count::wishes_dropped);
+  if (seat == nullptr || !connection.requests.take(os::monotonic_us())) {
+    count(Count::requests_dropped);
     return;
   }
   if (!options_.teams_open) return refuse_it(say<Said::recording_plays>());
@@ -44,7 +44,7 @@ void ControlServer::take_game(ControlConnection& connection, wire::Game game) {
     if (game.date == 0) return refuse_it(say<Said::challenge_undated>());
   }
   if (untold_.size() > kMostUntold) return refuse_it(say<Said::server_overloaded>());
-  count(Count::wishes);
+  count(Count::requests);
   send(connection, wire::Notice{wire::Notice::Level::cleared, wire::kGameAnswerTopic, "chosen"});
   choose(game, seat->client);
 }

@@ -38,7 +38,7 @@ wire::Sentence ControlServer::why_not_kick(const Seat& voter, const Seat* target
 // One machine, one vote, as for a pause.
 void ControlServer::take_kick(ControlConnection& connection, const wire::Kick& kick) {
   const Seat* voter = seats_.find(connection.client);
-  if (voter == nullptr || !connection.wishes.take(os::monotonic_us())) return;
+  if (voter == nullptr || !connection.requests.take(os::monotonic_us())) return;
   Seat* target = seats_.find(kick.client);
   const auto refuse_it = [&](const wire::Sentence& why) {
     answer(connection, wire::kKickAnswerTopic, why);

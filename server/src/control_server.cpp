@@ -108,8 +108,8 @@ ControlCounters ControlServer::counters() const {
           .wrong_passwords = value(Count::wrong_passwords),
           .lost = value(Count::lost),
           .resumed = value(Count::resumed),
-          .wishes = value(Count::wishes),
-          .wishes_dropped = value(Count::wishes_dropped),
+          .requests = value(Count::requests),
+          .requests_dropped = value(Count::requests_dropped),
           .answers = value(Count::answers),
           .answers_refused = value(Count::answers_refused),
           .kicked = value(Count::kicked)};
@@ -289,8 +289,8 @@ void ControlServer::handle(ControlConnection& connection, const wire::ControlMes
     take_names(connection, *names);
   } else if (const auto* ping = std::get_if<wire::Ping>(&message); ping && joined) {
     send(connection, wire::Pong{ping->id});
-  } else if (const auto* wish = std::get_if<wire::Wish>(&message); wish && joined) {
-    take_wish(connection, *wish);
+  } else if (const auto* request = std::get_if<wire::MatchRequest>(&message); request && joined) {
+    take_request(connection, *request);
   } else if (const auto* game = std::get_if<wire::Game>(&message); game && joined) {
     take_game(connection, *game);
   } else if (const auto* answers = std::get_if<wire::Answers>(&message); answers && joined) {

@@ -51,12 +51,12 @@ struct ControlEvent {
     rods,  // has others now
     name,  // of who plays these rods, or of the client
     left,  // for good
-    wish,
+    request,
     game,     // can be played, as far as can be known before the tick
     answers,  // to the questionnaire
   };
   Kind kind = Kind::joined;
-  // Counts up, never used twice. Of a wish: whose it is; 0: it was voted for.
+  // Counts up, never used twice. Of a request: whose it is; 0: it was voted for.
   std::uint32_t client = 0;
   std::uint8_t team = wire::kWatchOnly;         // joined, rods
   RodSet rods = 0;                              // joined, back, rods: all that it has
@@ -64,13 +64,13 @@ struct ControlEvent {
   std::uint64_t token = 0;                      // joined, back, rods
   std::array<char, wire::kMaxName + 1> name{};  // joined, rods, name: ended by a zero
   wire::SealKey input_key{}, snapshot_key{};
-  os::FileDescriptor socket;   // joined, back, rods: of who has rods for the first time
-  os::SocketAddress listener;  // joined, back: where its snapshots go; port 0: nowhere
-  os::SocketAddress heard_at;  // joined, back: from where; of this machine's addresses
-  foosball::Command wish{};    // wish
-  wire::Game game;             // game: date: of a challenge
-  bool put_out = false;        // left: by others, not of its own will
-  wire::Answers answers;       // answers: of one team's rods that were asked and had not answered
+  os::FileDescriptor socket;    // joined, back, rods: of who has rods for the first time
+  os::SocketAddress listener;   // joined, back: where its snapshots go; port 0: nowhere
+  os::SocketAddress heard_at;   // joined, back: from where; of this machine's addresses
+  foosball::Command request{};  // request
+  wire::Game game;              // game: date: of a challenge
+  bool put_out = false;         // left: by others, not of its own will
+  wire::Answers answers;        // answers: of one team's rods that were asked and had not answered
 };
 
 struct ControlOptions {
@@ -135,8 +135,8 @@ class ControlServer {
     timed_out,
     gave_up,
     slow_dropped,
-    wishes,
-    wishes_dropped,
+    requests,
+    requests_dropped,
     crowded_out,
     wrong_passwords,
     lost,
@@ -197,7 +197,7 @@ class ControlServer {
   void take_claim(ControlConnection& connection, const wire::Claim& claim);
   void take_names(ControlConnection& connection, const wire::Names& names);
   void tell_name(const Seat& seat, RodSet rods, const std::string& name);
-  void take_wish(ControlConnection& connection, const wire::Wish& wish);
+  void take_request(ControlConnection& connection, const wire::MatchRequest& request);
   void take_game(ControlConnection& connection, wire::Game game);
   void choose(const wire::Game& game, std::uint32_t client);
   bool in_challenge() const;

@@ -6,11 +6,11 @@
 #include "control_server.h"
 #include "os/clock.h"
 #include "os/socket_address.h"
+#include "request_rules.h"
 #include "socket.h"
 #include "wire/limits.h"
 #include "wire/snapshot.h"
 #include "wire/text.h"
-#include "wish_rules.h"
 
 namespace server {
 namespace {
@@ -24,19 +24,19 @@ constexpr std::uint32_t kAwayTopic = 1'000'000;
 constexpr std::uint32_t kClaimTopic = 300;
 // More seats than the roster names would not be seen.
 constexpr std::size_t kMostSeats = wire::kMaxSeats;
-// Of a wish that was voted for.
+// Of a request that was voted for.
 constexpr std::uint32_t kEverybody = 0;
 
-std::uint32_t vote_topic(const foosball::Command& wish) {
-  return wire::vote_topic(static_cast<wire::WishKind>(wish.kind), wish.value);
+std::uint32_t vote_topic(const foosball::Command& request) {
+  return wire::vote_topic(static_cast<wire::RequestKind>(request.kind), request.value);
 }
 
-wire::Sentence asks_for(const foosball::Command& wish, const std::string& name, int votes,
+wire::Sentence asks_for(const foosball::Command& request, const std::string& name, int votes,
                         int needed) {
-  if (wish.kind == foosball::Command::Kind::restart)
+  if (request.kind == foosball::Command::Kind::restart)
     return say<Said::asks_for_restart>(name, votes, needed);
-  return wish.value != 0 ? say<Said::asks_for_pause>(name, votes, needed)
-                         : say<Said::asks_to_go_on>(name, votes, needed);
+  return request.value != 0 ? say<Said::asks_for_pause>(name, votes, needed)
+                            : say<Said::asks_to_go_on>(name, votes, needed);
 }
 
 }  // namespace
@@ -296,7 +296,7 @@ bool ControlServer::welcome(ControlConnection& connection, Seat& seat, ControlEv
 // A seat that gives up its rods watches, and may have rods again, of either team.
 void ControlServer::take_claim(ControlConnection& connection, const wire::Claim& claim) {
   Seat* seat = seats_.find(connection.client);
-  if (seat == nullptr || !connection.wishes.take(os::monotonic_us())) return;
+  if (seat == nullptr || !connection.requests.take(os::monotonic_us())) return;
   const auto refuse_it = [&](const wire::Sentence& why_not) {
     answer(connection, kClaimTopic, why_not);
   };
@@ -339,7 +339,7 @@ void ControlServer::take_claim(ControlConnection& connection, const wire::Claim&
 void ControlServer::take_names(ControlConnection& connection, const wire::Names& names) {
   Seat* seat = seats_.find(connection.client);
   if (seat == nullptr || untold_.size() > kMostUntold ||
-      !connection.wishes.take(os::monotonic_us()))
+      !connection.requests.take(os::monotonic_us()))
     return;
   if (const std::string wanted = wire::clean_name(names.name); wanted != seat->wanted_name) {
     seat->wanted_name = wanted;
@@ -419,9 +419,9 @@ void ControlServer::watch_seats() {
     again = over != seats_.all().end();
     if (again) give_up_seat(over->client);
   }
-  foosball::Command wish{};
-  while (votes_.expire(now, wish)) {
-    clear_notice(vote_topic(wish), "too few wanted it");
+  foosball::Command request{};
+  while (votes_.expire(now, request)) {
+    clear_notice(vote_topic(request), "too few wanted it");
   }
 }
 
@@ -436,9 +436,9 @@ void ControlServer::send_roster() {
 // --- what they ask for
 // ----------------------------------------------------------------------------
 
-void ControlServer::take_wish(ControlConnection& connection, const wire::Wish& asked) {
+void ControlServer::take_request(ControlConnection& connection, const wire::MatchRequest& asked) {
   if (!well_formed(asked)) {
-    reject(connection, say<Said::no_such_wish>());
+    reject(connection, say<Said::no_such_request>());
     return;
   }
   const Seat* seat = seats_.find(connection.client);
@@ -453,9 +453,9 @@ void ControlServer::take_wish(ControlConnection& connection, const wire::Wish& a
   if (ruling == Ruling::yes && keeps_tuning)
     answer(connection, wire::kGameAnswerTopic, say<Said::challenge_keeps_tuning>());
   const bool taken =
-      !keeps_tuning && ruling != Ruling::no && connection.wishes.take(os::monotonic_us()) &&
+      !keeps_tuning && ruling != Ruling::no && connection.requests.take(os::monotonic_us()) &&
       (ruling == Ruling::yes ? hand_on(seat->client, command) : put_to_vote(*seat, command));
-  count(taken ? Count::wishes : Count::wishes_dropped);
+  count(taken ? Count::requests : Count::requests_dropped);
 }
 
 // --- the questionnaire
@@ -482,7 +482,7 @@ void ControlServer::publish_questionnaires() {
 // Each rod that was asked answers once: nobody answers for others, or twice.
 void ControlServer::take_answers(ControlConnection& connection, const wire::Answers& answers) {
   Seat* seat = seats_.find(connection.client);
-  if (seat == nullptr || !connection.wishes.take(os::monotonic_us())) {
+  if (seat == nullptr || !connection.requests.take(os::monotonic_us())) {
     count(Count::answers_refused);
     return;
   }
@@ -515,9 +515,9 @@ void ControlServer::take_answers(ControlConnection& connection, const wire::Answ
 bool ControlServer::hand_on(std::uint32_t client, const foosball::Command& command) {
   if (untold_.size() > kMostUntold) return false;
   ControlEvent event;
-  event.kind = ControlEvent::Kind::wish;
+  event.kind = ControlEvent::Kind::request;
   event.client = client;
-  event.wish = command;
+  event.request = command;
   untold_.push_back(std::move(event));
   tell_tick();
   return true;

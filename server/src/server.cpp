@@ -147,8 +147,8 @@ void Server::Impl::take_control_events() {
       case ControlEvent::Kind::left:
         dismiss(event.client, event.put_out);
         break;
-      case ControlEvent::Kind::wish:
-        take_wish(event);
+      case ControlEvent::Kind::request:
+        take_request(event);
         break;
       case ControlEvent::Kind::game:
         take_game(event.game);
@@ -183,15 +183,15 @@ wire::SealKey Server::Impl::random_key(const std::function<std::uint64_t()>& ran
   return key;
 }
 
-void Server::Impl::take_wish(const ControlEvent& event) {
+void Server::Impl::take_request(const ControlEvent& event) {
   if (options.replay) return;
-  if (event.wish.kind == foosball::Command::Kind::pause) {
-    const bool pause = event.wish.value != 0;
+  if (event.request.kind == foosball::Command::Kind::pause) {
+    const bool pause = event.request.value != 0;
     if (pause) paused_by_watcher = event.client != 0 && !plays(event.client);
     pause_outlasts_wait = waiting && pause;
     if (waiting) return;  // it stands still already, until somebody is heard
   }
-  next.commands.push_back(to_record(event.wish));
+  next.commands.push_back(to_record(event.request));
 }
 
 void Server::Impl::take_game(const wire::Game& asked) {

@@ -42,7 +42,7 @@ struct Server::Impl {
   void watch_absences();
   void wait_for_players(bool in_match);
   void remember_name(std::uint32_t client);
-  void take_wish(const ControlEvent& event);
+  void take_request(const ControlEvent& event);
   bool plays(std::uint32_t client) const;
   bool pause_is_abandoned() const;
   void take_phone_inputs(std::int64_t now_us);

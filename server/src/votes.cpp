@@ -12,11 +12,11 @@ bool same_question(const foosball::Command& a, const foosball::Command& b) {
 
 }  // namespace
 
-Votes::Count Votes::cast(const std::string& voter, const foosball::Command& wish,
+Votes::Count Votes::cast(const std::string& voter, const foosball::Command& request,
                          std::span<const std::string> voters, std::int64_t now_us) {
   auto vote =
-      std::ranges::find_if(open_, [&](const Vote& v) { return same_question(v.wish, wish); });
-  if (vote == open_.end()) vote = open_.insert(vote, {wish, now_us + kOpenUs, {}});
+      std::ranges::find_if(open_, [&](const Vote& v) { return same_question(v.request, request); });
+  if (vote == open_.end()) vote = open_.insert(vote, {request, now_us + kOpenUs, {}});
   if (std::ranges::find(vote->in_favour, voter) == vote->in_favour.end()) {
     vote->in_favour.push_back(voter);
   }
@@ -30,11 +30,11 @@ Votes::Count Votes::cast(const std::string& voter, const foosball::Command& wish
   return count;
 }
 
-bool Votes::expire(std::int64_t now_us, foosball::Command& wish) {
+bool Votes::expire(std::int64_t now_us, foosball::Command& request) {
   const auto over =
       std::ranges::find_if(open_, [&](const Vote& v) { return now_us >= v.until_us; });
   if (over == open_.end()) return false;
-  wish = over->wish;
+  request = over->request;
   open_.erase(over);
   return true;
 }

@@ -20,15 +20,15 @@ class Votes {
     bool passed() const { return votes >= needed; }
   };
   // voters: all who may vote now, each once, the voter among them. A vote that passed is over.
-  Count cast(const std::string& voter, const foosball::Command& wish,
+  Count cast(const std::string& voter, const foosball::Command& request,
              std::span<const std::string> voters, std::int64_t now_us);
   // The next vote whose time is over, forgotten by this call. False: none.
-  bool expire(std::int64_t now_us, foosball::Command& wish);
+  bool expire(std::int64_t now_us, foosball::Command& request);
   bool any() const { return !open_.empty(); }
 
  private:
   struct Vote {
-    foosball::Command wish;
+    foosball::Command request;
     std::int64_t until_us;
     std::vector<std::string> in_favour;
   };

@@ -45,7 +45,8 @@ TEST_F(WarmTick, TakesNoMemoryWithTwoComputersARecordingAndAListener) {
       if (table->match().view().screen == screen) return true;
       if (asked++ % 200 != 0) return false;  // no faster than a person
       for (std::uint8_t team = 0; team < foosball::kTeams; ++team) {
-        watcher.say(wire::Wish{static_cast<std::uint8_t>(foosball::Command::Kind::push), team, 0});
+        watcher.say(
+            wire::MatchRequest{static_cast<std::uint8_t>(foosball::Command::Kind::push), team, 0});
       }
       return false;
     }));
@@ -110,7 +111,7 @@ TEST(WarmPhones, TakeNoMemoryInATickWithInputsOrPulses) {
   ASSERT_TRUE(host.join());
   for (const auto screen : {foosball::Screen::selection, foosball::Screen::play}) {
     for (std::uint8_t team = 0; team < foosball::kTeams; ++team)
-      host.say(wire::Wish{number(wire::WishKind::push), team, 0});
+      host.say(wire::MatchRequest{number(wire::RequestKind::push), team, 0});
     ASSERT_TRUE(table.tick_until([&] { return table->match().view().screen == screen; }));
   }
   wire::PhoneInput input;
@@ -154,7 +155,7 @@ class BestPlayersTick : public testing::Test {
     ASSERT_TRUE(host.join());
     for (const auto screen : {foosball::Screen::selection, foosball::Screen::play}) {
       for (std::uint8_t team = 0; team < foosball::kTeams; ++team) {
-        host.say(wire::Wish{number(wire::WishKind::push), team, 0});
+        host.say(wire::MatchRequest{number(wire::RequestKind::push), team, 0});
       }
       ASSERT_TRUE(table.tick_until([&] { return table->match().view().screen == screen; }));
     }
@@ -216,8 +217,9 @@ TEST_F(BestPlayersTick, TakesNoMemoryWhileTheComputerStandsInForAPlayer) {
 TEST_F(BestPlayersTick, TakesMemoryForNewWorldsWhenTheTuningChangesAPartATick) {
   EXPECT_EQ(taken_in(1'000).sum, 0);
   const double gravity = table->match().view().tuning.gravity + 0.5;
-  host.say(wire::Wish{number(wire::WishKind::tune), 0,
-                      static_cast<std::uint8_t>(foosball::tuning_index("gravity")), gravity});
+  host.say(wire::MatchRequest{number(wire::RequestKind::tune), 0,
+                              static_cast<std::uint8_t>(foosball::tuning_index("gravity")),
+                              gravity});
   long at_once = 0;
   const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(5);
   while (table->match().view().tuning.gravity != gravity) {

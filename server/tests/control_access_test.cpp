@@ -184,8 +184,9 @@ TEST(Votes, TwoPlayersFromAfarRestartTogetherAndAWatcherNever) {
   ASSERT_TRUE(second.prove("open sesame") && second.join(1));
   ASSERT_TRUE(watcher.prove("open sesame") && watcher.join());
   const auto push = static_cast<std::uint8_t>(foosball::Command::Kind::push);
-  const wire::Wish restart{static_cast<std::uint8_t>(foosball::Command::Kind::restart), 0, 0};
-  first.say(wire::Wish{push, 0, 0});
+  const wire::MatchRequest restart{static_cast<std::uint8_t>(foosball::Command::Kind::restart), 0,
+                                   0};
+  first.say(wire::MatchRequest{push, 0, 0});
   ASSERT_TRUE(table.tick_until(
       [&] { return table->match().view().screen == foosball::Screen::selection; }));
   watcher.say(restart);
@@ -193,7 +194,7 @@ TEST(Votes, TwoPlayersFromAfarRestartTogetherAndAWatcherNever) {
   EXPECT_NE(notice_of(second).find("1 of 2 votes"), std::string::npos);
   table.tick(5);
   EXPECT_EQ(table->match().view().screen, foosball::Screen::selection);
-  EXPECT_EQ(table->counters().control.wishes_dropped, 1u) << "the watcher's";
+  EXPECT_EQ(table->counters().control.requests_dropped, 1u) << "the watcher's";
   second.say(restart);
   EXPECT_TRUE(table.tick_until(
       [&] { return table->match().view().screen != foosball::Screen::selection; }));
@@ -209,12 +210,12 @@ TEST(Votes, NobodyRestartsAloneWhileTheOpponentsSeatIsKept) {
   ASSERT_TRUE(first.prove("open sesame") && first.join(0));
   ASSERT_TRUE(second.prove("open sesame") && second.join(1));
   const auto push = static_cast<std::uint8_t>(foosball::Command::Kind::push);
-  first.say(wire::Wish{push, 0, 0});
+  first.say(wire::MatchRequest{push, 0, 0});
   ASSERT_TRUE(table.tick_until(
       [&] { return table->match().view().screen == foosball::Screen::selection; }));
   second.leave();
   ASSERT_TRUE(table.wait_until([&] { return table->counters().control.lost == 1; }));
-  first.say(wire::Wish{static_cast<std::uint8_t>(foosball::Command::Kind::restart), 0, 0});
+  first.say(wire::MatchRequest{static_cast<std::uint8_t>(foosball::Command::Kind::restart), 0, 0});
   std::string told;
   for (int notice = 0; notice < 2 && told.find("votes") == std::string::npos; ++notice) {
     told = notice_of(first);
@@ -236,8 +237,9 @@ TEST(Votes, AGuestWithSeveralSeatsHasOneVote) {
   ProbeClient other(table.port(), "127.0.0.2");
   ASSERT_TRUE(other.prove("open sesame") && other.join(1));
   const auto push = static_cast<std::uint8_t>(foosball::Command::Kind::push);
-  const wire::Wish restart{static_cast<std::uint8_t>(foosball::Command::Kind::restart), 0, 0};
-  other.say(wire::Wish{push, 1, 0});
+  const wire::MatchRequest restart{static_cast<std::uint8_t>(foosball::Command::Kind::restart), 0,
+                                   0};
+  other.say(wire::MatchRequest{push, 1, 0});
   ASSERT_TRUE(table.tick_until(
       [&] { return table->match().view().screen == foosball::Screen::selection; }));
   for (auto& seat : greedy) {

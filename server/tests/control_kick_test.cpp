@@ -50,9 +50,9 @@ class Kicks : public testing::Test {
     return 0;
   }
   void push(Guest& who, int rod) {
-    const std::uint64_t wishes = table->counters().control.wishes;
-    who.probe.say(wire::Wish{number(wire::WishKind::push), team_of(rod), 0});
-    ASSERT_TRUE(table.wait_until([&] { return table->counters().control.wishes > wishes; }));
+    const std::uint64_t requests = table->counters().control.requests;
+    who.probe.say(wire::MatchRequest{number(wire::RequestKind::push), team_of(rod), 0});
+    ASSERT_TRUE(table.wait_until([&] { return table->counters().control.requests > requests; }));
     table.tick(5);
   }
   foosball::Screen screen() { return table->match().view().screen; }
@@ -244,7 +244,8 @@ TEST_F(Kicks, DecidedOnTheLogoItOutlastsAnExhibitionAndEndsWithTheNextMatch) {
   push(c, 7);
   ASSERT_TRUE(table.tick_until([&] { return screen() == foosball::Screen::play; }));
   EXPECT_FALSE(guest("127.0.0.5", 2).welcome);
-  for (Guest* one : {&a, &b}) one->probe.say(wire::Wish{number(wire::WishKind::restart), 0, 0});
+  for (Guest* one : {&a, &b})
+    one->probe.say(wire::MatchRequest{number(wire::RequestKind::restart), 0, 0});
   ASSERT_TRUE(table.tick_until([&] { return screen() == foosball::Screen::logo; }));
   EXPECT_TRUE(guest("127.0.0.5", 2).welcome);
 }

@@ -336,11 +336,11 @@ TEST(Rods, WhoeverHasRodsOfBothTeamsAsksForBoth) {
   Lockstep table;
   ProbeClient client(table.port());
   ASSERT_TRUE(client.join(0, 0xff));
-  client.say(wire::Wish{number(wire::WishKind::push), 0, 0});
+  client.say(wire::MatchRequest{number(wire::RequestKind::push), 0, 0});
   ASSERT_TRUE(table.tick_until(
       [&] { return table->match().view().screen == foosball::Screen::selection; }));
   const auto character = static_cast<std::uint8_t>((table->match().view().character[1] + 1) % 3);
-  client.say(wire::Wish{number(wire::WishKind::choose_character), 1, character});
+  client.say(wire::MatchRequest{number(wire::RequestKind::choose_character), 1, character});
   EXPECT_TRUE(
       table.tick_until([&] { return table->match().view().character[1] == character; }, 5000));
 }
@@ -364,7 +364,7 @@ TEST(Tuning, IsToldToAllAndChangedByHostsOnlyWithinItsRange) {
   const double usual = foosball::Tuning{}.gravity;
   ASSERT_TRUE(all_told(usual));
   const auto tune = [](std::uint8_t value, double amount) {
-    return wire::Wish{number(wire::WishKind::tune), 0, value, amount};
+    return wire::MatchRequest{number(wire::RequestKind::tune), 0, value, amount};
   };
   host.say(tune(0, 9.0));
   EXPECT_TRUE(all_told(9.0));

@@ -198,58 +198,59 @@ TEST(Control, DropsAClientThatDoesNotRead) {
   expect_alive(table);
 }
 
-TEST(Control, HandsWishesToTheMatchAndCountsThoseThatAreNotAllowed) {
+TEST(Control, HandsRequestsToTheMatchAndCountsThoseThatAreNotAllowed) {
   Lockstep table;
   ProbeClient player(table.port());
   ASSERT_TRUE(player.join(0));
   using Kind = foosball::Command::Kind;
-  player.say(wire::Wish{static_cast<std::uint8_t>(Kind::push), 1, 0});  // the other team's
-  player.say(wire::Wish{static_cast<std::uint8_t>(Kind::push), 0, 0});
+  player.say(wire::MatchRequest{static_cast<std::uint8_t>(Kind::push), 1, 0});  // the other team's
+  player.say(wire::MatchRequest{static_cast<std::uint8_t>(Kind::push), 0, 0});
   EXPECT_TRUE(table.tick_until(
       [&] { return table->match().view().screen == foosball::Screen::selection; }));
   const ControlCounters c = table->counters().control;
-  EXPECT_EQ(c.wishes, 1u);
-  EXPECT_EQ(c.wishes_dropped, 1u);
+  EXPECT_EQ(c.requests, 1u);
+  EXPECT_EQ(c.requests_dropped, 1u);
 }
 
-TEST(Control, LetsAWatcherAtThisMachineWish) {
+TEST(Control, LetsAWatcherAtThisMachineMakeRequests) {
   Lockstep table;
   ProbeClient watcher(table.port());
   ASSERT_TRUE(watcher.join());
-  watcher.say(wire::Wish{static_cast<std::uint8_t>(foosball::Command::Kind::push), 1, 0});
+  watcher.say(wire::MatchRequest{static_cast<std::uint8_t>(foosball::Command::Kind::push), 1, 0});
   EXPECT_TRUE(table.tick_until(
       [&] { return table->match().view().screen == foosball::Screen::selection; }));
 }
 
-// A hundred wishes at once: the few that a hand could have made count, the rest are dropped.
-TEST(Control, TakesNoMoreWishesOfAClientThanAHandCanMake) {
+// A hundred requests at once: the few that a hand could have made count, the rest are dropped.
+TEST(Control, TakesNoMoreRequestsOfAClientThanAHandCanMake) {
   Lockstep table;
   ProbeClient watcher(table.port()), other(table.port());
   ASSERT_TRUE(watcher.join() && other.join());
-  const wire::Wish restart{static_cast<std::uint8_t>(foosball::Command::Kind::restart), 0, 0};
+  const wire::MatchRequest restart{static_cast<std::uint8_t>(foosball::Command::Kind::restart), 0,
+                                   0};
   std::vector<std::byte> flood;
   for (int i = 0; i < 100; ++i) wire::encode_control(restart, flood);
   const auto began = std::chrono::steady_clock::now();
   ASSERT_TRUE(watcher.send_raw(flood));
   const auto counted = [&] {
     const ControlCounters c = table->counters().control;
-    return c.wishes + c.wishes_dropped;
+    return c.requests + c.requests_dropped;
   };
   ASSERT_TRUE(table.tick_until([&] { return counted() == 100; }));
   const auto took = std::chrono::steady_clock::now() - began;
   const auto earned = static_cast<std::uint64_t>(took / std::chrono::milliseconds(50)) + 1;
-  const std::uint64_t taken = table->counters().control.wishes;
+  const std::uint64_t taken = table->counters().control.requests;
   EXPECT_GE(taken, 16u);
   EXPECT_LE(taken, 16u + earned);
   other.say(restart);  // another client's is not among them
-  EXPECT_TRUE(table.wait_until([&] { return table->counters().control.wishes > taken; }));
+  EXPECT_TRUE(table.wait_until([&] { return table->counters().control.requests > taken; }));
 }
 
 // A match in play, as a local watcher starts it.
 void start_play(Lockstep& table, ProbeClient& watcher) {
   const auto push = static_cast<std::uint8_t>(foosball::Command::Kind::push);
   for (const std::uint8_t team : std::array<std::uint8_t, 3>{0, 0, 1})
-    watcher.say(wire::Wish{push, team, 0});
+    watcher.say(wire::MatchRequest{push, team, 0});
   ASSERT_TRUE(
       table.tick_until([&] { return table->match().view().screen == foosball::Screen::play; }));
 }
@@ -260,7 +261,7 @@ TEST(Control, APauseEndsWhenTheLastPlayerLeaves) {
   ASSERT_TRUE(watcher.join() && first.join(0) && second.join(1));
   start_play(table, watcher);
   const auto paused = [&] { return table->match().view().paused; };
-  first.say(wire::Wish{static_cast<std::uint8_t>(foosball::Command::Kind::pause), 0, 1});
+  first.say(wire::MatchRequest{static_cast<std::uint8_t>(foosball::Command::Kind::pause), 0, 1});
   ASSERT_TRUE(table.tick_until(paused));
   first.leave();
   ASSERT_TRUE(table.tick_until([&] { return table->clients() == 2; }));
@@ -276,9 +277,9 @@ TEST(Control, AHostsPauseOutlastsThePlayers) {
   ASSERT_TRUE(host.join() && player.join(0));
   start_play(table, host);
   const auto paused = [&] { return table->match().view().paused; };
-  const std::uint64_t wishes = table->counters().control.wishes;
-  host.say(wire::Wish{static_cast<std::uint8_t>(foosball::Command::Kind::pause), 0, 1});
-  ASSERT_TRUE(table.wait_until([&] { return table->counters().control.wishes > wishes; }));
+  const std::uint64_t requests = table->counters().control.requests;
+  host.say(wire::MatchRequest{static_cast<std::uint8_t>(foosball::Command::Kind::pause), 0, 1});
+  ASSERT_TRUE(table.wait_until([&] { return table->counters().control.requests > requests; }));
   table.tick(2);
   ASSERT_TRUE(paused());
   player.say_goodbye();
@@ -295,7 +296,7 @@ TEST(Control, APauseEndsWhenTheLastWatcherLeavesAnExhibition) {
   ASSERT_TRUE(watcher.join() && another.join());
   start_play(table, watcher);
   const auto paused = [&] { return table->match().view().paused; };
-  watcher.say(wire::Wish{static_cast<std::uint8_t>(foosball::Command::Kind::pause), 0, 1});
+  watcher.say(wire::MatchRequest{static_cast<std::uint8_t>(foosball::Command::Kind::pause), 0, 1});
   ASSERT_TRUE(table.tick_until(paused));
   watcher.leave();
   ASSERT_TRUE(table.tick_until([&] { return table->clients() == 1; }));

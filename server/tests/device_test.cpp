@@ -342,7 +342,7 @@ TEST(DevicesAsked, APlayerIsToldNothing) {
   table.tick(20);
   EXPECT_FALSE(player.hear_a<wire::Devices>(20));
   EXPECT_FALSE(told);
-  EXPECT_EQ(table->counters().control.wishes_dropped, 1u);
+  EXPECT_EQ(table->counters().control.requests_dropped, 1u);
 }
 
 // Two mice on the desk, each on a socket pair: each moves its rod, and one that is unplugged is
@@ -432,7 +432,7 @@ TEST(CabinetHaptics, AHitIsToldInItsTickAndNoneThatIsNot) {
   ASSERT_TRUE(host.join());
   for (const auto screen : {foosball::Screen::selection, foosball::Screen::play}) {
     for (std::uint8_t team = 0; team < foosball::kTeams; ++team)
-      host.say(wire::Wish{number(wire::WishKind::push), team, 0});
+      host.say(wire::MatchRequest{number(wire::RequestKind::push), team, 0});
     ASSERT_TRUE(table.tick_until([&] {
       controller.report(0);
       return table->match().view().screen == screen;

@@ -35,10 +35,10 @@ class GameTest : public testing::Test {
   bool told(ProbeClient& client, const std::function<bool(const wire::Game&)>& wanted) {
     return is_told(table, client, wanted);
   }
-  void wish(ProbeClient& client, wire::WishKind kind) {
-    const auto before = table->counters().control.wishes;
-    client.say(wire::Wish{number(kind), 0, 0});
-    ASSERT_TRUE(table.wait_until([&] { return table->counters().control.wishes > before; }));
+  void request(ProbeClient& client, wire::RequestKind kind) {
+    const auto before = table->counters().control.requests;
+    client.say(wire::MatchRequest{number(kind), 0, 0});
+    ASSERT_TRUE(table.wait_until([&] { return table->counters().control.requests > before; }));
     table.tick(10);
   }
   Lockstep table;
@@ -71,8 +71,8 @@ TEST_F(GameTest, AClientReachesTrainingAndLadderAndAllAreTold) {
 TEST_F(GameTest, InPlayItWaitsForARestartAndSaysSo) {
   ProbeClient host(table.port());
   ASSERT_TRUE(host.join(0));
-  wish(host, wire::WishKind::push);
-  wish(host, wire::WishKind::push);
+  request(host, wire::RequestKind::push);
+  request(host, wire::RequestKind::push);
   ASSERT_TRUE(table.tick_until([&] { return view().screen == foosball::Screen::play; }));
   wire::Game game = of(wire::Mode::match);
   game.goals = 2;
@@ -80,7 +80,7 @@ TEST_F(GameTest, InPlayItWaitsForARestartAndSaysSo) {
   host.say(game);
   ASSERT_TRUE(told(host, [](const auto& g) { return g.goals == 2 && g.level == 5 && g.waits; }));
   EXPECT_EQ(view().rules.goals_to_win, 5);
-  wish(host, wire::WishKind::restart);
+  request(host, wire::RequestKind::restart);
   ASSERT_TRUE(told(host, [](const auto& g) { return g.goals == 2 && !g.waits; }));
   EXPECT_EQ(view().rules.goals_to_win, 2);
 }
@@ -114,13 +114,13 @@ TEST_F(GameTest, OutOfRangeAndContradictingValuesAreRefusedWithASentence) {
 TEST_F(GameTest, TheChallengeIsTodaysAndKeepsTheDefaultTuning) {
   ProbeClient host(table.port());
   ASSERT_TRUE(host.join(0));
-  host.say(wire::Wish{number(wire::WishKind::tune), 0, 0, 9.0});
+  host.say(wire::MatchRequest{number(wire::RequestKind::tune), 0, 0, 9.0});
   ASSERT_TRUE(table.tick_until(
       [&] { return host.catch_up() && host.tuning() && host.tuning()->values[0] == 9.0; }));
   host.say(of(wire::Mode::challenge));
   EXPECT_EQ(notice_of(host), wire::say<wire::Said::challenge_tuning>().text());
   const double usual = foosball::Tuning{}.gravity;
-  host.say(wire::Wish{number(wire::WishKind::tune), 0, 0, usual});
+  host.say(wire::MatchRequest{number(wire::RequestKind::tune), 0, 0, usual});
   ASSERT_TRUE(
       table.tick_until([&] { return host.catch_up() && host.tuning()->values[0] == usual; }));
   host.say(of(wire::Mode::challenge));
@@ -128,7 +128,7 @@ TEST_F(GameTest, TheChallengeIsTodaysAndKeepsTheDefaultTuning) {
   ASSERT_TRUE(told(host, [&](const auto& g) { return g.date == 20261122; }));
   EXPECT_EQ(host.game()->level, drawn.level);
   EXPECT_EQ(view().challenge, 20261122u);
-  host.say(wire::Wish{number(wire::WishKind::tune), 0, 0, 9.0});
+  host.say(wire::MatchRequest{number(wire::RequestKind::tune), 0, 0, 9.0});
   EXPECT_TRUE(table.tick_until(
       [&] { return notice_of(host) == wire::say<wire::Said::challenge_keeps_tuning>().text(); }));
   table.tick(20);
@@ -162,7 +162,7 @@ class Midnight : public testing::Test {
 TEST_F(Midnight, BringsTheNextDaysChallengeToTheMatchesThatBeginAfterIt) {
   ProbeClient player(table.port());
   ASSERT_TRUE(player.join(0));
-  player.say(wire::Wish{number(wire::WishKind::push), 0, 0});
+  player.say(wire::MatchRequest{number(wire::RequestKind::push), 0, 0});
   const auto& view = table->match().view();
   ASSERT_TRUE(table.tick_until([&] { return view.screen == foosball::Screen::play; }));
   day = 23;
@@ -170,7 +170,7 @@ TEST_F(Midnight, BringsTheNextDaysChallengeToTheMatchesThatBeginAfterIt) {
       [&] { return player.catch_up() && player.game() && player.game()->date == 20261123; }));
   EXPECT_TRUE(player.game()->waits);
   EXPECT_EQ(view.challenge, 20261122u) << "the match in hand stays that of its day";
-  player.say(wire::Wish{number(wire::WishKind::restart), 0, 0});
+  player.say(wire::MatchRequest{number(wire::RequestKind::restart), 0, 0});
   ASSERT_TRUE(table.tick_until([&] { return view.screen == foosball::Screen::logo; }));
   ASSERT_TRUE(table.tick_until([&] { return player.catch_up() && !player.game()->waits; }));
   EXPECT_EQ(view.challenge, 20261123u);
@@ -216,16 +216,16 @@ TEST(Challenge, TheComputerBeginsEveryTryOfADayInTheSameState) {
     ++hand.sequence;
     player.send_input(hand);
   };
-  const auto ask = [&](wire::WishKind kind) {
-    player.say(wire::Wish{number(kind), 0, 0});
+  const auto ask = [&](wire::RequestKind kind) {
+    player.say(wire::MatchRequest{number(kind), 0, 0});
     const auto wanted =
-        kind == wire::WishKind::push ? foosball::Screen::play : foosball::Screen::logo;
+        kind == wire::RequestKind::push ? foosball::Screen::play : foosball::Screen::logo;
     ASSERT_TRUE(table.tick_until([&] { return table->match().view().screen == wanted; }));
   };
   std::vector<std::vector<double>> tries;
   for (int i = 0; i < 3; ++i) {
     hold_still();
-    ask(wire::WishKind::push);
+    ask(wire::RequestKind::push);
     std::vector<double> moved;
     // Until its hand answers the serve, which comes half a second after the start.
     for (int tick = 0; tick < 900; ++tick) {
@@ -238,7 +238,7 @@ TEST(Challenge, TheComputerBeginsEveryTryOfADayInTheSameState) {
           moved.push_back(rods[rod].slide);
     }
     tries.push_back(std::move(moved));
-    ask(wire::WishKind::restart);
+    ask(wire::RequestKind::restart);
     table.tick(777 + 111 * i);
   }
   for (int i : {1, 2}) {
@@ -282,14 +282,14 @@ TEST_F(GameTest, ARecordingOfChangedGamesReplaysToTheBit) {
     game.match_ms = 60'000;
     host.say(game);
     ASSERT_TRUE(told(host, [](const auto& g) { return g.goals == 1; }));
-    wish(host, wire::WishKind::push);
-    wish(host, wire::WishKind::push);
+    request(host, wire::RequestKind::push);
+    request(host, wire::RequestKind::push);
     ASSERT_TRUE(table.tick_until([&] { return view().screen == foosball::Screen::play; }));
     table.tick(1200);
     host.say(of(wire::Mode::challenge));
     ASSERT_TRUE(told(host, [](const auto& g) { return g.waits; }));
-    wish(host, wire::WishKind::restart);
-    wish(host, wire::WishKind::push);
+    request(host, wire::RequestKind::restart);
+    request(host, wire::RequestKind::push);
     ASSERT_EQ(view().mode, foosball::Mode::challenge);
     table.tick(1500);
   }

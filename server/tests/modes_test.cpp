@@ -56,10 +56,10 @@ TEST(Absence, AMatchAgainstTheComputerReturnsToTheLogo) {
   });
   ProbeClient player(table.port());
   ASSERT_TRUE(player.join(0));
-  for (const auto& wish : {wire::Wish{0, 0, 0}, wire::Wish{0, 0, 0}}) {
-    const auto before = table->counters().control.wishes;
-    player.say(wish);
-    ASSERT_TRUE(table.wait_until([&] { return table->counters().control.wishes > before; }));
+  for (const auto& request : {wire::MatchRequest{0, 0, 0}, wire::MatchRequest{0, 0, 0}}) {
+    const auto before = table->counters().control.requests;
+    player.say(request);
+    ASSERT_TRUE(table.wait_until([&] { return table->counters().control.requests > before; }));
     table.tick(10);
   }
   ASSERT_EQ(table->match().view().screen, foosball::Screen::selection);

@@ -220,7 +220,7 @@ TEST(PhonePulses, AHitIsToldInItsTickToThePhoneThatHasTheRod) {
   ASSERT_TRUE(host.join());
   for (const auto screen : {foosball::Screen::selection, foosball::Screen::play}) {
     for (std::uint8_t team = 0; team < foosball::kTeams; ++team)
-      host.say(wire::Wish{number(wire::WishKind::push), team, 0});
+      host.say(wire::MatchRequest{number(wire::RequestKind::push), team, 0});
     ASSERT_TRUE(table.tick_until([&] { return table->match().view().screen == screen; }));
   }
   const RodPairOf mine = rods_of_pair(table->match().view().layout, 0, RodPair::attack);

@@ -41,9 +41,9 @@ class QuestionnaireTest : public testing::Test {
       });
     };
     for (int i = 0; i < 2; ++i) {
-      const auto before = table->counters().control.wishes;
-      player.say(wire::Wish{number(wire::WishKind::push), 0, 0});
-      if (!played_until([&] { return table->counters().control.wishes > before; })) return false;
+      const auto before = table->counters().control.requests;
+      player.say(wire::MatchRequest{number(wire::RequestKind::push), 0, 0});
+      if (!played_until([&] { return table->counters().control.requests > before; })) return false;
       table.tick(3);
     }
     return played_until([&] { return table->match().view().screen == foosball::Screen::end; });

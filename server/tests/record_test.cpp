@@ -45,7 +45,7 @@ struct Recorded {
   std::array<int, 2> score{};
 };
 
-// Two computers and one person's wishes and rods.
+// Two computers and one person's requests and rods.
 Recorded record(int ticks) {
   Recorded out{temp_path("match.sfr")};
   Lockstep table([&](ServerOptions& o) {
@@ -68,10 +68,11 @@ Recorded record(int ticks) {
     if (i % 500 == 250) {
       const auto asked = [&] {
         const ControlCounters c = table->counters().control;
-        return c.wishes + c.wishes_dropped;  // where ticks are faster than they should be
+        return c.requests + c.requests_dropped;  // where ticks are faster than they should be
       };
       const std::uint64_t before = asked();
-      player.say(wire::Wish{static_cast<std::uint8_t>(foosball::Command::Kind::push), 0, 0});
+      player.say(
+          wire::MatchRequest{static_cast<std::uint8_t>(foosball::Command::Kind::push), 0, 0});
       EXPECT_TRUE(table.wait_until([&] { return asked() > before; }));
     }
     table.tick();

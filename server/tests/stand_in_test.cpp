@@ -27,14 +27,14 @@ class StandIn : public testing::Test {
     return client.join(hello);
   }
   void begin_match(ProbeClient& pusher, std::uint8_t team = 1) {
-    pusher.say(wire::Wish{number(wire::WishKind::push), team, 0});
+    pusher.say(wire::MatchRequest{number(wire::RequestKind::push), team, 0});
     ASSERT_TRUE(table.tick_until(
         [&] { return table->match().view().screen == foosball::Screen::selection; }, 5000));
   }
-  void wish(ProbeClient& client, const wire::Wish& asked) {
-    const std::uint64_t before = table->counters().control.wishes;
+  void request(ProbeClient& client, const wire::MatchRequest& asked) {
+    const std::uint64_t before = table->counters().control.requests;
     client.say(asked);
-    ASSERT_TRUE(table.wait_until([&] { return table->counters().control.wishes > before; }));
+    ASSERT_TRUE(table.wait_until([&] { return table->counters().control.requests > before; }));
     table.tick(2);
   }
   void claim(ProbeClient& client, const wire::Claim& asked) {
@@ -310,7 +310,7 @@ TEST_F(StandIn, PlaysForOneWhoIsThereAndMovesNothingInPlay) {
   begin_match(bob);
   for (ProbeClient* client : {&ann, &bob}) {
     const auto team = static_cast<std::uint8_t>(client == &ann ? 0 : 1);
-    client->say(wire::Wish{number(wire::WishKind::push), team, 0});
+    client->say(wire::MatchRequest{number(wire::RequestKind::push), team, 0});
   }
   ASSERT_TRUE(
       table.tick_until([&] { return table->match().view().screen == foosball::Screen::play; }));
@@ -338,7 +338,7 @@ TEST_F(Alone, AGapInTheOnlyPlayersLineCostsNoGoals) {
   ASSERT_TRUE(seat);
   plays(ann, *seat);
   begin_match(ann, 0);
-  ann.say(wire::Wish{number(wire::WishKind::push), 0, 0});
+  ann.say(wire::MatchRequest{number(wire::RequestKind::push), 0, 0});
   ASSERT_TRUE(
       table.tick_until([&] { return table->match().view().screen == foosball::Screen::play; }));
   hear_hands();
@@ -366,7 +366,7 @@ TEST_F(Alone, APausePlayersAskedForOutlastsTheirSilence) {
   ASSERT_TRUE(seat);
   plays(ann, *seat);
   begin_match(ann, 0);
-  ann.say(wire::Wish{number(wire::WishKind::push), 0, 0});
+  ann.say(wire::MatchRequest{number(wire::RequestKind::push), 0, 0});
   ASSERT_TRUE(
       table.tick_until([&] { return table->match().view().screen == foosball::Screen::play; }));
   hear_hands();
@@ -379,12 +379,12 @@ TEST_F(Alone, APausePlayersAskedForOutlastsTheirSilence) {
     };
     if (silent_first) fall_silent();
     EXPECT_EQ(table->match().view().paused, silent_first);
-    wish(ann, {number(wire::WishKind::pause), 0, 1});
+    request(ann, {number(wire::RequestKind::pause), 0, 1});
     if (!silent_first) fall_silent();
     hands.push_back(hand);
     pass(100'000);
     EXPECT_TRUE(table->match().view().paused) << silent_first;
-    wish(ann, {number(wire::WishKind::pause), 0, 0});
+    request(ann, {number(wire::RequestKind::pause), 0, 0});
     pass(100'000);
     EXPECT_FALSE(table->match().view().paused) << silent_first;
   }
@@ -396,13 +396,13 @@ TEST_F(Alone, NobodyIsHeardSoNobodyGoesOn) {
   ASSERT_TRUE(seat);
   plays(ann, *seat);
   begin_match(ann, 0);
-  wish(ann, {number(wire::WishKind::push), 0, 0});
+  request(ann, {number(wire::RequestKind::push), 0, 0});
   ASSERT_TRUE(
       table.tick_until([&] { return table->match().view().screen == foosball::Screen::play; }));
   hear_hands();
   lets_go(ann);
   pass(RodDesk::kStandInAfterUs + 100'000);
-  wish(ann, {number(wire::WishKind::pause), 0, 0});
+  request(ann, {number(wire::RequestKind::pause), 0, 0});
   pass(100'000);
   EXPECT_TRUE(table->match().view().paused) << "the datagrams do not arrive";
 }
@@ -431,7 +431,7 @@ class StandInResults : public StandIn {
     begin_match(carl);
     for (ProbeClient* one_of : {&bob, &carl}) {
       const auto team = static_cast<std::uint8_t>(one_of == &bob ? 0 : 1);
-      one_of->say(wire::Wish{number(wire::WishKind::push), team, 0});
+      one_of->say(wire::MatchRequest{number(wire::RequestKind::push), team, 0});
     }
     ASSERT_TRUE(
         table.tick_until([&] { return table->match().view().screen == foosball::Screen::play; }));

@@ -86,8 +86,8 @@ auto build(Builder& b, const Welcome& m) {
 auto build(Builder& b, const Refusal& m) {
   return fb::CreateRefusal(b, static_cast<fb::RefusalCode>(m.code), text(b, m.reason, kMaxText));
 }
-auto build(Builder& b, const Wish& m) {
-  return fb::CreateWish(b, m.kind, m.team, m.value, m.amount);
+auto build(Builder& b, const MatchRequest& m) {
+  return fb::CreateMatchRequest(b, m.kind, m.team, m.value, m.amount);
 }
 auto build(Builder& b, const Ping& m) {
   return fb::CreatePing(b, m.id);
@@ -263,9 +263,9 @@ bool take(const fb::Refusal& t, Refusal& m) {
   m.code = static_cast<Refusal::Code>(t.code());
   return t.code() <= fb::RefusalCode::MAX && take(t.reason(), kMaxText, m.reason);
 }
-bool take(const fb::Wish& t, Wish& m) {
+bool take(const fb::MatchRequest& t, MatchRequest& m) {
   m = {t.kind(), t.team(), t.value(), t.amount()};
-  const bool kind = m.kind < kWishKindCount || m.kind == number(WishKind::tune);
+  const bool kind = m.kind < kRequestKindCount || m.kind == number(RequestKind::tune);
   return kind && m.team < kTeamCount && std::isfinite(m.amount);
 }
 bool take(const fb::Ping& t, Ping& m) {
@@ -380,8 +380,8 @@ bool take_any(const fb::Control& control, ControlMessage& message) {
       return take_as<Welcome>(control.message_as_Welcome(), message);
     case fb::Message::Refusal:
       return take_as<Refusal>(control.message_as_Refusal(), message);
-    case fb::Message::Wish:
-      return take_as<Wish>(control.message_as_Wish(), message);
+    case fb::Message::MatchRequest:
+      return take_as<MatchRequest>(control.message_as_MatchRequest(), message);
     case fb::Message::Ping:
       return take_as<Ping>(control.message_as_Ping(), message);
     case fb::Message::Pong:

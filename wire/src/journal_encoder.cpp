@@ -49,8 +49,8 @@ bool valid(const JournalSetup& s) {
 
 bool valid(const JournalCommand& c) {
   return c.kind < kCommandKindCount && c.team < kTeamCount &&
-         (c.amount == 0 || c.kind == number(WishKind::tune)) &&
-         (c.setup == JournalSetup{} || (c.kind == number(WishKind::set_up) && valid(c.setup)));
+         (c.amount == 0 || c.kind == number(RequestKind::tune)) &&
+         (c.setup == JournalSetup{} || (c.kind == number(RequestKind::set_up) && valid(c.setup)));
 }
 
 bool valid(const JournalTick& tick) {

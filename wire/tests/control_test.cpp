@@ -157,9 +157,9 @@ TEST(Control, ValuesOutOfRangeAreRefused) {
     b.Clear();
     return status == Status::broken;
   };
-  EXPECT_FALSE(refused(fb::Message::Wish, fb::CreateWish(b, 3, 1, 255)));
-  EXPECT_TRUE(refused(fb::Message::Wish, fb::CreateWish(b, 6, 0, 0))) << "kind";
-  EXPECT_TRUE(refused(fb::Message::Wish, fb::CreateWish(b, 0, 2, 0))) << "team";
+  EXPECT_FALSE(refused(fb::Message::MatchRequest, fb::CreateMatchRequest(b, 3, 1, 255)));
+  EXPECT_TRUE(refused(fb::Message::MatchRequest, fb::CreateMatchRequest(b, 6, 0, 0))) << "kind";
+  EXPECT_TRUE(refused(fb::Message::MatchRequest, fb::CreateMatchRequest(b, 0, 2, 0))) << "team";
   EXPECT_TRUE(refused(fb::Message::Hello, fb::CreateHelloDirect(b, 1, 1, "a", 1, 2))) << "team";
   const std::vector<std::uint8_t> key(32, 1), sid(16, 1), long_key(33, 1);
   const auto welcome = [&](std::uint32_t us, std::uint8_t layout, std::uint8_t role,

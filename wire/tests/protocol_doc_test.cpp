@@ -25,8 +25,8 @@ TEST(ProtocolDocument, NamesEveryMessage) {
   const std::string made = protocol_document();
   for (const char* part :
        {"men[].position", "rods[].driven", "### 1 Hello", "### 2 Welcome", "### 3 Refusal",
-        "### 4 Wish", "### 5 Ping", "### 6 Pong", "### 7 Notice", "### 8 Bye", "### keyframe",
-        "### 21 Phones", "### pulse", "4 team_taken", "CRC-16/CCITT-FALSE"}) {
+        "### 4 MatchRequest", "### 5 Ping", "### 6 Pong", "### 7 Notice", "### 8 Bye",
+        "### keyframe", "### 21 Phones", "### pulse", "4 team_taken", "CRC-16/CCITT-FALSE"}) {
     EXPECT_NE(made.find(part), std::string::npos) << part;
   }
 }

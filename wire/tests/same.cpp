@@ -96,7 +96,7 @@ auto tied(const Characters& m) {
 auto tied(const Refusal& m) {
   return std::tie(m.code, m.reason);
 }
-auto tied(const Wish& m) {
+auto tied(const MatchRequest& m) {
   return std::tie(m.kind, m.team, m.value, m.amount);
 }
 auto tied(const Ping& m) {

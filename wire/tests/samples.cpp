@@ -254,8 +254,8 @@ std::vector<std::pair<std::string, ControlMessage>> control() {
           {"welcome", Welcome{0x1122334455667788, 0x99AABBCCDDEEFF00, 4242, 1000, 1, kWatchOnly,
                               "239.1.2.3", 4244, 0x81, 2, 9, octets<32>(1), octets<32>(101)}},
           {"refusal", Refusal{Refusal::Code::team_taken, "Team 0 is taken; choose team 1."}},
-          {"wish", Wish{1, 1, 2, 0.0}},
-          {"tune", Wish{8, 0, 26, 0.125}},
+          {"request", MatchRequest{1, 1, 2, 0.0}},
+          {"tune", MatchRequest{8, 0, 26, 0.125}},
           {"ping", Ping{7}},
           {"pong", Pong{7}},
           {"notice", Notice{Notice::Level::warning, 3, "cabinet unplugged: its rods hold"}},
@@ -435,8 +435,8 @@ std::vector<JournalEntry> random_journal(std::mt19937_64& random, int ticks) {
     for (JournalCommand& command : tick.commands) {
       command = {below<std::uint8_t>(random, kCommandKindCount),
                  below<std::uint8_t>(random, kTeamCount), below<std::uint8_t>(random, 256), 0};
-      if (command.kind == number(WishKind::tune)) command.amount = random();
-      if (command.kind == number(WishKind::set_up)) command.setup = random_setup(random);
+      if (command.kind == number(RequestKind::tune)) command.amount = random();
+      if (command.kind == number(RequestKind::set_up)) command.setup = random_setup(random);
     }
     entries.emplace_back(tick);
     if (random() % 50 == 0) entries.emplace_back(JournalHash{tick.tick + 1, random()});

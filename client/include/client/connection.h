@@ -90,7 +90,7 @@ class Connection {
   // Both name the session whose scene the caller acted upon, and are forgotten unless it is the one
   // that is joined: nothing made of an old match reaches a new one.
   // Asks for something.
-  void wish(std::uint64_t session, const wire::Wish& wish);
+  void request(std::uint64_t session, const wire::MatchRequest& request);
   // Wants these rods, by bit, of this team, in place of the ones it has; none: to watch. roster()
   // shows when it has them.
   void claim(std::uint64_t session, const wire::Claim& claim);

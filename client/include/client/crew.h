@@ -48,7 +48,7 @@ class Crew {
   bool begun() const { return begun_; }
   bool automatic() const { return assists_.automatic_rod; }
   std::array<wire::InputRod, 8> rods() const;
-  std::vector<wire::Wish> wishes() const;
+  std::vector<wire::MatchRequest> requests() const;
   std::uint8_t active_rods() const;  // those in somebody's hand, by bit
   // Each person's device, or kFirstPerson, and rods.
   struct Hands {

@@ -36,7 +36,7 @@ class PlayerInput {
   // None is driven before begun().
   std::array<wire::InputRod, 8> rods() const;
   // What the events of the last update ask of the match.
-  const std::vector<wire::Wish>& wishes() const { return wishes_; }
+  const std::vector<wire::MatchRequest>& requests() const { return requests_; }
   int team() const { return team_; }
   int active_rod() const { return hand_.active_rod(); }  // one of its rods
   bool automatic() const { return assists_on_.automatic_rod; }
@@ -46,7 +46,8 @@ class PlayerInput {
 
  private:
   void move(const InputEvents& events, const wire::Snapshot& scene);
-  void collect_wishes(const InputEvents& events, const wire::Snapshot& scene, std::int64_t now_us);
+  void collect_requests(const InputEvents& events, const wire::Snapshot& scene,
+                        std::int64_t now_us);
   void choose_character(const InputEvents& events, const wire::Snapshot& scene);
   void choose_man(int presses, const wire::Snapshot& scene, std::int64_t now_us);
   void choose_rod(const foosball::AssistView& view);
@@ -72,7 +73,7 @@ class PlayerInput {
   // Training: whom the person chose last, and when; the scene has him a little later.
   int fed_rod_ = -1, fed_man_ = 0;
   std::int64_t fed_us_ = 0;
-  std::vector<wire::Wish> wishes_;
+  std::vector<wire::MatchRequest> requests_;
 };
 
 }  // namespace client

@@ -29,7 +29,7 @@ struct SeatsView {
 // What is asked of the server.
 struct SeatsAsked {
   std::optional<wire::Claim> claim;
-  std::vector<wire::Wish> wishes;
+  std::vector<wire::MatchRequest> requests;
   std::optional<wire::Kick> kick;
 };
 

@@ -2,7 +2,7 @@
 // all others; profiles of them as files (profile/tuning_profile.h). No drawing here.
 //
 // What is wanted and not yet what the server says is asked for, one value at a time and no faster
-// than a server hears wishes, until the server says so or was asked kTries times.
+// than a server hears requests, until the server says so or was asked kTries times.
 #pragma once
 
 #include <array>
@@ -19,8 +19,8 @@ namespace client {
 
 class TuningMenu {
  public:
-  static constexpr std::int64_t kEveryUs = 60'000;     // between two wishes
-  static constexpr std::int64_t kAgainUs = 1'000'000;  // a wish without effect is repeated after
+  static constexpr std::int64_t kEveryUs = 60'000;     // between two requests
+  static constexpr std::int64_t kAgainUs = 1'000'000;  // a request without effect is repeated after
   static constexpr int kTries = 3;
 
   // directory: of the profiles; empty: none are kept.
@@ -34,7 +34,7 @@ class TuningMenu {
   MenuPage page(int chosen) const;
   void step(int row, const MenuSteps& steps);
   // To be sent now.
-  std::vector<wire::Wish> wishes(std::int64_t now_us);
+  std::vector<wire::MatchRequest> requests(std::int64_t now_us);
   // As it will be when all that is wanted is granted.
   foosball::Tuning wanted() const;
 

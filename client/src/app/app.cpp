@@ -219,7 +219,8 @@ void App::drive_rods(bool menu, std::int64_t now) {
   settings_.automatic_rod = crew_->automatic();
   if (!crew_->begun() || !crew_->plays()) return;
   connection_->drive(crew_->session(), crew_->rods());
-  for (const wire::Wish& wish : crew_->wishes()) connection_->wish(crew_->session(), wish);
+  for (const wire::MatchRequest& request : crew_->requests())
+    connection_->request(crew_->session(), request);
 }
 
 void App::follow_phones() {

@@ -121,7 +121,8 @@ void App::take_menu_input(const InputEvents& events, std::int64_t now) {
   if (!crew_) return;
   if (outcome.asked.claim) connection_->claim(crew_->session(), *outcome.asked.claim);
   if (outcome.asked.kick) connection_->kick(crew_->session(), *outcome.asked.kick);
-  for (const wire::Wish& wish : outcome.asked.wishes) connection_->wish(crew_->session(), wish);
+  for (const wire::MatchRequest& request : outcome.asked.requests)
+    connection_->request(crew_->session(), request);
 }
 
 // The match waits, if the person plays in it; a pause that others must agree to is theirs.
@@ -141,7 +142,7 @@ void App::watch_recordings() {
   const bool playing = sample_.any && sample_.state.screen == number(wire::Screen::play);
   if (crew_ && crew_->plays() && playing && !sample_.state.paused) {
     const auto team = static_cast<std::uint8_t>(crew_->team());
-    connection_->wish(crew_->session(), {number(wire::WishKind::pause), team, 1});
+    connection_->request(crew_->session(), {number(wire::RequestKind::pause), team, 1});
   }
   if (sounds_) sounds_->set_volume(0.0f);
   window_->set_visible(false);
@@ -178,8 +179,8 @@ void App::tune(std::int64_t now) {
   const auto told = connection_->tuning();
   menu_.tuning().hear(crew_->session(), told ? std::optional(tuning_of(*told)) : std::nullopt,
                       status_.welcome.role == number(wire::Role::host));
-  for (const wire::Wish& wish : menu_.tuning().wishes(now))
-    connection_->wish(crew_->session(), wish);
+  for (const wire::MatchRequest& request : menu_.tuning().requests(now))
+    connection_->request(crew_->session(), request);
 }
 
 void App::choose_game(std::int64_t now) {

@@ -98,8 +98,8 @@ void Connection::ask_devices(std::uint64_t session) {
 std::optional<wire::Devices> Connection::take_devices() {
   return impl_->link.take_devices();
 }
-void Connection::wish(std::uint64_t session, const wire::Wish& wish) {
-  impl_->link.wish(session, wish);
+void Connection::request(std::uint64_t session, const wire::MatchRequest& request) {
+  impl_->link.request(session, request);
 }
 void Connection::drive(std::uint64_t session, const std::array<wire::InputRod, 8>& rods) {
   impl_->listener.drive(session, rods, os::monotonic_us());

@@ -63,8 +63,8 @@ void ControlLink::ask(const wire::ControlMessage& message, std::uint64_t session
   waker_.wake();
 }
 
-void ControlLink::wish(std::uint64_t session, const wire::Wish& wish) {
-  ask(wish, session);
+void ControlLink::request(std::uint64_t session, const wire::MatchRequest& request) {
+  ask(request, session);
 }
 
 void ControlLink::claim(std::uint64_t session, const wire::Claim& claim) {

@@ -33,7 +33,7 @@ class ControlLink {
   std::optional<wire::Report> report() const;
   std::string phones() const;
   std::optional<wire::Devices> take_devices();
-  void wish(std::uint64_t session, const wire::Wish& wish);
+  void request(std::uint64_t session, const wire::MatchRequest& request);
   void claim(std::uint64_t session, const wire::Claim& claim);
   void kick(std::uint64_t session, const wire::Kick& kick);
   void choose(std::uint64_t session, const wire::Game& game);

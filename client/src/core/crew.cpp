@@ -101,10 +101,10 @@ std::array<wire::InputRod, 8> Crew::rods() const {
   return rods;
 }
 
-std::vector<wire::Wish> Crew::wishes() const {
-  std::vector<wire::Wish> all;
+std::vector<wire::MatchRequest> Crew::requests() const {
+  std::vector<wire::MatchRequest> all;
   for (const Person& person : people_) {
-    const auto& own = person.input.wishes();
+    const auto& own = person.input.requests();
     all.insert(all.end(), own.begin(), own.end());
   }
   return all;

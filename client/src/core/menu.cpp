@@ -80,7 +80,7 @@ Menu::Outcome Menu::step(const MenuSteps& steps, int key, const Context& context
     tuning_.step(row_ - 1, inside);
   } else if (page_ == Page::game) {
     if (game_.step(row_ - 1, inside))
-      outcome.asked.wishes.push_back({number(wire::WishKind::restart), 0, 0});
+      outcome.asked.requests.push_back({number(wire::RequestKind::restart), 0, 0});
   } else if (page_ == Page::recordings) {
     const bool changes = inside.right % 2 != 0 || inside.confirm;
     outcome.watch_recordings = row_ - 1 == row_watch && inside.confirm;

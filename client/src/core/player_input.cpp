@@ -91,7 +91,7 @@ void PlayerInput::set_assists(const foosball::AssistChoice& choice) {
 
 void PlayerInput::update(const InputEvents& events, const wire::Snapshot* scene,
                          std::int64_t now_us) {
-  wishes_.clear();
+  requests_.clear();
   if (events.toggle_automatic) {
     foosball::AssistChoice choice = assists_on_;
     choice.automatic_rod = !choice.automatic_rod;
@@ -110,7 +110,7 @@ void PlayerInput::update(const InputEvents& events, const wire::Snapshot* scene,
     if (acted_us_ < 0 || now_us < acted_us_ || acts(events)) acted_us_ = now_us;
     const bool helps = in_play && now_us - acted_us_ < kRestsAfterUs;
     helps ? assist(view, now_us) : rest();
-    collect_wishes(events, *scene, now_us);
+    collect_requests(events, *scene, now_us);
   }
   key_was_held_ = events.key_spin != 0 || events.key_slide != 0;
 }
@@ -174,19 +174,19 @@ void PlayerInput::move(const InputEvents& events, const wire::Snapshot& scene) {
   hand_.pad(events.has_pad ? turned(events.pad) : cabinet::PadState{});
 }
 
-void PlayerInput::collect_wishes(const InputEvents& events, const wire::Snapshot& scene,
-                                 std::int64_t now_us) {
+void PlayerInput::collect_requests(const InputEvents& events, const wire::Snapshot& scene,
+                                   std::int64_t now_us) {
   const auto team = static_cast<std::uint8_t>(team_);
   const auto screen = static_cast<wire::Screen>(scene.screen);
   if ((events.push || events.pad_push) && screen != wire::Screen::play)
-    wishes_.push_back({number(wire::WishKind::push), team, 0});
+    requests_.push_back({number(wire::RequestKind::push), team, 0});
   if ((events.toggle_pause || events.pad_pause) && screen == wire::Screen::play) {
-    wishes_.push_back(
-        {number(wire::WishKind::pause), team, static_cast<std::uint8_t>(scene.paused ? 0 : 1)});
+    requests_.push_back(
+        {number(wire::RequestKind::pause), team, static_cast<std::uint8_t>(scene.paused ? 0 : 1)});
   }
   const bool time_out = events.presses[index_of(Action::time_out)] > 0 || events.pad_time_out;
   if (time_out && screen == wire::Screen::play)
-    wishes_.push_back({number(wire::WishKind::time_out), team, 0});
+    requests_.push_back({number(wire::RequestKind::time_out), team, 0});
   if (screen == wire::Screen::selection) choose_character(events, scene);
   const int presses = events.presses[index_of(Action::feed)] + (events.pad_share ? 1 : 0);
   const bool served = screen == wire::Screen::play || screen == wire::Screen::ceremony;
@@ -208,8 +208,8 @@ void PlayerInput::choose_man(int presses, const wire::Snapshot& scene, std::int6
   fed_rod_ = rod;
   fed_man_ = (fed_man_ + presses) % spec.men;
   fed_us_ = now_us;
-  wishes_.push_back({number(wire::WishKind::feed), static_cast<std::uint8_t>(team_),
-                     foosball::feed_value(spec.line, fed_man_)});
+  requests_.push_back({number(wire::RequestKind::feed), static_cast<std::uint8_t>(team_),
+                       foosball::feed_value(spec.line, fed_man_)});
 }
 
 // By number, by the wheel, or by a tap of an arrow; a spun rod chooses by itself, at the server.
@@ -224,8 +224,8 @@ void PlayerInput::choose_character(const InputEvents& events, const wire::Snapsh
   if (!key_was_held_) steps += static_cast<int>(std::lround(events.key_spin - events.key_slide));
   if (steps != 0) wanted = ((now + steps) % count + count) % count;
   if (wanted == now) return;
-  wishes_.push_back({number(wire::WishKind::choose_character), static_cast<std::uint8_t>(team_),
-                     static_cast<std::uint8_t>(wanted)});
+  requests_.push_back({number(wire::RequestKind::choose_character),
+                       static_cast<std::uint8_t>(team_), static_cast<std::uint8_t>(wanted)});
 }
 
 std::array<wire::InputRod, 8> PlayerInput::rods() const {

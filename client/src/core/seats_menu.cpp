@@ -184,9 +184,9 @@ MenuPage SeatsMenu::page(const SeatsView& view, const Crew& crew, int chosen) co
   for (const wire::Notice& vote : votes_of(view)) {
     const auto kind = wire::vote_of(vote.topic);
     page.rows.push_back({.label = N_("Agree to the vote"),
-                         .value = kind.kind == wire::WishKind::restart ? N_("Back to the start")
-                                  : kind.value != 0                    ? N_("Pause")
-                                                                       : N_("Play on")});
+                         .value = kind.kind == wire::RequestKind::restart ? N_("Back to the start")
+                                  : kind.value != 0                       ? N_("Pause")
+                                                                          : N_("Play on")});
   }
   for (const wire::Seat& seat : view.roster.seats)
     page.rows.push_back(person_row(seat, view.roster.players, seat.client == view.client,
@@ -255,8 +255,8 @@ SeatsAsked SeatsMenu::step(const SeatsView& view, int row, const MenuSteps& step
   const int way = steps.right != 0 ? steps.right : steps.confirm ? 1 : 0;
   if (way == 0) return asked;
   const auto team = static_cast<std::uint8_t>(crew.team());
-  const auto wish = [&](wire::WishKind kind, int value) {
-    asked.wishes.push_back({number(kind), team, static_cast<std::uint8_t>(value)});
+  const auto request = [&](wire::RequestKind kind, int value) {
+    asked.requests.push_back({number(kind), team, static_cast<std::uint8_t>(value)});
   };
   if (row < foosball::kRods) {
     asked.claim = change_rod(view, row, way, crew);
@@ -271,14 +271,14 @@ SeatsAsked SeatsMenu::step(const SeatsView& view, int row, const MenuSteps& step
   if (row == row_watch) {
     asked.claim = claim_of(0, crew.team(), crew);
   } else if (row == row_pause) {
-    wish(wire::WishKind::pause, view.scene.paused ? 0 : 1);
+    request(wire::RequestKind::pause, view.scene.paused ? 0 : 1);
   } else if (row == row_time_out) {
-    wish(wire::WishKind::time_out, 0);
+    request(wire::RequestKind::time_out, 0);
   } else if (row == row_restart) {
-    wish(wire::WishKind::restart, 0);
+    request(wire::RequestKind::restart, 0);
   } else if (vote >= 0 && vote < static_cast<int>(votes.size())) {
     const auto [kind, value] = wire::vote_of(votes[static_cast<std::size_t>(vote)].topic);
-    wish(kind, value);
+    request(kind, value);
   } else if (person != nullptr && may_kick(view, crew, *person)) {
     if (armed_ == person->client) asked.kick = wire::Kick{person->client};
     armed_ = armed_ == 0 ? person->client : 0;

@@ -217,7 +217,7 @@ void TuningMenu::step(int row, const MenuSteps& steps) {
   if (steps.confirm) want(index, foosball::Tuning{}.*field.value);
 }
 
-std::vector<wire::Wish> TuningMenu::wishes(std::int64_t now_us) {
+std::vector<wire::MatchRequest> TuningMenu::requests(std::int64_t now_us) {
   if (now_us - last_us_ < kEveryUs) return {};
   for (std::size_t looked = 0; looked < wants_.size(); ++looked) {
     const std::size_t i = (next_ + looked) % wants_.size();
@@ -231,7 +231,7 @@ std::vector<wire::Wish> TuningMenu::wishes(std::int64_t now_us) {
     ++want->tries;
     want->asked_us = last_us_ = now_us;
     next_ = i + 1;
-    return {{number(wire::WishKind::tune), 0, static_cast<std::uint8_t>(i), want->value}};
+    return {{number(wire::RequestKind::tune), 0, static_cast<std::uint8_t>(i), want->value}};
   }
   return {};
 }

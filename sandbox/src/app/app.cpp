@@ -87,7 +87,7 @@ class App {
   glm::ivec2 pointer_screen() const;
   void show_all();
   void point();
-  void fulfil(const Wishes& wishes);
+  void fulfil(const Requests& requests);
   void throw_one();
   void skip();
   void advance(double frame);
@@ -95,7 +95,7 @@ class App {
   std::optional<double> next_stop() const;
   bool has_come_to(double time) const;
   void begin_frame(bool first);
-  void draw_frame(Wishes& wishes);
+  void draw_frame(Requests& requests);
   std::string take_picture();
   bool leaving() const;
   void fail_softly(const vp::Expected<void>& result);
@@ -196,21 +196,21 @@ void App::throw_one() {
                                      speed * ray.direction));
 }
 
-void App::fulfil(const Wishes& wishes) {
+void App::fulfil(const Requests& requests) {
   simulation_.set_rate(controls_.rate);
-  if (wishes.scene) {
-    auto opened = Simulation::open(*wishes.scene, controls_.rate, kClocks);
+  if (requests.scene) {
+    auto opened = Simulation::open(*requests.scene, controls_.rate, kClocks);
     message_ = opened ? std::string() : opened.error().message;
     if (opened) simulation_ = std::move(*opened);
   }
-  if (wishes.reset) fail_softly(simulation_.reset());
-  if (wishes.scene || wishes.show_all) show_all();
-  if (wishes.throw_one) throw_one();
-  if (wishes.step) {
+  if (requests.reset) fail_softly(simulation_.reset());
+  if (requests.scene || requests.show_all) show_all();
+  if (requests.throw_one) throw_one();
+  if (requests.step) {
     controls_.paused = true;
     fail_softly(simulation_.step());
   }
-  leave_ = leave_ || wishes.leave;
+  leave_ = leave_ || requests.leave;
 }
 
 // As fast as it goes, with nothing to see.
@@ -242,10 +242,10 @@ void App::advance(double frame) {
   controls_.paused = true;
 }
 
-void App::draw_frame(Wishes& wishes) {
+void App::draw_frame(Requests& requests) {
   const std::int64_t began = os::monotonic_ns();
   view_->draw(simulation_, camera_, controls_.view, size_);
-  draw_panel(simulation_, meter_, drawing_, message_, controls_, wishes);
+  draw_panel(simulation_, meter_, drawing_, message_, controls_, requests);
   ImGui::Render();
   ui_renderer_->draw(*ImGui::GetDrawData());
   window_->swap();
@@ -293,18 +293,18 @@ int App::loop() {
     const double frame = std::min(1e-9 * static_cast<double>(now - before), kLongestFrame);
     begin_frame(before == began);
     before = now;
-    Wishes wishes;
+    Requests requests;
     point();
-    read_keys(simulation_, controls_, wishes);
+    read_keys(simulation_, controls_, requests);
     advance(frame);
-    draw_frame(wishes);
+    draw_frame(requests);
     last = leaving();
     if (!shot_ && (last || (options_.screenshot_at && has_come_to(*options_.screenshot_at)))) {
       shot_ = true;
       failure = take_picture();
     }
     meter_.frame(os::monotonic_ns(), simulation_.time());
-    fulfil(wishes);
+    fulfil(requests);
   }
   if (!failure.empty()) return fail(failure, 1);
   Figures figures = figures_of(simulation_);

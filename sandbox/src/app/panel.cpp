@@ -38,7 +38,7 @@ std::string neighbour(std::string_view name, int places) {
   return std::string(all[static_cast<std::size_t>((at + places + count) % count)].name);
 }
 
-void scene_chooser(const Simulation& simulation, Wishes& wishes) {
+void scene_chooser(const Simulation& simulation, Requests& requests) {
   ImGui::SetNextItemWidth(-1.0f);
   ImGui::PushStyleColor(ImGuiCol_Text, kBright);
   const bool open =
@@ -47,7 +47,7 @@ void scene_chooser(const Simulation& simulation, Wishes& wishes) {
   if (open) {
     for (const scenes::Entry& entry : scenes::catalogue()) {
       const std::string name(entry.name);
-      if (ImGui::Selectable(name.c_str(), simulation.scene().name == name)) wishes.scene = name;
+      if (ImGui::Selectable(name.c_str(), simulation.scene().name == name)) requests.scene = name;
       if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", std::string(entry.what).c_str());
     }
     ImGui::EndCombo();
@@ -61,13 +61,13 @@ void scene_chooser(const Simulation& simulation, Wishes& wishes) {
 }
 
 void time_controls(const Simulation& simulation, const Meter& meter, Controls& controls,
-                   Wishes& wishes) {
+                   Requests& requests) {
   if (ImGui::Button(controls.paused ? "Go on" : "Pause", {72, 0}))
     controls.paused = !controls.paused;
   ImGui::SameLine();
-  if (ImGui::Button("Step", {60, 0})) wishes.step = true;
+  if (ImGui::Button("Step", {60, 0})) requests.step = true;
   ImGui::SameLine();
-  if (ImGui::Button("Begin anew", {92, 0})) wishes.reset = true;
+  if (ImGui::Button("Begin anew", {92, 0})) requests.reset = true;
   ImGui::SameLine();
   ImGui::Text("%.2f s", simulation.time());
   for (const int rate : kRates) {
@@ -147,7 +147,7 @@ void limits(const vp::StepStatus& status) {
   ImGui::PopTextWrapPos();
 }
 
-void show_controls(Controls& controls, Wishes& wishes) {
+void show_controls(Controls& controls, Requests& requests) {
   vp::DebugDrawOptions& marks = controls.view.marks;
   if (ImGui::BeginTable("shown", 3, ImGuiTableFlags_SizingStretchSame)) {
     const auto box = [](const char* what, bool& on) {
@@ -167,12 +167,12 @@ void show_controls(Controls& controls, Wishes& wishes) {
     box("shadows", controls.view.shadows);
     ImGui::EndTable();
   }
-  if (ImGui::Button("Throw a")) wishes.throw_one = true;
+  if (ImGui::Button("Throw a")) requests.throw_one = true;
   ImGui::SameLine();
   ImGui::SetNextItemWidth(-1.0f);
   ImGui::Combo("##thrown", &controls.thrown, kThrownNames.data(),
                static_cast<int>(kThrownNames.size()));
-  if (ImGui::Button("Show all")) wishes.show_all = true;
+  if (ImGui::Button("Show all")) requests.show_all = true;
 }
 
 void keys_help() {
@@ -191,11 +191,11 @@ void keys_help() {
 
 }  // namespace
 
-void read_keys(const Simulation& simulation, Controls& controls, Wishes& wishes) {
+void read_keys(const Simulation& simulation, Controls& controls, Requests& requests) {
   if (ImGui::GetIO().WantTextInput) return;
   if (pressed(GLFW_KEY_SPACE)) controls.paused = !controls.paused;
-  if (ImGui::IsKeyPressed(GLFW_KEY_S, true)) wishes.step = true;
-  if (pressed(GLFW_KEY_R)) wishes.reset = true;
+  if (ImGui::IsKeyPressed(GLFW_KEY_S, true)) requests.step = true;
+  if (pressed(GLFW_KEY_R)) requests.reset = true;
   for (std::size_t i = 0; i < kRates.size(); ++i) {
     if (pressed(GLFW_KEY_1 + static_cast<int>(i))) controls.rate = kRates[i];
   }
@@ -203,8 +203,8 @@ void read_keys(const Simulation& simulation, Controls& controls, Wishes& wishes)
     controls.speed = std::max(0.5 * controls.speed, kSlowest);
   if (pressed(GLFW_KEY_EQUAL) || pressed(GLFW_KEY_KP_ADD))
     controls.speed = std::min(2.0 * controls.speed, kFastest);
-  if (pressed(GLFW_KEY_N)) wishes.scene = neighbour(simulation.scene().name, 1);
-  if (pressed(GLFW_KEY_B)) wishes.scene = neighbour(simulation.scene().name, -1);
+  if (pressed(GLFW_KEY_N)) requests.scene = neighbour(simulation.scene().name, 1);
+  if (pressed(GLFW_KEY_B)) requests.scene = neighbour(simulation.scene().name, -1);
   vp::DebugDrawOptions& marks = controls.view.marks;
   if (pressed(GLFW_KEY_C)) marks.contacts = marks.normals = !marks.contacts;
   for (const auto& [key, on] : {std::pair{GLFW_KEY_I, &marks.impulses},
@@ -219,28 +219,28 @@ void read_keys(const Simulation& simulation, Controls& controls, Wishes& wishes)
     controls.view.colouring =
         controls.view.colouring == Colouring::speed ? Colouring::body : Colouring::speed;
   }
-  if (pressed(GLFW_KEY_T)) wishes.throw_one = true;
-  if (pressed(GLFW_KEY_HOME)) wishes.show_all = true;
+  if (pressed(GLFW_KEY_T)) requests.throw_one = true;
+  if (pressed(GLFW_KEY_HOME)) requests.show_all = true;
   if (pressed(GLFW_KEY_TAB)) controls.panel = !controls.panel;
-  if (pressed(GLFW_KEY_ESCAPE)) wishes.leave = true;
+  if (pressed(GLFW_KEY_ESCAPE)) requests.leave = true;
 }
 
 void draw_panel(const Simulation& simulation, const Meter& meter, double drawing,
-                const std::string& message, Controls& controls, Wishes& wishes) {
+                const std::string& message, Controls& controls, Requests& requests) {
   if (!controls.panel) return;
   ImGui::SetNextWindowPos({kMargin, kMargin});
   ImGui::SetNextWindowSize({kWidth, 0});
   ImGui::Begin(
       "sandbox", nullptr,
       ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_AlwaysAutoResize);
-  scene_chooser(simulation, wishes);
+  scene_chooser(simulation, requests);
   ImGui::Separator();
-  time_controls(simulation, meter, controls, wishes);
+  time_controls(simulation, meter, controls, requests);
   ImGui::Separator();
   timings(simulation, meter, drawing);
   stage_timings(simulation);
   ImGui::Separator();
-  show_controls(controls, wishes);
+  show_controls(controls, requests);
   keys_help();
   limits(simulation.status());
   if (!message.empty()) {

@@ -24,17 +24,17 @@ struct Controls {
 };
 
 // What was asked for in a frame.
-struct Wishes {
+struct Requests {
   bool step = false, reset = false, show_all = false, throw_one = false, leave = false;
   std::optional<std::string> scene;
 };
 
 // By key; the panel's own fields have them first.
-void read_keys(const Simulation& simulation, Controls& controls, Wishes& wishes);
+void read_keys(const Simulation& simulation, Controls& controls, Requests& requests);
 
 // drawing: how long the last picture took [s]; message: of what last went wrong, or empty.
 void draw_panel(const Simulation& simulation, const Meter& meter, double drawing,
-                const std::string& message, Controls& controls, Wishes& wishes);
+                const std::string& message, Controls& controls, Requests& requests);
 
 // Colours and the font of what is drawn; the error says which package to install.
 tl::expected<void, std::string> style_panel(const std::string& font_directory);

@@ -21,13 +21,13 @@ struct ControlCounters {
   std::uint64_t slow_dropped = 0;  // did not read what was sent to them
   std::uint64_t crowded_out = 0;   // had to leave the door for newer ones
   std::uint64_t wrong_passwords = 0;
-  std::uint64_t lost = 0;             // players whose seat was kept
-  std::uint64_t resumed = 0;          // of these, who came back to it
-  std::uint64_t wishes = 0;           // handed on to the match
-  std::uint64_t wishes_dropped = 0;   // not allowed, or too many
-  std::uint64_t answers = 0;          // to the questionnaire, handed on to the results
-  std::uint64_t answers_refused = 0;  // from who was not asked, or had answered
-  std::uint64_t kicked = 0;           // players put out of a match
+  std::uint64_t lost = 0;              // players whose seat was kept
+  std::uint64_t resumed = 0;           // of these, who came back to it
+  std::uint64_t requests = 0;          // handed on to the match
+  std::uint64_t requests_dropped = 0;  // not allowed, or too many
+  std::uint64_t answers = 0;           // to the questionnaire, handed on to the results
+  std::uint64_t answers_refused = 0;   // from who was not asked, or had answered
+  std::uint64_t kicked = 0;            // players put out of a match
 };
 
 // Datagrams on the input port.

@@ -150,8 +150,8 @@ struct Refusal {
 };
 
 // Client to server: a foosball::Command.
-struct Wish {
-  std::uint8_t kind = 0;  // WishKind (wire/enums.h)
+struct MatchRequest {
+  std::uint8_t kind = 0;  // RequestKind (wire/enums.h)
   std::uint8_t team = 0, value = 0;
   double amount = 0.0;  // tune
 };
@@ -250,9 +250,9 @@ struct Devices {
 };
 
 using ControlMessage =
-    std::variant<Hello, Welcome, Refusal, Wish, Ping, Pong, Notice, Bye, Knock, Challenge, Claim,
-                 Roster, Tuning, Characters, Questionnaire, Answers, Report, Kick, Game, Names,
-                 Phones, DeviceQuery, Devices>;
+    std::variant<Hello, Welcome, Refusal, MatchRequest, Ping, Pong, Notice, Bye, Knock, Challenge,
+                 Claim, Roster, Tuning, Characters, Questionnaire, Answers, Report, Kick, Game,
+                 Names, Phones, DeviceQuery, Devices>;
 
 // Appends the framed message. Texts are cut to their caps; in them, what is not UTF-8 and control
 // characters become '?'. Numbers out of range are the caller's mistake: the reader refuses them.

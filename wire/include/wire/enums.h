@@ -39,8 +39,8 @@ enum class Foul : std::uint8_t {
   serve = 5,
 };
 
-// Wish::kind and JournalCommand::kind; seat, touch and set_up come from the server alone.
-enum class WishKind : std::uint8_t {
+// MatchRequest::kind and JournalCommand::kind; seat, touch and set_up come from the server alone.
+enum class RequestKind : std::uint8_t {
   push = 0,
   choose_character = 1,
   pause = 2,

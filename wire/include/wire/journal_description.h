@@ -126,14 +126,14 @@ void describe_journal_tick(Codec& codec, T& tick) {
                codec.integer(Integer{"team", 1, kTeamCount - 1, "", ""}, command.team);
                codec.integer(Integer{"value", 8, 255, "", ""}, command.value);
                codec.when(Group{"kind", "8 only, tune, then follows:"},
-                          command.kind == number(WishKind::tune), [&] {
+                          command.kind == number(RequestKind::tune), [&] {
                             codec.integer(
                                 Integer{"amount", 64, std::numeric_limits<std::uint64_t>::max(), "",
                                         "bits of a double, IEEE 754"},
                                 command.amount);
                           });
                codec.when(Group{"kind", "9 only, set up, then follows:"},
-                          command.kind == number(WishKind::set_up),
+                          command.kind == number(RequestKind::set_up),
                           [&] { describe_journal_setup(codec, command.setup); });
              });
   codec.align();

@@ -25,9 +25,9 @@ inline constexpr unsigned kVoiceNumberCount = 2;    // foosball::kVoiceFields
 inline constexpr unsigned kHeadgearCount = 6;       // foosball::Headgear
 inline constexpr unsigned kFaceCount = 4;           // foosball::Face
 inline constexpr unsigned kEventKindCount = number(EventKind::match_drawn) + 1;
-inline constexpr unsigned kWishKindCount =
-    number(WishKind::feed) + 1;  // that a client may send, and tune
-inline constexpr unsigned kCommandKindCount = number(WishKind::set_up) + 1;
+inline constexpr unsigned kRequestKindCount =
+    number(RequestKind::feed) + 1;  // that a client may send, and tune
+inline constexpr unsigned kCommandKindCount = number(RequestKind::set_up) + 1;
 inline constexpr unsigned kTuningCount = 28;  // foosball::kTuningFields
 inline constexpr unsigned kRuleSetCount = number(RuleSet::itsf) + 1;
 inline constexpr unsigned kModeCount = number(Mode::ladder) + 1;
@@ -57,22 +57,22 @@ inline constexpr std::uint32_t kGameAnswerTopic = 303;
 inline constexpr std::uint32_t kKickAnswerTopic = 302;
 inline constexpr std::uint32_t kKickTopics = 2'000'000;
 
-// Notice::topic of a vote says what it is about, so that a client can offer to agree: a wish of
+// Notice::topic of a vote says what it is about, so that a client can offer to agree: a request of
 // that kind and value.
 inline constexpr std::uint32_t kVoteTopics = 200;
 struct VoteTopic {
-  WishKind kind;
+  RequestKind kind;
   std::uint8_t value;
 };
-constexpr std::uint32_t vote_topic(WishKind kind, std::uint8_t value) {
+constexpr std::uint32_t vote_topic(RequestKind kind, std::uint8_t value) {
   return kVoteTopics + 2u * number(kind) + (value & 1u);
 }
 constexpr bool is_vote_topic(std::uint32_t topic) {
-  return topic >= kVoteTopics && topic < kVoteTopics + 2 * kWishKindCount;
+  return topic >= kVoteTopics && topic < kVoteTopics + 2 * kRequestKindCount;
 }
 // Precondition: is_vote_topic().
 constexpr VoteTopic vote_of(std::uint32_t topic) {
-  return {static_cast<WishKind>((topic - kVoteTopics) / 2),
+  return {static_cast<RequestKind>((topic - kVoteTopics) / 2),
           static_cast<std::uint8_t>((topic - kVoteTopics) % 2)};
 }
 

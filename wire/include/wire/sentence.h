@@ -21,7 +21,7 @@ namespace wire {
   X(other_version, "this server speaks control version %1, you speak %2: use the same release of both") \
   X(other_snapshots, "your snapshots are laid out otherwise: use the same release of both") \
   X(other_password_share, "a share that is none: use the same release of both") \
-  X(no_such_wish, "a wish that does not exist: use the same release of client and server") \
+  X(no_such_request, "a request that does not exist: use the same release of client and server") \
   X(unreadable, "your message could not be read: is this a Space Foosball client?") \
   X(out_of_place, "a message out of its place: say Hello first and once") \
   X(no_hosts_from_afar, "nobody is host from another machine here: start the server with --host-password-file") \

@@ -1,4 +1,4 @@
-#include "wish_rules.h"
+#include "request_rules.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@ namespace {
 
 using Kind = foosball::Command::Kind;
 
-TEST(WishRules, APlayerWishesForTheOwnTeamAndVotesOnWhatConcernsBoth) {
+TEST(RequestRules, APlayerAsksForTheOwnTeamAndVotesOnWhatConcernsBoth) {
   EXPECT_EQ(rule(wire::Role::player, 0, {Kind::push, 0, 0}), Ruling::yes);
   EXPECT_EQ(rule(wire::Role::player, 0, {Kind::push, 1, 0}), Ruling::no);
   EXPECT_EQ(rule(wire::Role::player, 1, {Kind::choose_character, 0, 2}), Ruling::no);
@@ -16,7 +16,7 @@ TEST(WishRules, APlayerWishesForTheOwnTeamAndVotesOnWhatConcernsBoth) {
   EXPECT_EQ(rule(wire::Role::player, wire::kWatchOnly, {Kind::restart, 0, 0}), Ruling::no);
 }
 
-TEST(WishRules, WhatTheServerTellsTheMatchIsNoWish) {
+TEST(RequestRules, WhatTheServerTellsTheMatchIsNoRequest) {
   const auto formed = [](Kind kind, int value) {
     return well_formed({static_cast<std::uint8_t>(kind), 0, static_cast<std::uint8_t>(value)});
   };
@@ -28,16 +28,16 @@ TEST(WishRules, WhatTheServerTellsTheMatchIsNoWish) {
 }
 
 // Else each value would be a question of its own, and its votes would not add up.
-TEST(WishRules, AValueThatMeansNothingMakesNoOtherRequestOfIt) {
+TEST(RequestRules, AValueThatMeansNothingMakesNoOtherRequestOfIt) {
   for (const Kind kind : {Kind::restart, Kind::push, Kind::time_out}) {
-    const wire::Wish request{static_cast<std::uint8_t>(kind), 1, 7};
+    const wire::MatchRequest request{static_cast<std::uint8_t>(kind), 1, 7};
     ASSERT_TRUE(well_formed(request));
     EXPECT_EQ(command_of(request).value, 0);
   }
   EXPECT_EQ(command_of({static_cast<std::uint8_t>(Kind::pause), 0, 1}).value, 1);
 }
 
-TEST(WishRules, AHostDecidesForAllButPlaysNobodyElsesTeam) {
+TEST(RequestRules, AHostDecidesForAllButPlaysNobodyElsesTeam) {
   for (const auto kind : {Kind::push, Kind::choose_character, Kind::pause, Kind::restart}) {
     EXPECT_EQ(rule(wire::Role::host, wire::kWatchOnly, {kind, 1, 0}), Ruling::yes);
     EXPECT_EQ(rule(wire::Role::watcher, wire::kWatchOnly, {kind, 1, 0}), Ruling::no);
@@ -46,7 +46,7 @@ TEST(WishRules, AHostDecidesForAllButPlaysNobodyElsesTeam) {
   EXPECT_EQ(rule(wire::Role::host, 0, {Kind::push, 1, 0}), Ruling::no);
 }
 
-TEST(WishRules, TheHostTunesAndNobodyElse) {
+TEST(RequestRules, TheHostTunesAndNobodyElse) {
   for (const std::uint8_t team : {std::uint8_t{0}, std::uint8_t{1}, wire::kWatchOnly}) {
     EXPECT_EQ(rule(wire::Role::host, team, {Kind::tune, 0, 3, 1.0}), Ruling::yes);
     EXPECT_EQ(rule(wire::Role::player, team, {Kind::tune, 0, 3, 1.0}), Ruling::no);
@@ -64,19 +64,19 @@ TEST(WishRules, TheHostTunesAndNobodyElse) {
   EXPECT_FALSE(formed(foosball::kTuningValues, 1.0));
 }
 
-TEST(WishRules, AFewAtOnceAndThenAFewASecond) {
+TEST(RequestRules, AFewAtOnceAndThenAFewASecond) {
   const std::int64_t start = 7'000'000'000;
-  WishAllowance allowance;
+  RequestAllowance allowance;
   int taken = 0;
   for (int i = 0; i < 1000; ++i) taken += allowance.take(start);
-  EXPECT_EQ(taken, WishAllowance::kAtOnce);
-  // For ten seconds a wish each millisecond.
+  EXPECT_EQ(taken, RequestAllowance::kAtOnce);
+  // For ten seconds a request each millisecond.
   for (int ms = 1; ms <= 10'000; ++ms) taken += allowance.take(start + ms * 1000);
-  EXPECT_EQ(taken, WishAllowance::kAtOnce + 200);
+  EXPECT_EQ(taken, RequestAllowance::kAtOnce + 200);
   // Rest earns no more than a few at once.
   taken = 0;
   for (int i = 0; i < 1000; ++i) taken += allowance.take(start + 3'600'000'000);
-  EXPECT_EQ(taken, WishAllowance::kAtOnce);
+  EXPECT_EQ(taken, RequestAllowance::kAtOnce);
 }
 
 }  // namespace
