@@ -14,14 +14,14 @@ class Svg : public vp::DebugDraw {
  public:
   double upwards = 0.0;  // sum of the heights of the impulse lines [m]
 
-  void line(const vp::Vec3& from, const vp::Vec3& to, vp::DebugCategory mark) override {
+  void line(const vp::Vec3& from, const vp::Vec3& to, vp::DebugCategory category) override {
     std::printf("<path d='M%.4f %.4f L%.4f %.4f' stroke='#%06x' stroke-width='0.01'/>\n", from.x,
-                -from.z, to.x, -to.z, vp::default_colour(mark));
-    if (mark == vp::DebugCategory::impulse) upwards += to.z - from.z;
+                -from.z, to.x, -to.z, vp::default_colour(category));
+    if (category == vp::DebugCategory::impulse) upwards += to.z - from.z;
   }
-  void point(const vp::Vec3& at, vp::DebugCategory mark) override {
+  void point(const vp::Vec3& at, vp::DebugCategory category) override {
     std::printf("<circle cx='%.4f' cy='%.4f' r='0.02' fill='#%06x'/>\n", at.x, -at.z,
-                vp::default_colour(mark));
+                vp::default_colour(category));
   }
 };
 // end: drawing

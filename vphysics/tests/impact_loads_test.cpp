@@ -1,5 +1,5 @@
-// Loads and blows in the sub-stepped solver: what is told of them, how far they run within a step,
-// and stacks whose steps or ground change.
+// Impact loads in the sub-stepped solver: which impulses are reported, how far they propagate within a
+// step, and stacks whose step length or ground changes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ Vec3 velocity_of(const World& world, BodyId body) {
 }
 
 // m (v_after - v_before) = J - m g dt over the step of the hit, in whichever sub-step it falls.
-TEST(Blow, WithoutRestitutionIsToldWhole) {
+TEST(ImpactLoads, WithoutRestitutionIsToldWhole) {
   for (const double rate : kRates) {
     for (int phase = 0; phase < 10; ++phase) {
       World world;
@@ -60,7 +60,7 @@ TEST(Blow, WithoutRestitutionIsToldWhole) {
 
 // A box that touches a wall, and another that flies at it: the blow reaches the wall in the
 // sub-step in which it falls. It would go in by 6 mm at 60 Hz if it came one sub-step later.
-TEST(Blow, RunsThroughAnUnloadedContactInItsOwnSubStep) {
+TEST(ImpactLoads, RunsThroughAnUnloadedContactInItsOwnSubStep) {
   for (const double gap : {0.0, 0.001}) {
     World world({.gravity = {}});
     add_fixed(world, Box{{0.5, 5, 5}}, {});
