@@ -1,5 +1,5 @@
-// Impact loads in the sub-stepped solver: which impulses are reported, how far they propagate within a
-// step, and stacks whose step length or ground changes.
+// Impact loads in the sub-stepped solver: which impulses are reported, how far they propagate
+// within a step, and stacks whose step length or ground changes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
