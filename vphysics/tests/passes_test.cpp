@@ -68,18 +68,18 @@ struct Net {
         const ContactGraph::End a{step == 0 ? kWorldRow : i + 1, step != 0, kSharedRegion};
         const ContactGraph::End b{j + 1, true, kSharedRegion};
         const bool ball = random.word() % 5 == 0;
-        const Place place = graph.add(contact++, a, b, ball ? 1 : 4);
+        const ContactSlot slot = graph.add(contact++, a, b, ball ? 1 : 4);
         if (ball) {
-          write(graph.block<1>(place), place, a, b, random);
+          write(graph.block<1>(slot), slot, a, b, random);
         } else {
-          write(graph.block<4>(place), place, a, b, random);
+          write(graph.block<4>(slot), slot, a, b, random);
         }
       }
     }
   }
 
   template <int P>
-  void write(ContactBlock<P>& block, const Place& place, const ContactGraph::End& a,
+  void write(ContactBlock<P>& block, const ContactSlot& slot, const ContactGraph::End& a,
              const ContactGraph::End& b, vp::test::Random& random) {
     NewContact c{};
     c.normal = random.rotation() * Vec3{0, 0, 1};
@@ -95,7 +95,7 @@ struct Net {
     c.restitution = random.word() % 6 == 0 ? 0.5 : 0.0;
     c.rolling = P == 1 ? 0.01 : 0.0;
     c.slid_limit = 0.01;
-    write_slot(block, ContactGraph::lane(place), c, rows[a.row], rows[b.row]);
+    write_slot(block, ContactGraph::lane(slot), c, rows[a.row], rows[b.row]);
   }
 
   // f(passes of the kind, run).
