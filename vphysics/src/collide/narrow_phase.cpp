@@ -54,9 +54,9 @@ void capsule_capsule(const Posed& a, const Posed& b, double margin, Manifold& m)
         const double s = i == 0 ? lower : upper;
         const Vec3 pa = axis_a.at(s);
         const Vec3 pb = axis_b.at(std::clamp((s - centre) * along, -b.g.half.z, b.g.half.z));
-        const double separation = dot(m.normal, pb - pa) - a.g.radius - b.g.radius;
-        if (separation <= margin) {
-          m.add(pa + (a.g.radius + 0.5 * separation) * m.normal, separation,
+        const double at_point = dot(m.normal, pb - pa) - a.g.radius - b.g.radius;
+        if (at_point <= margin) {
+          m.add(pa + (a.g.radius + 0.5 * at_point) * m.normal, at_point,
                 static_cast<std::uint32_t>(i + 1));
         }
       }

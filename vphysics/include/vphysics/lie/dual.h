@@ -69,10 +69,10 @@ struct DualT {
     for (std::size_t i = 0; i < N; ++i) out.derivative[i] = f(derivative[i], b.derivative[i]);
     return out;
   }
-  // f(this), given its value and its derivative.
-  constexpr DualT through(const T& v, const T& derivative) const {
+  // f(this), given its value v and its derivative df.
+  constexpr DualT through(const T& v, const T& df) const {
     return chain(
-        v, [&](const T& x, const T&) { return derivative * x; }, *this);
+        v, [&](const T& x, const T&) { return df * x; }, *this);
   }
 };
 
