@@ -54,8 +54,8 @@ class Recorder {
 
   // All recorded bytes that have not been taken. They end after a step, or with the recording.
   std::span<const std::byte> bytes() const { return bytes_; }
-  // Moves the bytes out, to append them to a file while the world goes on. If the program crashes,
-  // such a file can be replayed up to its last complete step.
+  // Moves the bytes out, to append them to a file while the world continues. If the program
+  // crashes, such a file can be replayed up to its last complete step.
   std::vector<std::byte> take();
   const RecordedParts& parts() const { return parts_; }
   std::uint64_t steps() const { return steps_; }

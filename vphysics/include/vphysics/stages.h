@@ -12,7 +12,7 @@ enum class Stage : std::uint8_t {
   prepare,
   // Pairs of AABBs that have begun to overlap, and those that have separated.
   broad_phase,
-  // Manifolds of those pairs that have moved by more than a small distance.
+  // Manifolds of the pairs that have moved by more than a small distance.
   narrow_phase,
   // Adds these manifolds to the contact slots and colours of the solver, or removes them.
   contact_slots,
@@ -20,12 +20,12 @@ enum class Stage : std::uint8_t {
   sub_steps,
   // Contact events of the sub-steps.
   report,
-  // Forces on what the stage of impacts moves: continuous bodies and articulations.
+  // Forces on continuous bodies and articulations, which the impact stage moves.
   forces,
   // Continuous bodies and links, in the order of time: AABBs, pairs, contacts, solves together with
   // the joints of articulations, impacts, poses; and their events.
   impacts,
-  // Poses, in worlds without the stage of impacts.
+  // Poses, in worlds without the impact stage.
   advance,
   // Finds islands at rest and puts them to sleep.
   sleep,
@@ -36,7 +36,7 @@ inline constexpr std::array kStages{
 const char* name_of(Stage stage);  // "broad phase"
 
 // Called for each stage on the thread that calls step(), outside of all tasks. Stages do not
-// overlap and come once a step, in order, with one exception: narrow_phase and contact_slots
+// overlap and run once a step, in order, with one exception: narrow_phase and contact_slots
 // alternate, some hundred contacts at a time, and once more each time that contacts wake sleeping
 // bodies. The observer must not change the world (a step within the step fails), nor throw.
 class StageObserver {

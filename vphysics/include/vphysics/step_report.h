@@ -52,7 +52,7 @@ inline constexpr std::array kLimits{Limit::impacts,   Limit::range,     Limit::b
                                     Limit::positions};
 
 bool reached(const StepStatus& status, Limit limit);
-// A message for the user: what happened, and what helps.
+// A message for the user: what happened, and what to do.
 const char* sentence(Limit limit);
 
 struct StepCounters {

@@ -18,7 +18,7 @@ struct MeshData;
 struct MeshOptions {
   // One-sided, a triangle is the surface of a solid: it stops only shapes whose centre is on the
   // side from which its vertices run counter-clockwise. Two-sided, it is a sheet that stops shapes
-  // from either side, but does not hold what has passed through.
+  // from either side, but does not push back shapes that have passed through.
   bool two_sided = false;
   // A triangle without area has two coincident or three collinear vertices. False: such triangles
   // are omitted; true: a mesh that has any is an error.

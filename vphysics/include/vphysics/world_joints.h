@@ -99,7 +99,7 @@ struct AxisDesc {
   double lower = 0.0, upper = 0.0;  // if limited
   JointDrive drive;                 // unless locked
 };
-// Each coordinate separately, indexed by JointAxis. A locked coordinate is held at 0.
+// Each coordinate separately, indexed by JointAxis. A locked coordinate stays at 0.
 struct SixDof {
   AxisDesc axes[6];
 };

@@ -1,6 +1,6 @@
 // A disc is a polygon of 16 corners that rotate with the shape, plus the exact deepest point of its
-// rim. So a shape that stands on it keeps the feature names of its points, and a shape that tips or
-// rolls on its rim rolls on a circle.
+// rim. So a shape that rests on the disc keeps the feature names of its points, and a shape that
+// tips or rolls on its rim rolls on a circle.
 #include "collide/feature.h"
 
 #include "collide/polytope.h"

@@ -43,8 +43,8 @@ struct ManifoldScratch {
   std::uint32_t triangles_tested = 0;
   bool crowded = false, rough = false;
 
-  // Reserves more than a shape touches of a surface whose triangles are not much smaller than the
-  // shape, so that a step with a new maximum does not allocate.
+  // Reserves memory for more triangles than a shape touches, unless they are much smaller than the
+  // shape. So a step with a new maximum does not allocate.
   void ensure_capacity() {
     triangles.reserve(512);
     near_triangles.reserve(512);

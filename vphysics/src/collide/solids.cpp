@@ -20,7 +20,8 @@ Inertia solid_inertia(const Shape& shape, double density) {
     return {m, (m / 3.0) * Vec3{y + z, z + x, x + y}};
   }
   if (const auto* capsule = std::get_if<Capsule>(&shape)) {
-    // A cylinder of length 2 l and two half balls, whose centres of mass are 3/8 r beyond its ends.
+    // A cylinder of length 2 l and two hemispheres, whose centres of mass are 3/8 r beyond its
+    // ends.
     const double r = capsule->radius, l = capsule->half_length;
     const double cylinder = density * kPi * r * r * 2.0 * l;
     const double ball = density * (4.0 / 3.0) * kPi * r * r * r;

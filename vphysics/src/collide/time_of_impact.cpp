@@ -132,7 +132,7 @@ double SeparationBound::safe_time(double goal, double slack, double horizon) con
   double left = 0.0;
   Value at_left = at(0.0);
   // The parabola of the bodies' current support points is above the bound. The time at which it
-  // reaches the goal is an upper limit, and the answer as long as these stay the support points.
+  // reaches the goal is an upper bound, and exact while these remain the support points.
   const double f = at_left.separation - goal, b = at_left.slope;
   if (!(f > 0.0)) return 0.0;  // rounding errors of GJK
   const double root = std::sqrt(b * b + 2.0 * bend_ * f);

@@ -29,7 +29,7 @@ class ArcSearch {
   ArcSearch(const CorePair& pair, const Vec3& at, const Vec3& outward, const Vec3& up)
       : pair_(pair), at_(at), outward_(outward), up_(up), closed_(kClosed * pair.extent) {}
 
-  // Searches the directions from one to the other, less than half a turn apart.
+  // Searches the directions from one to the other, less than 180 degrees apart.
   void search(const Flat& from, const Flat& to);
 
   double best_separation = -1e300;

@@ -1,4 +1,4 @@
-// A degree of freedom as ImpulseFactor has it (impulse_factor.h).
+// The factors of one degree of freedom, with the symbols of impulse_factor.h.
 #pragma once
 
 #include "vphysics/lie/se3.h"

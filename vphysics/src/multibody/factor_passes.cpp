@@ -16,14 +16,15 @@ using vphysics_factor::kInertia;
 using W = Wide<double>;
 using Fours = PackT<double, 4>;
 
-// An Omega below this share of what its terms could sum to is rounding: a joint about a point mass.
+// An Omega below this fraction of its upper bound, largest_omega(), is rounding error, as for a
+// joint that rotates about a point mass.
 constexpr double kNoInertia = 1e-14;
 
 const Tree<double>& tree_at(const void* tree) {
   return *static_cast<const Tree<double>*>(tree);
 }
 
-// Of a slot's body, or of a group's.
+// The inertia of a slot's body, or the inertias of a group's bodies.
 template <class N>
 InertiaT<N> inertia_at(const double* at) {
   const Constants<double, N> k(at);
@@ -43,7 +44,7 @@ VP_FLATTEN void inertias(const void* tree, const void* work, const double* bodie
   }
 }
 
-// As SlotMotion::place_root() does.
+// Like SlotMotion::place_root().
 void place_origin(const Tree<double>& tree, const Slot& slot, const double* q, Work<double>& work) {
   const auto& node = tree.nodes[static_cast<std::size_t>(slot.node)];
   const auto root = static_cast<std::size_t>(node.root);
@@ -70,12 +71,12 @@ VP_FLATTEN void velocities(const void* tree, void* work, const double* q, const 
   }
 }
 
-// Six numbers in memory, two of them behind the first four.
+// A 6-vector: its first four numbers and its last two.
 struct SixLanes {
   Fours a;
   PackT<double, 2> b;
 };
-// Of a twist or a wrench.
+// The six numbers of a twist or a wrench.
 template <class V>
 double* numbers(V& x) {
   return reinterpret_cast<double*>(&x);
@@ -104,7 +105,7 @@ SixLanes operator*(double s, const SixLanes& x) {
   return {Fours(s) * x.a, PackT<double, 2>(s) * x.b};
 }
 
-// The columns of AInertia(J).
+// Writes AInertia(J) by columns of (angular 3, linear 3, unused 2).
 void write_columns(const double* inertia, double* J) {
   const Inertia own = inertia_at<double>(inertia);
   const double m = own.mass();
@@ -123,7 +124,7 @@ double largest_omega(const double* J, const se3& S) {
   return (J[0] + J[9] + J[18]) * dot(S.w, S.w) + (J[27] + J[36] + J[45]) * dot(S.v, S.v);
 }
 
-// J S, as AInertia has it.
+// J S, like AInertia.
 SixLanes times(const double* J, const double* S) {
   return ((S[0] * six(J) + S[1] * six(J + 8)) + S[2] * six(J + 16)) +
          ((S[3] * six(J + 24) + S[4] * six(J + 32)) + S[5] * six(J + 40));
@@ -168,7 +169,7 @@ VP_FLATTEN bool factor(const void* of_tree, const void* of_work, double damping_
   return fine;
 }
 
-// What a group's slots have of some vectors of six, in memory.
+// A 6-vector for each slot of a group, in memory.
 struct GroupSix {
   alignas(64) double x[6 * kSlots<double>]{};
 

@@ -43,7 +43,7 @@ class ForceLaw {
   double velocity_for(double p) const;
   double clamped_impulse(double p) const;
   // The part of p from the first ramp at w. Where friction or a stop could supply the same impulse,
-  // what the ramp would supply by itself.
+  // the impulse of the ramp alone.
   double part_of_first(double w, double p) const;
 
  private:

@@ -127,8 +127,8 @@ class ImpulseFactor {
   std::vector<LinkPath> links_;
   std::vector<CachedRow> joint_rows_;  // one for each degree of freedom
   std::vector<double> cached_;
-  std::vector<std::uint32_t> body_dof_;    // of each node: the one with its body
-  std::vector<std::uint32_t> parent_dof_;  // of each node: the one with its parent's body, or kEnd
+  std::vector<std::uint32_t> body_dof_;    // of each node: the one that carries its body
+  std::vector<std::uint32_t> parent_dof_;  // of each node: that of its parent's body, or kEnd
   // Inertias of the slots' bodies, by groups of slots (lanes.h): in the nodes' own frames, and in
   // the tree's frame; where each node's begins.
   AlignedArray<double> bodies_, inertias_;

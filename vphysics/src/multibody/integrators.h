@@ -96,8 +96,8 @@ Expected<void> acceleration(const ModelT<base_t<T>>& model, IntegratorWork<T>& w
                              a);
 }
 
-// u' = J_r^-1(u) v for ball and free joints, v for all others. Returns false if u is a full turn or
-// more: J_r has no inverse there.
+// u' = J_r^-1(u) v for ball and free joints, v for all others. Returns false if u is a full
+// revolution or more: J_r has no inverse there.
 template <class T>
 bool rate_on_group(const Tree<base_t<T>>& tree, std::span<const T> u, std::span<const T> v,
                    std::span<T> rate);

@@ -1,4 +1,4 @@
-// What algorithms outside the kernels read after kinematics.
+// Results of the kinematics that algorithms outside the kernels read.
 #pragma once
 
 #include "multibody/joints.h"

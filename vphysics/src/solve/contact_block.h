@@ -1,9 +1,9 @@
 // Sixteen contacts in structure-of-arrays layout.
 //
 // Entry l of every field belongs to one contact, between the bodies of rows a[l] and b[l]. No body
-// except the fixed world is in two slots of a block. A block lives as long as its contacts: from
-// step to step only what a pass writes changes. With rA, rB the arms of a point from the centres of
-// mass of a and b, d = x_a - x_b (so that rB = rA + d), n the normal from a to b:
+// except the fixed world is in two slots of a block. A block lives as long as its contacts: between
+// steps only the fields that a pass writes change. With rA, rB the arms of a point from the centres
+// of mass of a and b, d = x_a - x_b (so that rB = rA + d), n the normal from a to b:
 //
 //   u_i = n . (v_b - v_a) + (d x n) . w_b + (rA_i x n) . (w_b - w_a)        separation speed
 //   s_i = base_i + the same of the rows' displacement and rotation          separation

@@ -3,7 +3,7 @@
 // Every body is represented by the velocity (w, v) of one point. For a free body this is the centre
 // of mass: a moment about it changes w by R I^-1 R^T, a force through it changes v by 1/m. A link
 // does neither: it responds through the joints of its articulation (link_side.h). So no joint can
-// come apart, and the link's w and v keep their values from before the solve.
+// separate, and the link's w and v keep their values from before the solve.
 #pragma once
 
 #include <cstdint>
@@ -21,9 +21,9 @@ struct SolverBody {
   Vec3 w, v;                // world frame; written by the solver
   Vec3 rotation, shift;     // position correction; written by the solver, applied by the world
   Sym3 angular;             // inverse inertia, world frame; zero for links and static bodies
-  double inverse_mass;      // likewise
+  double inverse_mass;      // zero for links and static bodies
   Vec3 x;                   // the point, world frame
-  Vec3 forced_w, forced_v;  // what this step's forces added to w and v
+  Vec3 forced_w, forced_v;  // velocity changes from this step's forces, included in w and v
   int articulation, link;   // of a link; articulation is negative for any other body
   bool in_blocks;           // contact blocks change its velocity between iterations
 };
@@ -41,7 +41,7 @@ struct ContactPoint {
   double slide_mass;       // inverse of the block's largest eigenvalue
   double approach;         // approach speed at the instant of contact, >= 0
   double early;  // part of the approach speed that the step's forces add only after the contact
-  double fall;   // what they add to its square while the separation closes [m^2/s^2]
+  double fall;   // their increase of its square until the contact [m^2/s^2]
   bool hits;     // faster than the threshold; a resting contact does not hit
   bool bounces;
   double target;     // minimum normal speed after the solve
@@ -70,10 +70,10 @@ struct ContactConstraint {
   // Set by the solver: false if this contact contradicts others, as between two walls that close on
   // a body. Such impulses are not used as a warm start.
   bool consistent = true;
-  // Prepared. moves: an impulse moves the body itself. stands: the body has no velocity, and gets
-  // none.
+  // Prepared. moves: an impulse moves the body itself. stands: the body's velocity is zero and
+  // remains so.
   bool moves_a, moves_b, stands_a, stands_b;
-  bool is_steady() const { return !moves_a && !moves_b; }  // links alone answer
+  bool is_steady() const { return !moves_a && !moves_b; }  // only links can respond
   ContactPoint points[collide::kMaxPoints];
   LinkSide side_a, side_b;  // prepared
 

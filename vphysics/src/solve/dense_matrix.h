@@ -22,7 +22,7 @@ struct DenseEnd {
   }
 };
 
-// Scratch memory, kept between instants for its capacity.
+// Scratch memory; keeps its capacity between instants.
 struct DenseScratch {
   std::vector<double> matrix;   // of the current island
   std::vector<double> answers;  // y of the rows of one body or articulation

@@ -26,7 +26,7 @@ Four four_of(double x) {
 
 constexpr std::size_t kMostRows = 128, kMostListed = 64;
 
-// Of row i with those up to it: what those of its numbers that are listed make.
+// Adds to sums the products of row i with rows 0 to i, over the listed entries.
 void add_listed(const Products& p, std::size_t i, const std::uint32_t* listed, std::size_t count,
                 double* sums) {
   const double* const y = p.Y + i * p.size;
@@ -44,7 +44,7 @@ void add_listed(const Products& p, std::size_t i, const std::uint32_t* listed, s
 void add_sums(const Products& p, std::size_t i, const double* sums) {
   double* const line = p.W + p.rows[i] * p.stride;
   std::size_t j = 0;
-  if (p.rows[i] - p.rows[0] == i) {  // and so are those before it
+  if (p.rows[i] - p.rows[0] == i) {  // rows 0 to i are consecutive in W
     double* const to = line + p.rows[0];
     for (; j + kFour <= i + 1; j += kFour) {
       store_four(to + j, load_four(to + j) + load_four(sums + j));

@@ -1,5 +1,5 @@
-// The products and the elimination of a small island (dense_island.h), compiled for several
-// instruction sets, all to the same bits, as passes.h says.
+// The matrix product and the elimination of a small island (dense_island.h), compiled for several
+// instruction sets. All give the same bits (passes.h).
 #pragma once
 
 #include <cstddef>
@@ -7,9 +7,9 @@
 
 namespace vphysics_dense {
 
-// `count` rows Y, at most 128, each `size` numbers that begin at a multiple of size: adds Y Y^T to
-// what W has in their places, rows[i] and rows[j] being those of i and of j, of which j is no
-// larger. columns: a scratch of size times in_fours(count) numbers. Most of a row is zero.
+// Adds the lower half of Y Y^T to W. Y has `count` rows, at most 128, of `size` numbers each. Row i
+// of Y is row rows[i] of W; these ascend. Efficient if most entries of Y are zero. columns: scratch
+// of size times in_fours(count) numbers.
 struct Products {
   const double* Y;
   std::size_t count, size;
@@ -18,9 +18,9 @@ struct Products {
   double* W;
   std::size_t stride;  // of W
 };
-// A x = b, n lines of `stride` numbers of which those behind the n-th are zero. Of the first
-// `symmetric` lines only what is right of the diagonal is kept up; of the others the largest of
-// each column is the pivot. b becomes x; the lines are used up.
+// Solves A x = b. A has n lines of `stride` numbers; those after the n-th are zero. In the first
+// `symmetric` lines only the upper triangle is updated. The other lines use partial pivoting. b
+// becomes x; A is overwritten.
 struct Equations {
   double** A;
   double* b;
@@ -28,7 +28,7 @@ struct Equations {
 };
 struct Passes {
   void (*add_products)(const Products& products);
-  bool (*solve)(const Equations& equations);  // false: there is no pivot
+  bool (*solve)(const Equations& equations);  // false: a pivot is zero
 };
 
 extern const Passes kBaseline;
@@ -39,7 +39,7 @@ extern const Passes kAvx2, kAvx512;
 
 namespace vp::solve {
 
-// Those for this machine.
+// The passes for this machine.
 const vphysics_dense::Passes& dense_passes();
 
 }  // namespace vp::solve

@@ -9,8 +9,8 @@
 
 namespace vp::solve {
 
-// The iteration ends when changes of speed are below this [m/s]: a twenty-thousandth of what
-// gravity adds in the step, with a floor at rounding error.
+// The iteration ends when changes of speed are below this [m/s]: a twenty-thousandth of the speed
+// that gravity adds in the step, but at least the rounding error.
 inline double convergence_tolerance(const StepContext& s) {
   return std::max(1e-7, 5e-4 * s.step);
 }

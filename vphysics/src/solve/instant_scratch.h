@@ -1,4 +1,4 @@
-// Scratch memory of the solve of an instant, kept between instants for its capacity.
+// Scratch memory of the solve of an instant; keeps its capacity between instants.
 #pragma once
 
 #include "solve/dense_matrix.h"

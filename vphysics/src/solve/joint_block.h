@@ -8,8 +8,8 @@
 //
 // and bounded rows (drives and limits) their force laws within bounds. A block eliminates the
 // locked rows from K = J M^-1 J^T + G by L D L^T. The remaining Schur complement is the response of
-// the bounded rows while the locked rows hold. The bounded rows are solved in sequence, then the
-// locked rows by back substitution.
+// the bounded rows while the locked rows are satisfied. The bounded rows are solved in sequence,
+// then the locked rows by back substitution.
 //
 // All joints of a block have the same rows in the same order: first the three of a locked point,
 // along the world's axes, then other locked rows, then bounded ones. No body except the fixed world

@@ -23,7 +23,7 @@ inline constexpr float kDependent = 1e-6f;
 inline constexpr float kMinResponse = 1e-30f;  // the smallest pivot that is inverted
 // The bias of a hard row is clamped to this many times its maximum bias velocity. The clamp limits
 // the steady load of an error; larger loads pull the joint open. Without it, rows that contradict
-// one another would hold a load that throws their bodies about.
+// one another would build up a load that throws their bodies about.
 inline constexpr float kStrongest = 2.0f;
 // In sub-steps shorter than a fifth of this [s] the maximum bias velocity grows: errors up to this
 // time times that velocity are corrected at the full rate, since they may be rounding errors of
@@ -179,8 +179,9 @@ void evaluate_lanes(JointLanes<W, B>& c, const Gone* gone, int at, float max_bia
         c.get(point.start_separation) + (b.displacement - a.displacement) + (less_b - less_a);
     V arm_a = start_a + less_a + separation;
     if constexpr (B::kPointRows > 0) {
-      // If the separation is larger than the bodies, the arm contains only a part of it: a body is
-      // no rod of arbitrary length. A pull along the separation rotates the body as before.
+      // If the separation is larger than the bodies, the arm contains only a part of it: otherwise
+      // it would act as a lever of arbitrary length. An impulse along the separation rotates the
+      // body as before.
       const F pull = c.rate(0) * c.rate(0) * dot(separation, separation);
       const LaneMask<W> strong =
           pull > F(kStrongest * kStrongest * max_bias_velocity * max_bias_velocity);
@@ -448,7 +449,7 @@ Lanes<W> stop_change(const JointLanes<W, B>& c, int i, const Lanes<W>& u, const 
   const LaneMask<W> gives = K > zero;
   const F mass = select(gives, F(1.0f) / select(gives, K, F(1.0f)), zero);
   F unbiased = p - mass * (speed + separation * F(1.0f / h));
-  if (!pushes) unbiased = smaller(unbiased, p);  // the next sub-step handles what closes in it
+  if (!pushes) unbiased = smaller(unbiased, p);  // the next sub-step handles an approach in it
   const bool linear = !B::kAxes || c.is_along(i);
   const F bias =
       larger(c.get(row.rate) * separation, F(linear ? -max_bias_velocity : -kMaxAngularBias));

@@ -83,7 +83,7 @@ double response_of(const StepContext& s, const JointPair& pair) {
   return std::max(0.0, sum);
 }
 
-// A row with a response below this [1/kg or 1/(kg m^2)] cannot be held by an impulse.
+// An impulse cannot control a row with a response below this [1/kg or 1/(kg m^2)].
 constexpr double kNoAnswer = 1e-12;
 // Minimum response of a row, including its softness, as a fraction of the maximum response of its
 // ends in any direction (in sub-steps kMinInSubSteps). The position correction uses kMinMoved
@@ -149,7 +149,7 @@ void prepare(const StepContext& s, JointPair& pair, double largest, JointRow& ro
   row.softness = pair.loss * row.inverse_mass + pair.floor;
   if (pair.drives) prepare_drive(s, pair, row);
   const bool answers = row.inverse_mass > kNoAnswer;
-  // A row that hardly responds cannot follow the curvature either.
+  // A row that hardly responds cannot follow the curvature.
   if (answers) row.target -= pair.curve * row.inverse_mass / (row.inverse_mass + pair.floor);
   row.mass = answers ? 1.0 / (row.inverse_mass + row.softness) : 0.0;
   if (!answers) row.impulse = row.lower = row.upper = 0.0;

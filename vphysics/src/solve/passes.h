@@ -19,9 +19,10 @@ namespace vphysics_solver {
 // A soft contact's response to penetration s < 0 in a sub-step h: an implicitly integrated spring
 // and damper of frequency f and damping ratio z,
 //   p' = p - fraction m (u + max(rate s, -max_bias_velocity)) - (1 - fraction) p
-// What a deeper one lacks of  -rate s  separates the two bodies by a position correction, at most
-// at fastest_shift in total. If a body has many contacts, each gets only a fraction of both limits.
-// The limit of the bias velocity is on top of the speed that softness takes from a load.
+// For deeper penetration, a position correction moves the two bodies apart at the remaining speed,
+// -rate s - max_bias_velocity, at most at fastest_shift in total. If a body has many contacts, each
+// gets only a fraction of both limits. The maximum bias velocity does not include the speed that
+// softness takes from a load.
 struct Soft {
   float rate;               // [1/s]
   float fraction;           // of the effective mass, and what remains of the accumulated impulse

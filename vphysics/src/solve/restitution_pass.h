@@ -146,7 +146,7 @@ bool apply_restitution_lanes(LanesOf<W, P>& c, float h, float threshold) {
 // Bits of slots whose geometry must be computed again: by the end of a step of dt, at their present
 // speeds, they will have slid by more than slid_limit or rotated by more than `rotation` [rad]. For
 // bodies that no impulse moves the limit is kDrivenRotation: a motor-driven body may have long
-// arms, and bodies on it drift outwards by as much as its geometry lags behind.
+// arms, and bodies on it drift outwards by the error of its old geometry.
 inline constexpr float kDrivenRotation = 5e-4f;  // [rad]
 template <int W, int P>
 std::uint32_t find_moved_slots(LanesOf<W, P>& c, float dt, float rotation) {

@@ -16,9 +16,9 @@ namespace vphysics_solver {
 struct alignas(32) SpeculativePair {
   // State at the last narrow phase: the rows' displacements and rotations [m], [rad].
   float x_a[3], rotation_a[3], x_b[3], rotation_b[3];
-  // Arms from the bodies' centres to the centre of a ball in which the two meet, and its radius,
-  // the lever arm of relative rotation [m]. The clearance is the permitted relative displacement
-  // [m].
+  // Arms from the bodies' centres to the centre of the sphere in which the two can touch, and its
+  // radius, the lever arm of relative rotation [m]. The clearance is the permitted relative
+  // displacement [m].
   float arm_a[3], arm_b[3];
   float radius;
   float clearance;

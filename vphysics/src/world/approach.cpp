@@ -7,13 +7,14 @@
 namespace vp {
 namespace {
 
-// An acceleration that the margins allow for [m/s^2], a few times that of gravity: what it adds to
-// the displacement of a step is found in the next step. Margins include what a stronger one adds.
+// Margins allow for accelerations up to this [m/s^2], a few times that of gravity: contacts that
+// their displacements cause are found in the next step. For a stronger one, margins include its
+// displacement.
 constexpr double kBornePull = 50.0;
 
 }  // namespace
 
-// What gravity alone adds, which most bodies have, is no more than margins bear.
+// The fast path: most bodies have gravity alone, which the margins allow for.
 Velocity Approach::pull_of(const Body& body) const {
   if (body.motion != Motion::dynamic || body.is_link || body.asleep) return {};
   if (body.load == kNone) {
@@ -30,7 +31,7 @@ Velocity Approach::pull_of(const Body& body) const {
 
 namespace {
 
-// One of the two, for this step.
+// One of the two bodies, for this step.
 struct Approaching {
   const Body& body;
   Vec3 reference;
@@ -41,12 +42,12 @@ struct Approaching {
       : body(b), reference(reference_point(b)), pull(p), pulled(!(p == Velocity{})) {}
 
   Vec3 velocity(const Vec3& at) const { return body.v + cross(body.w, at - reference); }
-  // What the pull adds to the speed of what is within that radius of a point of the body.
+  // Upper bound of the speed that the pull adds within this radius of a point of the body.
   double pulled_by(const Vec3& at, double radius) const {
     if (!pulled) return 0.0;
     return norm(pull.v + cross(pull.w, at - reference)) + radius * norm(pull.w);
   }
-  // How far a step's rotation moves what is within the collider's ball, about its center.
+  // Upper bound of the displacement of the collider by the step's rotation about its centre.
   double rotated(const Collider& collider, double dt) const {
     if (collider.geometry.kind == collide::Kind::sphere) return 0.0;
     const double rotation = dt * (pulled ? norm(body.w) + norm(pull.w) : norm(body.w));

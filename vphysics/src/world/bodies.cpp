@@ -93,8 +93,7 @@ void World::Impl::list_bodies() {
   reserve_link_rows();
 }
 
-// Marks contacts with points dirty. Reduces the clearance of the others by what has been used of
-// it.
+// Marks contacts with points dirty. Reduces the clearance of the others by the displacement so far.
 void World::Impl::restart_displacement(std::uint32_t index) {
   const auto for_speculative = [&](const auto& f) {
     contact_store.for_each_of(bodies[index], [&](std::uint32_t contact, const Contact& c) {
@@ -179,8 +178,8 @@ Velocity World::Impl::settle(const BodyRows& rows, std::uint32_t index) {
   return more;
 }
 
-// Runs after all bodies have been settled from their rows and contact slots: the set of lost bodies
-// does not depend on an order, and no NaN displacement enters a remaining contact.
+// Runs after settle() of all bodies: the set of lost bodies does not depend on an order, and no NaN
+// displacement enters a remaining contact.
 void World::Impl::forget_lost_bodies() {
   for (const std::uint32_t i : lost_bodies) {
     std::fill_n(body_rows[i + 1].displacement, 6, 0.0f);
@@ -193,7 +192,7 @@ void World::Impl::forget_lost_bodies() {
   lost_bodies.clear();
 }
 
-// Does not keep the impulses of its contact slots for a warm start.
+// Discards the impulses of its contact slots: they are not used for a warm start.
 void World::Impl::forget_contacts(std::uint32_t body) {
   contact_store.for_each_of(bodies[body], [&](std::uint32_t index, const Contact& c) {
     contact_store.mark_dirty(index);

@@ -19,7 +19,7 @@ struct Velocity {
 };
 
 // A link's position in its articulation, which decides its neighbours. Values are link numbers,
-// kWorld for what is fixed to the world. All are kWorld if links do not collide with each other.
+// kWorld if fixed to the world. All are kWorld if links do not collide with each other.
 struct LinkNeighbours {
   int leader = kWorld;  // of a group of links fixed together: the one that a joint moves
   int head = kWorld;    // of a chain of joints that rotate about one point: the leader of the first
@@ -37,7 +37,7 @@ struct alignas(64) Body {
   bool on_link =
       false;  // in this step: close to a link, its solver row moves it (link_contacts.cpp)
   // posed and bounded are updated from the pose on demand. A link's T, w and v are refreshed only
-  // if is_followed(); otherwise ask its articulation.
+  // if is_followed(); otherwise its articulation has them.
   bool asleep = false;
   bool pose_pending = false;  // its colliders' poses are queued for computation
   bool posed = false;         // the colliders' poses and bounds match T
@@ -129,7 +129,7 @@ inline bool is_still(const Body& body) {
 bool never_collide(const Body& a, const Body& b);
 // Whether any collider of one may collide with any collider of the other.
 bool may_overlap(const Body& a, const Body& b);
-// What the solver needs to know of a body in a contact or a joint.
+// The solver's data of a body in a contact or a joint.
 solve::ContactGraph::End end_of(const Bodies& bodies, std::uint32_t body);
 
 inline Vec3 reference_point(const Body& body) {

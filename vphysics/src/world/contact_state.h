@@ -72,8 +72,8 @@ class ContactState {
   const ContactData world_;
   std::vector<OfBody> bodies_;
   ContactStore contacts_;
-  // Of each contact what was found, as flags. 1, 2: its sides; 4: in a speculative list or a
-  // contact slot; 8: free; 16: in its aggregate's chain of parts.
+  // Flags of each contact: where it was found. 1, 2: lists of its two sides; 4: a speculative list
+  // or a contact slot; 8: free; 16: its aggregate's chain of parts.
   std::vector<std::uint8_t> seen_;
   Regions::State regions_;
 };

@@ -57,8 +57,8 @@ bool is_too_deep(const Collider& a, const Collider& b, double separation) {
   return size > 0.0 && separation < -0.5 * size;
 }
 
-// Removes what contacts and joints have already supported of the velocity change from the forces:
-// it is no approach speed in later impacts.
+// Removes from the forces' velocity change the part that contacts and joints have cancelled: it
+// does not count as approach speed in later impacts.
 void remove_carried(Vec3& forced, const Vec3& change) {
   const double against = -dot(forced, change), size = dot(change, change);
   if (against > 0.0) forced += std::min(1.0, against / size) * change;
@@ -156,7 +156,7 @@ void World::Impl::find_swept_contacts(bool warm) {
   }
 }
 
-// Removes from the forces' velocity changes what the solve has cancelled.
+// Removes the part that the solve has cancelled from the forces' velocity changes of a body.
 void World::Impl::carry(std::uint32_t body, const Vec3& change_w, const Vec3& change_v) {
   remove_carried(impacts.forced[body].w, change_w);
   remove_carried(impacts.forced[body].v, change_v);
@@ -172,7 +172,8 @@ void World::Impl::note_touched_articulations() {
   note_joined_bodies();
 }
 
-// At the start of a step all; then what an impact concerns.
+// Solves all contacts at the start of a step (first), then those of the bodies that an impact
+// affects.
 void World::Impl::solve_contacts(double h, double dt, bool first) {
   if (!first) {
     // An impact: contacts from the start of the step take part, with zero impulses.

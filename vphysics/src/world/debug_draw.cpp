@@ -173,7 +173,7 @@ class World::Impl::Drawing {
   }
 
   // The points are from some steps ago and are moved with the body that is not fixed. The impulses
-  // of the last sub-step stand for all sub-steps. Restitution impulses and friction are per contact
+  // of the last sub-step represent all sub-steps. Restitution impulses and friction are per contact
   // and are divided evenly.
   template <int P>
   void draw_contact(const Contact& c, const solve::ContactBlock<P>& block) const {

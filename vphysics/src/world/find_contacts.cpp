@@ -218,7 +218,7 @@ void World::Impl::update_dirty_contacts(double dt) {
   contact_store.dirty.swap(narrow.dirty_next_step);
 }
 
-// Those that have to be looked at; what has parted is dropped.
+// Lists the contacts to test. Removes those whose enlarged bounds have separated.
 void World::Impl::list_dirty_contacts(double dt, bool first) {
   if (first) find_dirty_contacts(dt);
   contact_store.take_dirty(narrow.dirty);
@@ -317,7 +317,7 @@ void World::Impl::assign_slot(std::uint32_t index, const collide::Manifold& m) {
   }
   solve::NewContact n{};
   n.normal = m.normal;
-  // The world row's centre is put where it makes the arms short.
+  // The world row has no centre of its own: the other body's centre makes the arms short.
   n.x_a = reference_point(bodies[a.body]);
   n.x_b = reference_point(bodies[b.body]);
   if (end_a.row == solve::kWorldRow) n.x_a = n.x_b;

@@ -6,9 +6,9 @@
 namespace vp {
 namespace {
 
-// Margin of the cached bounds beyond a body's swept bounds, so that they hold for some steps:
-// contact slops, for bodies that move a little, and displacements of a step. Each candidate costs a
-// comparison in every iteration.
+// Margin of the cached bounds beyond a body's swept bounds, so that they remain valid for some
+// steps: contact slops, for bodies that move a little, and displacements of a step. Each candidate
+// costs a comparison in every iteration.
 constexpr double kCandidateSlops = 10.0, kCandidateSteps = 2.0;
 // Up to this many, plus a fraction of all bodies, each searches among all bodies on its own. If
 // more bodies have left their bounds, one broad phase over all bodies finds all pairs.
@@ -80,7 +80,7 @@ void SweptBodyPairs::link_pair(std::uint32_t pair) {
   link_edge(b, 2 * pair + 1, a);
 }
 
-// The last pair gets its place.
+// Moves the last pair to its index.
 void SweptBodyPairs::remove_pair(std::uint32_t pair) {
   const auto unlink = [this](std::uint32_t k) {
     unlink_edge(pairs_[k].a, 2 * k);

@@ -1,5 +1,5 @@
-// Broad phase of the impact stage: pairs of which one is swept, and discrete pairs. Times of impact
-// of the colliders in swept pairs.
+// Broad phase of the impact stage: pairs with a swept body, and discrete pairs. Times of impact of
+// the colliders in swept pairs.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +16,8 @@ namespace vp {
 
 // Upper bound of the displacement of any point of the body within h.
 double travel(const Body& body, const collide::Motion& motion, double h);
-// The same for the body's bounds. If they hold for all its rotations (around_line), rotation does
-// not count.
+// The same for the body's bounds. Ignores rotation if the bounds contain the body in all its
+// rotations (around_line).
 double travel_of_bounds(const Body& body, const collide::Motion& motion, double h);
 
 // Of each body: its motion for the rest of the step, and its swept bounds for it.
@@ -28,8 +28,8 @@ struct BodyMotions {
 };
 
 // Pairs of bodies, one of them continuous, that may collide within the step while the bounds of
-// both stay within their cached bounds. Pairs that filters exclude are left out. The pairs are kept
-// from step to step but do not affect results: each iteration tests them again for those close
+// both stay within their cached bounds. Pairs that filters exclude are left out. The pairs persist
+// between steps but do not affect results: each iteration tests again which of them are close
 // enough.
 class SweptBodyPairs {
  public:

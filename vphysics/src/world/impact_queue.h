@@ -1,10 +1,12 @@
 // Times of impact of swept pairs within a step, earliest first.
 //
-// A pair holds until the motion of one of its bodies changes: then all pairs of that body are
-// forgotten, and found again by whoever changed it. So an impact costs what its bodies' pairs cost.
+// A pair is valid until the motion of one of its bodies changes. Then forget_pairs_of() invalidates
+// all pairs of that body, and the caller finds them again. So the cost of an impact depends only on
+// the pairs of its bodies.
 //
-// What a body may meet after its first impact, it most likely does not meet: such a pair waits in
-// the queue, at the time of that impact, until its own time is wanted.
+// A pair that does not collide before the first impact of one of its bodies is unlikely to collide
+// at all. It waits in the queue at the time of that impact. Its own time of impact is computed only
+// when it reaches the front.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +16,8 @@
 
 namespace vp {
 
-// A time of impact. What stands at `from` moves on for exactly `after`.
+// A time of impact. A body whose pose is at time `from` advances by exactly `after`, which avoids
+// the rounding of time - from.
 struct Instant {
   double time = 0.0;  // within the step [s]
   double from = 0.0, after = 0.0;
@@ -25,14 +28,14 @@ struct Instant {
 struct QueuedPair {
   SweptPair swept;
   std::uint32_t a, b;                // bodies
-  std::uint32_t motion_a, motion_b;  // of the bodies' motions those that it was found with
-  double found = 0.0;                // when [s]
-  double after = 0.0;                // the impact follows; of a pair that waits, no earlier
+  std::uint32_t motion_a, motion_b;  // the bodies' motion counts when the pair was found
+  double found = 0.0;                // time at which it was found [s]
+  double after = 0.0;  // time from then to the impact [s]; a lower bound if the pair waits
 };
 
 class ImpactQueue {
  public:
-  // In the order in which they come at one time.
+  // In the order in which entries of equal time are processed.
   enum class Kind : std::uint8_t { sensor, impact, waiting };
   struct Entry {
     double time;
@@ -42,14 +45,14 @@ class ImpactQueue {
   };
 
   void reserve(std::size_t pairs);
-  // At the start of a step: of so many bodies.
+  // Call at the start of a step. bodies: their number.
   void clear(std::size_t bodies);
-  // The body's motion has changed.
+  // Call after a change of the body's motion.
   void forget_pairs_of(std::uint32_t body) { ++motions_[body]; }
   std::uint32_t add(QueuedPair pair);
-  // Precondition: the pair has found and after.
+  // Queues a pair of add(). Precondition: its found and after are set.
   void wait(std::uint32_t pair, Kind kind);
-  // The first of a pair that holds, or null. Valid until the next call.
+  // The first entry whose pair is valid, or null. Valid until the next call.
   const Entry* first();
   void pop();
   QueuedPair& pair(std::uint32_t index) { return pairs_[index]; }
@@ -59,9 +62,9 @@ class ImpactQueue {
     return motions_[pair.a] == pair.motion_a && motions_[pair.b] == pair.motion_b;
   }
 
-  std::vector<QueuedPair> pairs_;  // of the step, also those that hold no longer
+  std::vector<QueuedPair> pairs_;  // of the step, including invalid ones
   std::vector<Entry> heap_;
-  std::vector<std::uint32_t> motions_;  // of each body: how often its motion has changed
+  std::vector<std::uint32_t> motions_;  // motion count of each body: changes within the step
 };
 
 }  // namespace vp

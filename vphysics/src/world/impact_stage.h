@@ -19,7 +19,7 @@ struct PairPoint {
   Vec3 position;  // world frame
 };
 
-// State of a pair of colliders that is kept from step to step.
+// State of a pair of colliders that persists between steps.
 struct PairRecord {
   std::uint64_t key = 0;  // serials of both
   std::uint32_t a = 0, b = 0;
@@ -38,14 +38,14 @@ struct StepContact {
   Vec3 friction;  // on b
 };
 
-// Whether the impact of now concerns a body (impacts.cpp).
+// Whether the current impact affects a body (impacts.cpp).
 enum class Concern : std::uint8_t { none, listed, searched };
 
 struct ImpactStage {
   // State, sorted by key and part; next_records: of the current step.
   std::vector<PairRecord> records, next_records;
-  // State: length of the step that the impulses of records and of articulations' joints are from
-  // [s]; 0: none yet.
+  // State: length of the step in which the impulses of records and of articulations' joints were
+  // computed [s]; 0: none yet.
   double step = 0.0;
   // The bodies that the stage processes, ascending: all bodies that are not fixed, and links with
   // colliders except those of remote articulations (remote.cpp).
@@ -71,7 +71,7 @@ struct ImpactStage {
   std::vector<double> times;
   std::vector<std::uint8_t> brought;  // has advanced within the step
   std::vector<Concern> concerns;
-  std::vector<double> first_impacts;  // of the pairs that are being queued [s]
+  std::vector<double> first_impacts;  // of each body, among the pairs that are being queued [s]
   std::vector<solve::SolverBody> solver_bodies;
 
   // --- of an impact

@@ -1,10 +1,11 @@
-// The stage of impacts: what touches at the start of a step, then impacts in the order of time.
+// The impact stage: solves the contacts at the start of a step, then impacts in the order of time.
 //
-// An impact concerns the bodies that it changes: those of its pair, what touches them, what touches
-// that and so on, as far as something can be moved. They are solved, and looked at again. All other
-// bodies go on as they were found to at their last change, each from a time of its own
-// (ImpactStage::times); one that comes near to what an impact concerns is brought to its time.
-// Articulations, and what they touch or hold, are concerned in every impact.
+// An impact affects the bodies of its pair, the dynamic bodies that touch these, and so on
+// (ImpactStage::concerned). Only the contacts of affected bodies are solved; then their motions and
+// pairs are computed again. Every other body keeps its motion, and its pose keeps its own time
+// (ImpactStage::times); a body that may collide with an affected one is advanced to the impact.
+// Every impact affects the links whose motion has changed, and the bodies in contacts with links
+// and in row joints.
 #include <algorithm>
 #include <utility>
 
@@ -13,8 +14,9 @@
 namespace vp {
 namespace {
 
-// A pair that touches already counts only when it would get deeper than the slop, and deeper than
-// it is: a ball that rests, rolls or is pinched costs nothing.
+// The separation at which a pair has its impact. For a pair that touches already, this is deeper
+// than the slop and than its current penetration: a ball that rests, rolls or is pinched has no
+// impacts.
 double separation_at_impact(const SweptPair& swept, double slop) {
   return swept.separation > slop ? 0.5 * slop : std::min(-slop, swept.separation - 0.1 * slop);
 }
@@ -27,7 +29,8 @@ bool is_free(const Body& body) {
 
 // --- the queue -----------------------------------------------------------------------------------
 
-// Of impacts.swept_pairs, whose bodies all are at `now`, h before the end of the step.
+// Queues impacts.swept_pairs. Precondition: all their bodies are at `now`, h before the end of the
+// step.
 void World::Impl::queue_swept_pairs(double now, double h) {
   using Kind = ImpactQueue::Kind;
   const auto body_of = [&](std::uint32_t collider) { return colliders[collider].body; };
@@ -58,14 +61,14 @@ void World::Impl::queue_swept_pairs(double now, double h) {
   }
 }
 
-// From when its bodies are where they are; negative: not within h.
+// The time until the impact, from the current poses of both bodies; negative: not within h.
 double World::Impl::time_of(const SweptPair& swept, double h) {
   const ImpactTimes times = impact_times();
   if (!swept.sensor) return times.until(swept, separation_at_impact(swept, desc.contact_slop), h);
   return swept.separation <= times.tolerance() ? 0.0 : times.until(swept, 0.0, h);
 }
 
-// The time of a pair that has waited for it.
+// Computes the time of impact of a waiting pair.
 void World::Impl::look_at_waiting(std::uint32_t index, const Instant& now) {
   QueuedPair& pair = impacts.queue.pair(index);
   for (const std::uint32_t body : {pair.a, pair.b}) {
@@ -80,7 +83,8 @@ void World::Impl::look_at_waiting(std::uint32_t index, const Instant& now) {
                      pair.swept.sensor ? ImpactQueue::Kind::sensor : ImpactQueue::Kind::impact);
 }
 
-// False: there is none until the end of the step. Sensors that are reached before it are listed.
+// Returns false if there is no impact until the end of the step. Lists the sensors that are reached
+// before the impact.
 bool World::Impl::next_impact(const Instant& now, Instant& next) {
   impacts.reached_sensors.clear();
   while (const ImpactQueue::Entry* const entry = impacts.queue.first()) {
@@ -100,7 +104,7 @@ bool World::Impl::next_impact(const Instant& now, Instant& next) {
   return false;
 }
 
-// Swept bodies report a sensor even if they are through it within the step.
+// Swept bodies report a sensor even if they pass through it within the step.
 void World::Impl::report_reached_sensors() {
   std::sort(impacts.reached_sensors.begin(), impacts.reached_sensors.end(),
             [this](std::uint32_t p, std::uint32_t q) {
@@ -119,7 +123,7 @@ void World::Impl::report_reached_sensors() {
 
 // --- an impact -----------------------------------------------------------------------------------
 
-// As it was swept, to a later time. Links are there already.
+// Advances a body along its swept motion to a later time. Links are there already.
 void World::Impl::bring(std::uint32_t index, const Instant& now) {
   Body& body = bodies[index];
   if (body.is_link || impacts.times[index] == now.time) return;
@@ -138,7 +142,7 @@ void World::Impl::move_within_step(std::uint32_t index, double h, bool freely) {
   refresh_bounds_of(index, dt_now - impacts.times[index]);
 }
 
-// A link with all of its articulation.
+// Adds a body to the affected ones; a link with all links of its articulation that have colliders.
 void World::Impl::concern(std::uint32_t index) {
   const auto add = [this](std::uint32_t b) {
     if (impacts.concerns[b] != Concern::none) return;
@@ -153,7 +157,7 @@ void World::Impl::concern(std::uint32_t index) {
   }
 }
 
-// To the impact; what of them goes another way from now on is concerned.
+// Advances the links to the impact. It affects those whose motion changes.
 void World::Impl::advance_links(const Instant& previous, const Instant& now) {
   const double h = now.since(previous.time);
   advance_discrete_contacts(h);
@@ -170,8 +174,8 @@ void World::Impl::refresh_links(double h) {
   }
 }
 
-// The pairs that meet now, and those after them that touch by now. Pairs of what is
-// concerned already are found again.
+// Adds the bodies of the pairs that collide now, and of the next pairs while these already touch.
+// Drops the pairs of affected bodies: they are found again.
 void World::Impl::concern_bodies_that_meet(const Instant& now) {
   const auto is_concerned = [this](std::uint32_t b) {
     return impacts.concerns[b] != Concern::none;
@@ -188,16 +192,17 @@ void World::Impl::concern_bodies_that_meet(const Instant& now) {
   }
 }
 
-// Whether its bodies are so near to their impact that they touch; they are not brought for it.
+// Whether the bodies are so close to their impact that they touch. Does not advance them.
 bool World::Impl::touches_at(const QueuedPair& pair, const Instant& now) {
-  constexpr double kTouching = 0.4;  // of a slop: an impact is half of one before they overlap
+  constexpr double kTouching = 0.4;  // fraction of the slop; impacts are at a separation of half
   const double left = (pair.found + pair.after) - now.time;
   return travel(bodies[pair.a], impacts.motions[pair.a], left) +
              travel(bodies[pair.b], impacts.motions[pair.b], left) <=
          kTouching * desc.contact_slop;
 }
 
-// Pairs of a concerned body that can meet within h; of two concerned ones the second finds them.
+// Adds the pairs of an affected body that can collide within h. A pair of two affected bodies is
+// added once.
 void World::Impl::find_swept_pairs_of(std::uint32_t index, const Instant& now, double h) {
   impacts.concerns[index] = Concern::searched;
   impacts.swept_body_pairs.for_each_partner(index, [&](std::uint32_t other) {
@@ -208,7 +213,7 @@ void World::Impl::find_swept_pairs_of(std::uint32_t index, const Instant& now, d
   });
 }
 
-// What touches what is concerned is concerned, too, if anything can move it.
+// Adds the dynamic bodies that touch affected ones.
 void World::Impl::concern_what_touches(const Instant& now) {
   const double h = dt_now - now.time;
   impacts.swept_pairs.clear();
@@ -234,7 +239,8 @@ void World::Impl::concern_what_touches(const Instant& now) {
   sort_swept_pairs();
 }
 
-// Nothing has been found on its way: it goes freely.
+// Advances an affected body to the impact, with its free rotation if no swept pair was found for
+// it.
 void World::Impl::bring_concerned(std::uint32_t index, const Instant& now) {
   if (impacts.times[index] != now.time && !is_still(bodies[index]) && !impacts.stopped[index]) {
     const double h = now.since(std::exchange(impacts.times[index], now.time));
@@ -293,8 +299,8 @@ void World::Impl::solve_impact(const Instant& previous, const Instant& now) {
 
 // --- the stage -----------------------------------------------------------------------------------
 
-// Too many impacts: whoever would still meet stands still for the rest of the step. Each round
-// holds at least one more body, so this ends.
+// The limit of impacts is reached: bodies that would still collide stop for the rest of the step.
+// Each iteration stops at least one more body, so the loop ends.
 void World::Impl::stop_what_would_hit(const Instant& now) {
   status.impact_limit = true;
   const double h = status.time_lost = dt_now - now.time;
@@ -316,7 +322,7 @@ void World::Impl::stop_what_would_hit(const Instant& now) {
     }
   }
   take_back_forces(h);
-  // Sensors on what is left of the way.
+  // Lists the sensors that are reached within the rest of the step.
   impacts.queue.clear(bodies.size());
   std::erase_if(impacts.swept_pairs, [](const SweptPair& p) { return !p.sensor; });
   queue_swept_pairs(now.time, h);

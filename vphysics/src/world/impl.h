@@ -49,7 +49,7 @@ struct QueryScratch {
   collide::CastScratch cast;
 };
 
-// State of the sub-steps that is kept from step to step.
+// State of the sub-steps that persists between steps.
 struct SubStepState {
   double length = 0.0;  // of the sub-step that the impulses in contact slots and joints are from,
                         // 0: none yet [s]

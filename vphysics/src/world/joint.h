@@ -78,8 +78,8 @@ struct BodyJoint {
   // Angles that count full revolutions: the twist; of a gear, one for each body.
   double rotated[2] = {};
   SE3 start[2];  // of a gear: the bodies' poses at its creation
-  // The first `locked` rows are locked. Of a joint that holds a point, rows 0 to 2 have the point's
-  // impulse along the world's axes.
+  // The first `locked` rows are locked. In a joint with a locked point, rows 0 to 2 have the
+  // point's impulse along the world's axes.
   BodyJointRow rows[solve::kJointRows];
   int count = 0, locked = 0;
   double rows_sub_step = 0.0;  // the sub-step length of the rows; 0: the rows must be laid out

@@ -1,14 +1,14 @@
 // Contacts between links and sub-stepped bodies, in the sub-steps.
 //
-// An articulation that supports a body takes part in the sub-steps, together with all that it
-// touches. In each sub-step its forces are integrated; its joint rows and contacts are solved in
+// An articulation that supports a body takes part in the sub-steps, together with everything that
+// it touches. In each sub-step its forces are integrated; its joint rows and contacts are solved in
 // iterations, alternating with the contact blocks and the joints of bodies; and it moves. It
 // responds to impulses through its own joints (solve/link_side.h), so no joint separates under a
-// load. Afterwards it returns to its pose at the start of the step. The stage of impacts then moves
+// load. Afterwards it returns to its pose at the start of the step. The impact stage then moves
 // it, with everything else, along its mean velocities, so that swept bodies collide with it on its
 // path.
 //
-// An articulation without such a body nearby is left to the stage of impacts, with its contacts.
+// An articulation without such a body nearby is left to the impact stage, with its contacts.
 #include <algorithm>
 
 #include "solve/row_vector.h"
@@ -90,7 +90,7 @@ void World::Impl::find_link_contacts(double dt, int sub_steps) {
       add_contact(pair, found.manifold, part++, false, true, impacts.link_contacts);
     }
   }
-  // The remembered impulses are those of a whole step.
+  // The stored impulses are those of a whole step.
   const double fraction = 1.0 / sub_steps;
   for (solve::ContactConstraint& c : impacts.link_contacts) {
     c.rolling_impulse *= fraction;

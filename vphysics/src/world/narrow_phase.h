@@ -19,11 +19,11 @@ struct NarrowPhaseResult {
   bool by_part;  // of a compound: each part has its own margin
 };
 
-// Contacts that are looked at before any of them is taken over: with their colliders and bodies
-// they fit the second-level cache.
+// Contacts that are tested in one batch, before their results are taken over: with their colliders
+// and bodies they fit into the second-level cache.
 inline constexpr std::size_t kNarrowPhaseBatch = 512;
 
-// Kept for its capacity.
+// Keeps its capacity between steps.
 struct NarrowPhaseScratch {
   std::vector<collide::ProxyPair> new_pairs;
   std::vector<std::uint32_t> dirty,
@@ -34,7 +34,7 @@ struct NarrowPhaseScratch {
   // Of a contact with parts (part_contacts.cpp).
   std::vector<collide::KnownPart> known_parts;
   std::vector<std::uint32_t> old_parts, claimed_parts;
-  // Shared by all shape tests: the stage of impacts and queries too.
+  // Used by all shape tests, also those of the impact stage and of queries.
   std::vector<collide::SubManifold> manifolds;
   collide::ManifoldScratch manifold_scratch;
   collide::PartsScratch parts_scratch;

@@ -182,8 +182,8 @@ void World::Impl::add_swept_pairs(std::uint32_t index, std::uint32_t other, doub
   }
 }
 
-// Two continuous bodies meet once, in the order of their slots, but for sensors: those that are not
-// swept are found by what the other sweeps.
+// Two continuous bodies are paired once, in the order of their slots. Exception: a sensor that is
+// not swept is paired with the swept colliders of the other body.
 void World::Impl::add_swept_pairs_of(const collide::IndexPair& p, double h) {
   if (disables_collision(bodies, joints, p.a, p.b)) return;
   const bool a = impacts.swept_body_pairs.sweeps(p.a), b = impacts.swept_body_pairs.sweeps(p.b);
@@ -191,7 +191,7 @@ void World::Impl::add_swept_pairs_of(const collide::IndexPair& p, double h) {
   if (b && (!a || bodies[p.a].has_sensor)) add_swept_pairs(p.b, p.a, h);
 }
 
-// Which touch: of all bodies, which are at one time.
+// Finds the swept pairs that touch. Precondition: all bodies are at the same time.
 void World::Impl::find_touching_pairs(double h) {
   impacts.swept_pairs.clear();
   const auto bounds_of_body = [this](std::uint32_t i) -> const collide::Bounds& {
@@ -206,11 +206,9 @@ void World::Impl::find_touching_pairs(double h) {
   sort_swept_pairs();
 }
 
-// That can meet within h: of all bodies, which are at one time.
+// Finds the swept pairs that can collide within h. Precondition: all bodies are at the same time.
 void World::Impl::find_swept_pairs(double h) {
   impacts.swept_pairs.clear();
-  // Two continuous bodies are paired once, in the order of their slots. Exception: a sensor that is
-  // not swept is paired with the swept colliders of the other body.
   for (const collide::IndexPair& p :
        impacts.swept_body_pairs.find(body_motions(), impact_bodies(), desc.contact_slop, h)) {
     if (overlap(impacts.bounds[p.a], impacts.bounds[p.b])) add_swept_pairs_of(p, h);

@@ -3,7 +3,7 @@
 //
 // Between steps a collider may have left the enlarged AABB of its proxy. Only a step may change
 // that AABB, since it is state. Queries test such strays one by one. There are few, since a step
-// gives moving bodies AABBs that hold for the next step.
+// gives moving bodies AABBs that are valid for the next step.
 //
 // The result for each collider is exact and depends on nothing else. The trees only exclude
 // colliders that cannot be part of the result. So the result does not depend on the shape of the

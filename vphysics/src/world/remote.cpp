@@ -1,8 +1,8 @@
 // Remote articulations: nothing can collide with them, so a step skips their links.
 //
 // A step advances the coordinates of a remote articulation. Poses, velocities and AABBs of its
-// links are updated when a body comes close or somebody requests them (follow()). Each iteration
-// finds the colliding pairs from the AABBs anew. So remoteness changes the cost of a step, but not
+// links are updated when a body comes close or when they are requested (follow()). Each iteration
+// finds the colliding pairs again from the AABBs. So remoteness changes the cost of a step, but not
 // its results.
 //
 // Only for articulations whose links all translate along and rotate about one line, and whose
@@ -84,7 +84,7 @@ void World::Impl::collide_remote(double h) {
   }
 }
 
-// Called at the start of the stage of impacts.
+// Called at the start of the impact stage.
 void World::Impl::make_remote() {
   for (Articulation& art : articulations) {
     if (art.remote || !art.can_be_remote || art.sub_stepped) continue;

@@ -3,7 +3,7 @@
 // in blocks (joint_steps.h).
 //
 // Such a joint is solved where the contacts of its bodies would be: in the sub-steps, if a link
-// moves together with a body that is in them; else at each instant of the stage of impacts. There,
+// moves together with a body that is in them; else at each instant of the impact stage. There,
 // velocities satisfy hard constraints exactly along the chord of the step's motion, so that a
 // swinging body loses no energy. A position correction removes the remaining error. In sub-steps
 // the constraints are solved as in blocks.

@@ -132,8 +132,8 @@ void World::Impl::rescale_impacts(double dt) {
 void World::Impl::begin_impact_stage(double dt) {
   rescale_impacts(dt);
   list_row_joints();
-  // More than a pair has, unless many parts of a compound touch at once. So a world's first contact
-  // allocates nothing.
+  // More manifolds than a pair has, unless many parts of a compound touch at once. So a world's
+  // first contact allocates nothing.
   constexpr std::size_t kManifoldsOfPair = 64;
   const std::size_t n = bodies.size(),
                     capacity = 64 + 2 * colliders.size() + events.destroyed.size();
@@ -176,7 +176,7 @@ void World::Impl::begin_impact_stage(double dt) {
   }
 }
 
-// For the bodies that the stage of impacts moves.
+// For the bodies that the impact stage moves.
 void World::Impl::integrate_forces(double dt) {
   for (const std::uint32_t i : impact_bodies()) {
     Body& body = bodies[i];
@@ -236,8 +236,8 @@ solve::SolverBody World::Impl::solver_body(std::uint32_t index, const Vec3& at) 
   return s;
 }
 
-// Of links and bodies that nothing moves, only those in contact or with row joints: there may be
-// many, and few of them are.
+// Updates the bodies of `of` except links. Of links and other bodies, updates only those in contact
+// or with row joints, which are few.
 void World::Impl::refresh_solver_bodies(std::span<const std::uint32_t> of) {
   for (const std::uint32_t i : of) {
     const Body& body = bodies[i];
@@ -307,7 +307,7 @@ Vec3 mean_rate(const Body& body, const Mat3& next) {
 
 }  // namespace
 
-// freely: not at the constant twist, but as a tumbling body without contact.
+// freely: as a tumbling body without contact, instead of at the constant twist.
 void World::Impl::advance_body(Body& body, const collide::Motion& m, double h, bool freely,
                                const Vec3& more_w) {
   const bool tumbles = body.tumbles();
@@ -325,7 +325,7 @@ void World::Impl::advance_body(Body& body, const collide::Motion& m, double h, b
   place(body, m.x + h * m.v, next);
 }
 
-// Without the stage of impacts: advances all bodies to the end of the step at once.
+// Without the impact stage: advances all bodies to the end of the step at once.
 void World::Impl::advance_all(double dt) {
   const BodyRows rows = rows_in(dt);
   workers.in_parallel(
@@ -398,7 +398,7 @@ void World::Impl::take_back_forces(double h) {
   }
 }
 
-// The stage of impacts is for continuous bodies and for contacts of links.
+// The impact stage is for continuous bodies and for contacts of links.
 bool World::Impl::has_impact_stage() const {
   return articulations.size() > free_articulations.size() || lists.some_continuous;
 }

@@ -107,8 +107,8 @@ template <class T>
 Expected<void> step_semi_implicit(const ModelT<base_t<T>>& model, IntegratorDataT<T>& data,
                                   std::span<T> q, std::span<T> v,
                                   const std::type_identity_t<StepT<T>>& step);
-// For all scalars of dynamics.h. Fails also if a ball or free joint makes a full turn within the
-// step.
+// For all scalars of dynamics.h. Fails also if a ball or free joint makes a full revolution within
+// the step.
 template <class T>
 Expected<void> step_rk4(const ModelT<base_t<T>>& model, IntegratorDataT<T>& data, std::span<T> q,
                         std::span<T> v, const std::type_identity_t<StepT<T>>& step);
