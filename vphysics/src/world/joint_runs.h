@@ -17,7 +17,7 @@ template <class BLOCK>
 struct JointRun {
   solve::JointForm form;
   std::uint32_t lanes = 0;           // used
-  bool alone = false;                // one joint in each block: of the last colour
+  bool alone = false;                // the last colour: one joint in each block
   solve::LargeVector<BLOCK> blocks;  // keeps its capacity between steps
 };
 

@@ -26,14 +26,14 @@ struct JointContext {
   double speed_unit;
 };
 
-// Kept for its capacity.
+// Keeps its capacity between steps.
 struct JointScratch {
   JointRuns runs;
   std::vector<std::uint32_t> active, joined_bodies;
   solve::LargeVector<solve::Gone> displacements;  // by row, for bodies with joints
 };
 
-// Of the sub-steps of a step. Kept for its capacity.
+// Data of the sub-steps of a step. Keeps its capacity between steps.
 struct SubStepScratch {
   BlockBits blocks;
   solve::LargeVector<solve::VelocityChange>

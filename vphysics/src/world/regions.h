@@ -28,8 +28,8 @@ class Regions {
   };
   State state;
 
-  // Divides the bodies into regions of at most max_bodies, if it is time. False: nothing has
-  // changed.
+  // Divides the bodies into regions of at most max_bodies, if the next division is due. False:
+  // nothing has changed.
   bool divide(Bodies& bodies, std::span<const std::uint32_t> awake_bodies, std::size_t max_bodies,
               double dt);
   // Bodies that divide() has moved to another region, ascending.

@@ -184,8 +184,8 @@ void World::Impl::take_sub_steps(double dt, int n) {
   SubStepState& state = sub_step_state;
   const double before = std::exchange(state.length, h);
   if (before > h) rescale_impulses(contact_store.graph, joints, h / before);
-  // A penetration from longer sub-steps must not be pushed out abruptly by shorter ones: the bias
-  // velocity approaches that of the shorter ones gradually.
+  // Shorter sub-steps must not abruptly correct a penetration from longer ones: the bias velocity
+  // approaches that of the shorter ones gradually.
   state.last_step_length =
       std::max(static_cast<double>(h), state.last_step_length - kBiasStepRate * dt);
   const double fastest =
