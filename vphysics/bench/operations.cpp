@@ -1,5 +1,5 @@
-// lie-operations: multiplications and additions of the Lie groups' operators beside the paper's
-// Table 3, as rows of a file: subject, engine, metric, value, unit.
+// lie-operations: multiplications and additions of the Lie groups' operators, compared with the
+// paper's Table 3. CSV rows: subject, engine, metric, value, unit.
 #include <cstdio>
 
 #include "operation_counts.h"

@@ -1,4 +1,5 @@
-// What a foosball tick costs: 8 driven rods of 1-2-5-3 men of 4 boxes, 10 walls, a field, one ball.
+// The cost of a foosball tick: 8 driven rods of 1-2-5-3 men of 4 boxes, 10 walls, a field, one
+// ball.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -27,7 +28,7 @@ void add_box(World& world, BodyId body, const Vec3& centre, const Vec3& half,
   (void)world.add_collider(body, desc);
 }
 
-// As the game has it: a slide that has no mass of its own, and the rod that turns on it.
+// As in the game: a slide without mass, and the rod that rotates on it.
 ArticulationDesc rod(double x) {
   ModelBuilder builder;
   LinkSpec slide;
@@ -84,7 +85,7 @@ Table make_table() {
   return table;
 }
 
-// Rods swing and slide at random, so that the ball keeps being hit.
+// The rods swing and slide at random, so that they hit the ball repeatedly.
 void drive(Table& table, test::Random& random) {
   for (const ArticulationId rod : table.rods) {
     (void)table.world.set_drive(rod, 0, 0, {random.uniform(-0.06, 0.06), 0, 3e4, 400, 300});
@@ -103,7 +104,7 @@ void FoosballTick(benchmark::State& state) {
     const auto status = table.world.step(0.001);
     impacts += table.world.counters().impacts;
     limited += status->impact_limit;
-    // A ball that has left the table is put back, as the game does.
+    // Puts a ball that has left the table back, as the game does.
     if (++ticks % 2000 == 0) (void)table.world.restore(start);
   }
   state.counters["impacts"] = static_cast<double>(impacts) / static_cast<double>(ticks);

@@ -1,5 +1,5 @@
-// parse_mesh on bytes from outside, the first of which names the format. What is accepted makes
-// shapes, or is refused with a sentence.
+// parse_mesh on untrusted bytes. The first byte selects the format. An error has a message. Shapes
+// are built from every accepted mesh.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>

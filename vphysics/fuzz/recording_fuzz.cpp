@@ -1,6 +1,6 @@
-// Replay of a stranger's recording. The first input byte says whether the checks are repaired, so
-// that the fuzzer also reaches what lies behind them. What is accepted must step, and leave a world
-// that restores its own snapshot.
+// Replays an untrusted recording. The first input byte says whether to repair the checksums, so
+// that the fuzzer also reaches the code after them. A world from an accepted recording must step
+// and restore its own snapshot.
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kU32Size = sizeof(std::uint32_t);
 
-// A recording of each kind of call.
+// A recording with each kind of call.
 std::vector<std::byte> good_recording() {
   using namespace vp;
   const auto recorder = std::make_shared<Recorder>();
@@ -89,7 +89,7 @@ void repair_check(std::vector<std::byte>& bytes, std::size_t begin, std::size_t 
   std::memcpy(&bytes[end], &check, kU32Size);
 }
 
-// header: where that of the good recording ends.
+// header: the end of the valid recording's header.
 void repair_checks(std::vector<std::byte>& bytes, std::size_t header) {
   if (bytes.size() < header + kU32Size) return;
   repair_check(bytes, 0, header);
@@ -118,7 +118,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static const std::vector<std::byte> good = good_recording();
   static const std::size_t header = header_of(good);
   if (size < 3) return 0;
-  // The input is laid over a good recording, from an offset that it names.
+  // The input overwrites a valid recording from an offset that it contains.
   std::vector<std::byte> bytes;
   if (data[0] & 2) bytes = good;
   const std::size_t offset = std::min<std::size_t>(bytes.size(), data[1] + 256u * data[2]);

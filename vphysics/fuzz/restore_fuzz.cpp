@@ -1,5 +1,5 @@
-// World::restore on a stranger's bytes. The first input byte says whether the checksum is repaired,
-// so that the fuzzer also reaches what lies behind it. What is accepted must step.
+// World::restore on untrusted bytes. The first input byte says whether to repair the checksum, so
+// that the fuzzer also reaches the code after it. A restored world must step.
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
@@ -25,7 +25,7 @@ vp::World make_world() {
   ball.continuous = true;
   collider.shape = Sphere{0.1};
   (void)world.add_collider(world.create_body(ball).value(), collider);
-  // A stool on a mesh, and the ball on both.
+  // A stool on a mesh. The ball touches both.
   const Vec3 corners[] = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
   const TriangleMesh::Triangle triangles[] = {{0, 1, 2}, {0, 2, 3}};
   BodyDesc mesh = fixed;
@@ -39,7 +39,7 @@ vp::World make_world() {
   collider.shape = Compound::of(parts).value();
   stool.inertia = solid_inertia(collider.shape, 100.0);
   (void)world.add_collider(world.create_body(stool).value(), collider);
-  // A floating link and one that hangs on it.
+  // A floating link with a child link.
   ModelBuilder builder;
   LinkSpec link;
   link.joint = FreeJoint{};
@@ -66,7 +66,7 @@ void repair_checksum(std::vector<std::byte>& bytes) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size < 2) return 0;
   vp::World world = make_world();
-  // The input is laid over a good snapshot, word by word from an offset that it names.
+  // The input overwrites a valid snapshot, u64 by u64, from an offset that it contains.
   std::vector<std::byte> bytes;
   if (data[0] & 2) world.snapshot(bytes);
   const std::size_t offset = std::min<std::size_t>(bytes.size(), 8u * data[1]);

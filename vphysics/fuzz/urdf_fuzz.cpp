@@ -1,5 +1,5 @@
-// parse_urdf on a stranger's text. What is refused has a line; what is accepted has numbers that
-// the algorithms can work with, and comes into a world, or is refused by it.
+// parse_urdf on untrusted text. An error names a line. An accepted model has numbers that are valid
+// for the algorithms; the world accepts or rejects it.
 #include <cstdint>
 #include <cstdlib>
 #include <string_view>

@@ -1,8 +1,9 @@
-// drift-bench: 10^6 steps of 1 ms of a tumbling body and of a ten-link pendulum, by each integrator
-// of each engine; how far energy and angular momentum are from where they began.
+// drift-bench: 10^6 steps of 1 ms of a tumbling body and of a ten-link pendulum, with each
+// integrator of each engine. Measures the errors of energy and angular momentum relative to the
+// start.
 //
-// Errors are looked at in windows of time, 20 a decade, up to 40 times each; a window's figure is
-// the largest of them, so that a curve shows the size of an error that swings.
+// Errors are sampled in windows of time, 20 a decade, up to 40 times in each. The value of a window
+// is the maximum, so that a curve shows the amplitude of an oscillating error.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -76,7 +77,7 @@ Curve watch(const System& system, Mover& mover, long steps) {
   Watcher watcher(system);
   Curve curve{system.name, mover.name, {}, 0.0};
   long done = 0;
-  std::clock_t spent = 0;  // of the processor: others may run beside
+  std::clock_t spent = 0;  // processor time: other processes may run
   for (const long end : window_ends(steps)) {
     Point point{end, {}};
     while (done < end && !mover.failed) {
@@ -99,7 +100,7 @@ Curve watch(const System& system, Mover& mover, long steps) {
   return curve;
 }
 
-// The largest error until a time.
+// The maximum error until a time.
 Errors until(const Curve& curve, long steps) {
   Errors worst;
   for (const Point& p : curve.points) {

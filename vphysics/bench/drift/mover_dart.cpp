@@ -1,5 +1,5 @@
-// DART's world, which steps by semi-implicit Euler and nothing else: its RK4Integrator is abstract,
-// left from a time when worlds had a choice.
+// DART's world. It supports only semi-implicit Euler: its RK4Integrator is abstract, a remnant of
+// versions in which the integrator could be selected.
 #include <dart/dynamics/BodyNode.hpp>
 #include <dart/dynamics/FreeJoint.hpp>
 #include <dart/dynamics/RevoluteJoint.hpp>
@@ -38,7 +38,8 @@ dd::SkeletonPtr build(const System& system) {
       last = skeleton->createJointAndBodyNodePair<dd::FreeJoint>(last, {}, body).second;
     }
   }
-  // At zero, and a free joint's velocities are (angular, linear) in the link's frame, as ours.
+  // At zero coordinates. A free joint's velocities are (angular, linear) in the link's frame, as in
+  // our convention.
   for (std::size_t i = 0; i < system.start.v.size(); ++i) {
     skeleton->setVelocity(i, system.start.v[i]);
   }

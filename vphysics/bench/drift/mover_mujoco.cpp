@@ -1,4 +1,4 @@
-// MuJoCo's three integrators, the system given as MJCF without geometry.
+// MuJoCo's three integrators. The system is MJCF without geometry.
 #include <fmt/format.h>
 #include <mujoco/mujoco.h>
 
@@ -15,7 +15,7 @@ std::string numbers(const Vec3& a) {
   return fmt::format("{:.17g} {:.17g} {:.17g}", a.x, a.y, a.z);
 }
 
-// Both systems are chains, with principal axes along their links'.
+// Both systems are chains, with principal axes along the links' axes.
 std::string mjcf(const System& system) {
   std::string xml = fmt::format(
       "<mujoco><compiler inertiafromgeom=\"false\" angle=\"radian\"/>"
@@ -62,10 +62,10 @@ class Mujoco final : public Mover {
         data_(mj_makeData(model_.get()), mj_deleteData) {
     name = label;
     model_->opt.integrator = integrator;
-    // Nothing touches anything, and no joint has a limit.
+    // There are no contacts and no joint limits.
     model_->opt.disableflags |= mjDSBL_CONSTRAINT;
     const State& s = system.start;
-    if (!free_) return;  // at zero, at rest, as MuJoCo begins
+    if (!free_) return;  // at zero and at rest, MuJoCo's initial state
     const double q[7] = {s.q[0], s.q[1], s.q[2], s.q[6], s.q[3], s.q[4], s.q[5]};
     const double v[6] = {s.v[3], s.v[4], s.v[5], s.v[0], s.v[1], s.v[2]};
     std::copy(q, q + 7, data_->qpos);
@@ -79,7 +79,7 @@ class Mujoco final : public Mover {
   State state() const override {
     const mjtNum *q = data_->qpos, *v = data_->qvel;
     if (!free_) return {{q, q + model_->nq}, {v, v + model_->nv}};
-    // Its linear velocity is in the world's axes; the systems begin and stay at rest there.
+    // Its linear velocity is in world axes; the systems are and remain at rest there.
     return {{q[0], q[1], q[2], q[4], q[5], q[6], q[3]}, {v[3], v[4], v[5], v[0], v[1], v[2]}};
   }
 
@@ -92,7 +92,8 @@ class Mujoco final : public Mover {
 }  // namespace
 
 std::vector<std::unique_ptr<Mover>> mujoco_movers(const System& system) {
-  mju_user_warning = [](const char*) {};  // else a file in the working directory; counted instead
+  // By default warnings go to a file in the working directory. They are counted instead.
+  mju_user_warning = [](const char*) {};
   std::vector<std::unique_ptr<Mover>> awake_bodies;
   awake_bodies.push_back(std::make_unique<Mujoco>(system, mjINT_EULER, "MuJoCo: Euler"));
   awake_bodies.push_back(std::make_unique<Mujoco>(system, mjINT_IMPLICIT, "MuJoCo: implicit"));

@@ -5,7 +5,7 @@
 namespace vp::bench {
 namespace {
 
-// What is built here is in order by construction.
+// Models built here are valid by construction.
 Model must_build(const ModelBuilder& builder) {
   return std::move(builder.build()).value();
 }
@@ -25,7 +25,7 @@ System tumbling_body() {
 System ten_link_pendulum() {
   constexpr int kLinks = 10;
   constexpr double kLength = 0.2, kMass = 1.0, kGravity = 9.81;
-  // A thin rod along x, with a hinge about y at its beginning; a little thickness about itself.
+  // A thin rod along x, with a hinge about y at its first end and a small inertia about x.
   const double across = kMass * kLength * kLength / 12, along = 1e-4;
   const Inertia rod = Inertia(kMass, Vec3{along, across, across}).about({-0.5 * kLength, 0, 0});
   ModelBuilder builder;
@@ -40,7 +40,7 @@ System ten_link_pendulum() {
   }
   Model model = must_build(builder);
   State start{model.zero_coordinates(), std::vector<double>(kLinks)};
-  // What it can fall by: from horizontal to hanging.
+  // Its potential energy above the lowest position: from horizontal to hanging.
   const double fall = kLinks * kMass * kGravity * 0.5 * kLinks * kLength;
   return {"pendulum", std::move(model), std::move(start), {0, 0, -kGravity}, fall, 0.0};
 }

@@ -1,7 +1,7 @@
-// The systems whose energy and momentum are watched, and what an engine must do with them.
+// The systems whose energy and momentum are measured, and the interface of an engine.
 //
-// Whatever moves a system tells its state as Virtual Physics has it, so that energy and momentum
-// are computed by one code for all of them.
+// Every engine reports its state in the convention of Virtual Physics, so that the same code
+// computes energy and momentum for all of them.
 #pragma once
 
 #include <memory>
@@ -23,24 +23,24 @@ struct System {
   Model model;
   State start;
   Vec3 gravity;
-  double energy_scale;    // [J] by which errors of energy are divided
-  double momentum_scale;  // [N m s] of angular momentum; 0: it is not kept
+  double energy_scale;    // [J]; errors of energy are divided by it
+  double momentum_scale;  // [N m s] the same for angular momentum; 0: not conserved
 };
 
-// A body with moments of inertia 0.2, 0.35 and 0.5 kg m^2, free, without gravity, turning at 3
-// rad/s mostly about the middle axis, hence tumbling.
+// A free body with moments of inertia 0.2, 0.35 and 0.5 kg m^2, without gravity. It rotates at 3
+// rad/s mostly about the intermediate axis, so it tumbles.
 System tumbling_body();
-// Ten rods of 0.2 m and 1 kg on parallel hinges, let go from a horizontal line. Chaotic: of its
-// motion only the energy can be compared.
+// Ten rods of 0.2 m and 1 kg on parallel hinges, released from a horizontal line. The motion is
+// chaotic, so only the energy can be compared.
 System ten_link_pendulum();
 
-// One engine and one of its integrators with a system.
+// A system simulated by one integrator of one engine.
 class Mover {
  public:
   virtual ~Mover() = default;
   virtual void advance(int steps) = 0;  // of kStep
   virtual State state() const = 0;
-  bool failed = false;  // the integrator gave up: no more is to be had of it
+  bool failed = false;  // the integrator failed and cannot continue
 
   std::string name;  // "engine: integrator"
 };

@@ -24,7 +24,7 @@ struct Ended {
   rusage used;
 };
 
-// Runs a program and waits for it; its output goes nowhere, its errors to ours.
+// Runs a program and waits for it. Discards its output; its errors go to our standard error.
 tl::expected<Ended, std::string> run(const std::vector<std::string>& words) {
   std::vector<char*> arguments;
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
@@ -39,14 +39,14 @@ tl::expected<Ended, std::string> run(const std::vector<std::string>& words) {
   if (failed != 0)
     return tl::make_unexpected(words[0] + " could not be started: " + std::strerror(failed));
   Ended ended{};
-  // What the child used, with its own children: a compiler's driver does little itself.
+  // The resources used by the child and its own children: a compiler's driver does little itself.
   if (wait4(child, &ended.status, 0, &ended.used) != child) {
     return tl::make_unexpected(words[0] + " could not be waited for");
   }
   return ended;
 }
 
-// A folder that is gone afterwards.
+// A temporary folder, removed by the destructor.
 class Scratch {
  public:
   Scratch() {
@@ -71,7 +71,7 @@ tl::expected<CompileCost, std::string> compile_cost() {
   const Scratch scratch;
   if (scratch.path().empty()) return tl::make_unexpected("no folder for the compiler's output");
   const std::string program = scratch.path() + "/user_program";
-  // What else the machine does only adds: the fastest of three.
+  // Other load on the machine only adds time: the fastest of three counts.
   CompileCost cost{std::numeric_limits<double>::infinity(), 0.0};
   for (int i = 0; i < 3; ++i) {
     const auto begun = std::chrono::steady_clock::now();

@@ -1,4 +1,4 @@
-// What it costs to compile a program that uses the library.
+// The cost of compiling a program that uses the library.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@ namespace vp::bench {
 
 struct CompileCost {
   double seconds;    // to compile and link
-  double megabytes;  // the largest of the compiler's processes, at most
+  double megabytes;  // peak memory of the largest of the compiler's processes
 };
 // Compiles user_program.cpp with the compiler, the headers and the library of this build, and runs
 // it. The error is a sentence.

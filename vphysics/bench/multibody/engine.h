@@ -1,4 +1,4 @@
-// What the comparison asks of an engine, ours or a peer.
+// The interface of an engine in the comparison, ours or a peer.
 #pragma once
 
 #include <memory>
@@ -18,21 +18,22 @@ const char* name_of(Metric metric);
 
 inline constexpr Vec3 kGravity{0, 0, -9.81};
 
-// A model with its states, in the engine's own terms: what is converted is converted when it is
-// made, so that a call costs what it costs a user of that engine.
+// A model with its states, in the engine's own format. All data are converted at construction, so
+// that a call costs as much as for a user of that engine.
 class Engine {
  public:
   virtual ~Engine() = default;
-  // Why it has no such call; empty if it has.
+  // Why the engine has no such call; empty if it has one.
   virtual std::string lacks(Metric) const { return {}; }
-  // Hands the engine the state and has it computed; all that is timed. Nothing stays from one call
-  // to the next. Returns some number of the result, so that nobody can leave the call out.
+  // Sets the state and computes the metric; only this is timed. No result is cached between calls.
+  // Returns a number of the result, so that the compiler cannot remove the call.
   virtual double call(Metric metric, std::size_t state) = 0;
-  // The same, and all of the result in our terms: accelerations, forces, or the matrix by rows.
+  // The same. Returns the complete result in our convention: accelerations, forces, or the matrix
+  // by rows.
   virtual std::vector<double> result(Metric metric, std::size_t state) = 0;
 };
 
-// The engine, or why it cannot have this model.
+// The engine, or why it does not support this model.
 using MadeEngine = tl::expected<std::unique_ptr<Engine>, std::string>;
 MadeEngine make_ours(const BenchModel& model, const std::vector<State>& states);
 MadeEngine make_mujoco(const BenchModel& model, const std::vector<State>& states);
@@ -55,27 +56,28 @@ inline constexpr EngineKind kEngines[] = {
     {"simbody", "Simbody", make_simbody},
 };
 
-// What is measured of packs of states: forward dynamics, and the derivatives of both dynamics.
+// Measured for packs of states: forward dynamics, and the derivatives of both dynamics.
 enum class BatchCall { forward, forward_derivatives, inverse_derivatives };
 
-// Ours again, over several states at once, or over one where the peers have no such call.
+// Virtual Physics on several states at once, or on one for calls that the peers do not have.
 class Batch {
  public:
   virtual ~Batch() = default;
   virtual std::string name() const = 0;  // "double4"
   virtual int lanes() const = 0;
-  virtual bool single() const = 0;  // float
+  virtual bool single() const = 0;  // single precision
   virtual std::size_t packs() const = 0;
-  // Of all states of a pack.
+  // Computes all states of a pack.
   virtual double call(BatchCall call, std::size_t pack) = 0;
   // Accelerations, or the derivatives by q, by v, and by a or tau, each by rows.
   virtual std::vector<double> result(BatchCall call, std::size_t pack, int lane) = 0;
 };
-// Lane l of pack p has the state p * lanes + l. The first has one lane of double. Precondition: a
-// multiple of 16 states.
+// Lane l of pack p has the state p * lanes + l. The first batch has one lane of double.
+// Precondition: the number of states is a multiple of 16.
 std::vector<std::unique_ptr<Batch>> make_batches(const BenchModel& model,
                                                  const std::vector<State>& states);
-// Their matrices fill the caches, and of longer chains the memory.
+// Derivatives are measured up to this many velocities. The matrices of longer chains exceed the
+// caches, and finally the memory.
 inline constexpr int kMostVelocitiesDifferentiated = 128;
 
 }  // namespace vp::bench

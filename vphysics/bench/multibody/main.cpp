@@ -1,7 +1,6 @@
-// multibody-bench: forward and inverse dynamics and the mass matrix of one list of models, in
-// Virtual Physics and in its peers, which must agree before they are timed; and the derivatives in
-// Virtual Physics alone. Prints tables and
-// writes the rows that ./bench keeps.
+// multibody-bench: times forward and inverse dynamics and the mass matrix of a list of models in
+// Virtual Physics and in its peers, whose results must agree first. Times the derivatives in
+// Virtual Physics alone. Prints tables and writes the CSV rows that ./bench stores.
 #include <fmt/format.h>
 #include <sched.h>
 
@@ -29,7 +28,7 @@ std::vector<std::string> engine_options() {
   return options;
 }
 
-// One core for all of them: no engine is moved to another one while it is timed.
+// Pins the process to one core: no engine is moved to another core while it is timed.
 void stay_on_this_core() {
   const int core = sched_getcpu();
   if (core < 0) return;
@@ -39,7 +38,7 @@ void stay_on_this_core() {
   sched_setaffinity(0, sizeof(cores), &cores);
 }
 
-// Those of our own figures that were refused.
+// Our own results that were rejected.
 std::vector<std::string> doubts(const std::vector<Figure>& figures) {
   std::vector<std::string> out;
   for (const Figure& f : figures) {

@@ -10,12 +10,13 @@ namespace vp::bench {
 namespace {
 
 constexpr std::uint64_t kSeed = 2024;
-// A batch of calls is long beside the clock's own cost and short beside a time slice.
+// A batch of calls is long compared with the cost of reading the clock, and short compared with a
+// time slice.
 constexpr double kBatchSeconds = 200e-6;
-// Who takes longer for one call is not waited for.
+// An engine that takes longer than this for one call is not timed [s].
 constexpr double kLongestCall = 0.5;
 constexpr std::size_t kFewestRounds = 5;
-// Agreement is looked at for all states, or as many as there is time for, but at least two.
+// Agreement is checked for all states, or as many as fit into this time, but at least two.
 constexpr double kComparingSeconds = 1.0;
 
 // Enough to be random, few enough to stay in the cache with the engine; a multiple of 16 lanes.
@@ -31,12 +32,12 @@ double now() {
 struct Runner {
   std::size_t figure;
   std::function<double(std::size_t)> call;
-  std::size_t inputs;  // of different ones
+  std::size_t inputs;  // number of different states or packs
   int states_a_call;
   std::size_t calls = 1, next = 0;
 };
 
-// Results end here, so that they are all needed.
+// Receives all results, so that the compiler cannot remove their computation.
 volatile double sink;
 
 double time_of_calls(Runner& runner, std::size_t calls) {
@@ -51,8 +52,9 @@ double time_of_calls(Runner& runner, std::size_t calls) {
   return took;
 }
 
-// One batch of calls of each in turn, again and again. The first call of a batch is not timed: of a
-// long chain, which is one call a batch, it would be the others' traces in the caches.
+// Runs one batch of calls of each runner in turn, repeatedly. The first call of a batch is not
+// timed: it finds the caches as the other engines have left them, and a long chain has one call per
+// batch.
 void round_robin(std::vector<Runner>& runners, double seconds, std::vector<Figure>& figures) {
   for (auto it = runners.begin(); it != runners.end();) {
     double once = time_of_calls(*it, 1);  // warms up
@@ -76,7 +78,7 @@ void round_robin(std::vector<Runner>& runners, double seconds, std::vector<Figur
   }
 }
 
-// The largest difference, relative to the largest number.
+// The maximum difference, relative to the largest number of b.
 double difference(const std::vector<double>& a, const std::vector<double>& b) {
   if (a.size() != b.size()) return std::numeric_limits<double>::infinity();
   double off = 0.0, scale = 0.0;
@@ -98,7 +100,7 @@ double worst_difference(Engine& engine, Engine& ours, Metric metric, std::size_t
   return worst;
 }
 
-// Of a batch from what each state gives alone.
+// The maximum difference of a batch from the results of its states computed one by one.
 double worst_difference(Batch& batch, BatchCall call,
                         const std::function<std::vector<double>(std::size_t)>& alone) {
   double worst = 0.0;
@@ -112,8 +114,9 @@ double worst_difference(Batch& batch, BatchCall call,
   return worst;
 }
 
-// Of our derivatives by v from quotients of accelerations or forces that the peers confirm, which
-// are quadratic in v: their error is rounding.
+// The maximum difference of our derivatives by v from central difference quotients of accelerations
+// or forces, which the peers confirm. These are quadratic in v, so the quotients have only rounding
+// errors.
 double worst_difference_by_velocity(const BenchModel& model, const std::vector<State>& states,
                                     Batch& one, BatchCall call) {
   constexpr double kStep = 1e-2;
@@ -211,7 +214,7 @@ class ModelRun {
     return ours_ && std::any_of(contenders_.begin(), contenders_.end(), is_ours);
   }
 
-  // What there is to know before anything is timed.
+  // Compares the engine with ours before anything is timed.
   Figure compared(Contender& c, Metric metric) {
     Figure figure{.model = model_.name,
                   .engine = c.kind->name,
@@ -237,7 +240,7 @@ class ModelRun {
                          return f.engine != kEngines[0].name && f.difference && f.missing.empty();
                        });
   }
-  // Then ours is the one that nobody confirms.
+  // If no peer agrees, rejects our results.
   static void refuse_ours(std::vector<Runner>& runners, std::vector<Figure>& figures,
                           std::size_t first) {
     for (std::size_t i = first; i < figures.size(); ++i) {
@@ -246,7 +249,7 @@ class ModelRun {
     std::erase_if(runners, [&](const Runner& r) { return !figures[r.figure].missing.empty(); });
   }
 
-  // A batch's rounds are those of forward dynamics: goals compare them with a peer's.
+  // Batches run in the same iterations as forward dynamics: goals compare them with a peer's times.
   void add_batches(BatchCall call, std::vector<Runner>& runners, std::vector<Figure>& figures) {
     if (batches_.empty()) batches_ = make_batches(model_, states_);
     for (const auto& batch : batches_) {
@@ -313,7 +316,7 @@ double Figure::p10() const {
 
 std::vector<Figure> measure(const Plan& plan, const std::function<void(const std::string&)>& said) {
   std::vector<Figure> figures;
-  // Forward dynamics has three times as many to run, the batches and their derivatives.
+  // Forward dynamics has more to run: the batches and the derivatives.
   constexpr double kForwardShares = 4.0;
   const double share =
       plan.seconds / static_cast<double>(plan.models.size()) / (kForwardShares + 2.0);

@@ -6,8 +6,8 @@
 namespace vp::bench {
 namespace {
 
-// A solid box of that mass and size whose centre is there in the link's frame, turned a little, so
-// that no engine finds a product of inertia that is zero.
+// A solid box of this mass and size, with its centre in the link's frame. It is slightly rotated,
+// so that no product of inertia is zero.
 Inertia box(double mass, const Vec3& size, const Vec3& centre) {
   const double xx = size.x * size.x, yy = size.y * size.y, zz = size.z * size.z;
   const Inertia J(mass, (mass / 12.0) * Vec3{yy + zz, zz + xx, xx + yy});
@@ -22,7 +22,7 @@ class Builder {
     model_.free_base = true;
     return add({.name = "base", .joint = FreeJoint{}, .inertia = J});
   }
-  // Of the joint's frame in its parent's: the position and the turn, as a rotation vector.
+  // The joint's frame in its parent's: position, and rotation as a rotation vector.
   int revolute(std::string name, int parent, const Vec3& axis, const Vec3& position,
                const Inertia& J, const Vec3& turn = {}) {
     return add({.name = std::move(name),
@@ -43,7 +43,7 @@ class Builder {
 
 constexpr Vec3 kX{1, 0, 0}, kY{0, 1, 0}, kZ{0, 0, 1};
 
-// Seven joints about z, each frame turned by a right angle to the last: a table-top arm.
+// Seven joints about z, each frame rotated by a right angle from the previous one: a table-top arm.
 BenchModel arm7() {
   constexpr double kRight = 0.5 * kPi;
   Builder b("arm7");
@@ -131,7 +131,7 @@ BenchModel humanoid() {
   return b.take();
 }
 
-// Links of 10 cm that bend in turn about x and y.
+// Links of 10 cm with axes alternating between x and y.
 BenchModel chain(std::string name, int joints) {
   Builder b(std::move(name));
   for (int i = 0; i < joints; ++i) {

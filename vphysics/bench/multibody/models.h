@@ -9,8 +9,8 @@
 
 namespace vp::bench {
 
-// All joints are revolute, but that of the first link, which may be free; links have no damping and
-// no armature. In depth-first order, parents first: so MuJoCo numbers its bodies.
+// All joints are revolute, except that the first one may be free. Links have no damping and no
+// armature. Depth-first order with parents first, as MuJoCo numbers its bodies.
 struct BenchModel {
   std::string name;
   std::vector<LinkSpec> links;
@@ -19,7 +19,7 @@ struct BenchModel {
   int velocities() const { return static_cast<int>(links.size()) + (free_base ? 5 : 0); }
 };
 
-// In the order in which they are reported.
+// In the order of the reports.
 const std::vector<std::string>& model_names();
 // Precondition: a name of model_names().
 BenchModel make_model(std::string_view name);
@@ -28,7 +28,8 @@ inline const Vec3& axis_of(const LinkSpec& link) {
   return std::get<RevoluteJoint>(link.joint).axis;
 }
 
-// A link's inertia as several engines want it: about the centre of mass, along principal axes.
+// A link's inertia in the form that several engines require: about the centre of mass, along
+// principal axes.
 struct PrincipalInertia {
   double mass;
   Vec3 centre;   // in the link's frame

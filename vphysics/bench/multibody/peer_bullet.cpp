@@ -1,6 +1,6 @@
-// Bullet's btMultiBody, in Debian's build in double precision. Its links' frames are along the
-// principal axes, at the centre of mass; so is a free base's velocity, in the world's axes. It has
-// forward dynamics only (btInverseDynamics, a library of its own, is not in Debian).
+// Bullet's btMultiBody, in Debian's build in double precision. Its links' frames are at the centre
+// of mass, along the principal axes. A free base's velocity is that of its centre of mass, in world
+// axes. It has forward dynamics only (btInverseDynamics, a separate library, is not in Debian).
 #include <BulletDynamics/Featherstone/btMultiBody.h>
 
 #include "engine.h"
@@ -73,7 +73,8 @@ class Bullet final : public Engine {
       body_->addJointTorque(joint, s.tau[i]);
       body_->addLinkForce(joint, body_->getLinkMass(joint) * bullet(kGravity));
     }
-    // No time passes, so it leaves its velocities; the accelerations are in its scratch memory.
+    // With a time step of zero it does not change its velocities. The accelerations are in its
+    // scratch memory.
     body_->computeAccelerationsArticulatedBodyAlgorithmMultiDof(0, numbers_, vectors_, matrices_,
                                                                 false, false, false);
     return accelerations()[5 + joints_];
@@ -101,10 +102,10 @@ class Bullet final : public Engine {
     btQuaternion world_to_base;
     std::vector<double> q, v, tau;  // of the joints
     Mat3 R;
-    Vec3 w, u;  // of the base, in our terms
+    Vec3 w, u;  // velocity of the base, in our convention
   };
 
-  // A free base's numbers at its centre of mass.
+  // Converts a state; a free base's numbers are at its centre of mass.
   Numbers converted(const State& s) const {
     Numbers n;
     const std::ptrdiff_t q = free_ ? 7 : 0, v = free_ ? 6 : 0;
@@ -127,8 +128,8 @@ class Bullet final : public Engine {
     return n;
   }
 
-  // Of the base, angular and linear, in the world's axes, then of the joints: behind as many
-  // numbers as it has joints.
+  // The accelerations of the base, angular and linear, in world axes, then those of the joints.
+  // They follow as many other numbers as there are joints.
   const btScalar* accelerations() const { return &numbers_[body_->getNumDofs()]; }
 
   bool free_;

@@ -1,4 +1,5 @@
-// DART: a Skeleton. Its free joint: rotation vector, position; velocities as ours.
+// DART: a Skeleton. Its free joint has a rotation vector and a position; velocities as in our
+// convention.
 #include <dart/dynamics/BodyNode.hpp>
 #include <dart/dynamics/FreeJoint.hpp>
 #include <dart/dynamics/RevoluteJoint.hpp>

@@ -24,7 +24,7 @@ KDL::JntArray kdl(const std::vector<double>& x) {
   return out;
 }
 
-// A joint's place and axis are seen from its parent's frame.
+// A joint's position and axis are in its parent's frame.
 KDL::Chain build(const BenchModel& model) {
   KDL::Chain chain;
   for (const LinkSpec& link : model.links) {

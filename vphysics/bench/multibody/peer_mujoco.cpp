@@ -1,11 +1,12 @@
-// MuJoCo, without collision, contacts and actuation: only what the three metrics need is called.
+// MuJoCo, without collision, contacts and actuation: calls only the functions that the three
+// metrics need.
 //
 //   forward  mj_kinematics, mj_comPos, mj_crb, mj_factorM, mj_comVel, mj_rne, mj_solveM
 //   inverse  mj_kinematics, mj_comPos, mj_comVel, mj_rne with accelerations
 //   mass     mj_kinematics, mj_comPos, mj_crb, mj_fullM
 //
-// Its free joint: position, quaternion (w, x, y, z); linear velocity in the world's axes, then
-// angular velocity in the body's.
+// Its free joint: position, quaternion (w, x, y, z); linear velocity in world axes, then angular
+// velocity in body axes.
 #include <fmt/format.h>
 #include <mujoco/mujoco.h>
 
@@ -25,7 +26,7 @@ std::string numbers(const Vec3& a) {
   return fmt::format("{:.17g} {:.17g} {:.17g}", a.x, a.y, a.z);
 }
 
-// Turns about the fixed axes x, y, z, in this order.
+// Rotations about the fixed axes x, y, z, in this order.
 Vec3 roll_pitch_yaw(const Mat3& R) {
   return {std::atan2(R.cy.z, R.cz.z), std::asin(std::clamp(-R.cx.z, -1.0, 1.0)),
           std::atan2(R.cx.y, R.cx.x)};
@@ -35,7 +36,7 @@ std::string name_of_link(int link) {
   return link == kWorld ? "world" : "link" + std::to_string(link);
 }
 
-// URDF, which lists its links: MJCF nests them, and its reader refuses more than a hundred.
+// URDF, which lists its links. MJCF nests them, and its reader rejects more than a hundred levels.
 std::string urdf(const BenchModel& model) {
   std::string xml = fmt::format(
       "<robot name=\"{}\"><mujoco><size njmax=\"1\" nconmax=\"1\"/><option "
@@ -70,7 +71,7 @@ void put(mjtNum* out, const Mat3& R) {
   out[0] = q.w, out[1] = q.x, out[2] = q.y, out[3] = q.z;
 }
 
-// The reader finds principal axes to 11 digits; here they are to 16.
+// The reader computes principal axes to 11 digits; these have 16.
 void write_exactly(const BenchModel& model, mjModel& m) {
   for (int i = 0; i < static_cast<int>(model.links.size()); ++i) {
     const LinkSpec& link = model.links[static_cast<std::size_t>(i)];

@@ -13,14 +13,16 @@ constexpr const char* kOurs = "Virtual Physics";
 constexpr const char* kMuJoCo = "MuJoCo";
 constexpr const char* kBatches[] = {"double4", "double8", "float8", "float16"};
 
-// A third of Pinocchio's forward dynamics, half of RBDL's inverse dynamics, 0.7 of Pinocchio's mass
-// matrix, as shares of MuJoCo's, which is there to be measured beside.
+// A third of the time of Pinocchio's forward dynamics, half of RBDL's inverse dynamics, 0.7 of
+// Pinocchio's mass matrix. Expressed as fractions of MuJoCo's times, which are measured in the same
+// run.
 struct ShareGoal {
   const char* metric;
   double bound;
 };
 constexpr ShareGoal kFractions[] = {{"forward", 0.19}, {"inverse", 0.15}, {"mass", 0.28}};
-// Half of Pinocchio's derivatives of forward dynamics, as shares of MuJoCo's forward dynamics.
+// Half of the time of Pinocchio's derivatives of forward dynamics, as fractions of MuJoCo's forward
+// dynamics.
 struct DerivativeGoal {
   const char* model;
   double bound;
@@ -31,7 +33,7 @@ constexpr const char* kDerivativesBy[] = {"double", "double4", "double8", "float
 constexpr const char* kDerivativeCalls[] = {"forward_derivatives", "inverse_derivatives"};
 constexpr ShareGoal kBatchShares[] = {{"double8", 0.045}, {"float16", 0.024}};
 constexpr const char* kShareModels[] = {"arm7", "quadruped", "humanoid", "chain10"};
-// The dearest joint of the three chains is at most 15% dearer than the cheapest.
+// The time per joint of the slowest of the three chains is at most 15% above that of the fastest.
 constexpr const char* kChains[] = {"chain10", "chain100", "chain1000"};
 constexpr double kChainSpread = 1.15;
 constexpr double kCompileSeconds = 5.0, kCompileMegabytes = 500.0;
@@ -61,7 +63,8 @@ void add_chains(const std::vector<Figure>& figures, const std::string& metric,
   for (const char* chain : kChains) {
     const Figure* f = find(figures, chain, kOurs, metric);
     if (!f || f->rounds.empty()) return;
-    // The chains are not timed in the same rounds, and what disturbs only adds.
+    // The chains are not timed in the same iterations. Disturbances only add time, so the low
+    // percentile is compared.
     const double a_joint = f->p10() / make_model(chain).velocities();
     least = least == 0.0 ? a_joint : std::min(least, a_joint);
     most = std::max(most, a_joint);
@@ -71,7 +74,7 @@ void add_chains(const std::vector<Figure>& figures, const std::string& metric,
                  most / least, kChainSpread, "of the cheapest"});
 }
 
-// Four digits, and never an exponent.
+// Four digits, without an exponent.
 std::string us(double value) {
   const int digits = value < 10 ? 3 : value < 100 ? 2 : value < 1000 ? 1 : 0;
   return fmt::format("{:.{}f}", value, digits);
@@ -92,7 +95,7 @@ std::vector<const char*> engine_names(const Plan& plan) {
   return names;
 }
 
-// A table of models and columns; what each cell shows is told by a function.
+// A table of models and columns; cell_of returns the content of a cell.
 template <class Cell>
 std::string grid(const std::string& title, const Plan& plan,
                  const std::vector<const char*>& columns, const Cell& cell_of) {
@@ -107,7 +110,7 @@ std::string grid(const std::string& title, const Plan& plan,
   return out + "\n";
 }
 
-// Why cells are empty: each reason of an engine once, with the models and the metrics.
+// Why cells are empty: each reason of an engine once, with the models.
 std::string reasons(const std::vector<Figure>& figures) {
   struct Reason {
     std::string engine, why;

@@ -26,7 +26,7 @@ SimTK::Body::Rigid rigid(const SimbodySystem::Body& body) {
 
 SimTK::MobilizedBodyIndex attach(SimTK::MobilizedBody& parent, const SimbodySystem::Body& body) {
   if (body.free) return SimTK::MobilizedBody::Free(parent, rigid(body)).getMobilizedBodyIndex();
-  // A Pin turns about z.
+  // A Pin rotates about z.
   SimTK::Rotation to_axis;
   to_axis.setRotationFromOneAxis(SimTK::UnitVec3(three(body.axis)), SimTK::ZAxis);
   const SimTK::Transform turned(to_axis);

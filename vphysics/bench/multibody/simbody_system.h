@@ -1,4 +1,5 @@
-// Simbody behind numbers alone: its headers do not compile as C++20, ours as nothing less.
+// An interface to Simbody that uses plain numbers only: its headers do not compile as C++20, and
+// ours require C++20.
 #pragma once
 
 #include <array>
@@ -8,8 +9,8 @@
 
 namespace vp::bench {
 
-// Simbody's own numbers: a free body's quaternion is (w, x, y, z), before its position, its
-// velocity angular, then linear, in the world's axes.
+// In Simbody's convention: a free body has its quaternion (w, x, y, z), then its position; its
+// velocity is angular, then linear, in world axes.
 class SimbodySystem {
  public:
   struct Body {
@@ -27,12 +28,12 @@ class SimbodySystem {
   void add_state(const std::vector<double>& q, const std::vector<double>& v,
                  const std::vector<double>& tau, const std::vector<double>& a);
 
-  // Each returns a number of its result, which stays until the next call.
+  // Each returns a number of its result. The result is valid until the next call.
   double forward(std::size_t state);
   double inverse(std::size_t state);
   double mass(std::size_t state);
-  std::vector<double> vector() const;  // of forward or inverse
-  std::vector<double> matrix() const;  // of mass, by rows
+  std::vector<double> vector() const;  // result of forward or inverse
+  std::vector<double> matrix() const;  // result of mass, by rows
 
  private:
   struct Inside;

@@ -1,4 +1,4 @@
-// Random states of a model, and the base's velocity as the peers write it.
+// Random states of a model, and conversions to the peers' conventions for the base's velocity.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace vp::bench {
 
-// As Virtual Physics has them (vphysics/multibody/joint.h).
+// In the convention of Virtual Physics (vphysics/multibody/joint.h).
 struct State {
   std::vector<double> q, v, tau, a;
 };
@@ -18,12 +18,12 @@ std::vector<State> random_states(const BenchModel& model, int count, std::uint64
 // The pose of a free base.
 SE3 base_pose(const State& state);
 
-// How an engine writes the six velocities of a free base: in which order, in which axes.
+// An engine's convention for the six velocities of a free base: their order and their axes.
 //
 // The map B(R) from our velocities (angular, linear; axes of the link) to the engine's is
-// orthogonal, so forces go by B too, and B^T leads back. Accelerations are the rates of these
-// numbers: where the linear velocity is written in the world's axes, its rate has R (w x v)
-// besides.
+// orthogonal: B also maps forces, and B^T is the inverse. Accelerations are the rates of these
+// numbers. If the linear velocity is in world axes, its rate contains the additional term
+// R (w x v).
 struct BaseConvention {
   bool linear_first, angular_in_world, linear_in_world;
 };
@@ -34,9 +34,9 @@ struct BaseMap {
 
   BaseMap(BaseConvention convention, const State& state);
   void to(std::span<double> x) const;                 // velocities or forces, in place
-  void from(std::span<double> x) const;               // and back
+  void from(std::span<double> x) const;               // the inverse
   void acceleration_to(std::span<double> x) const;    // rates of velocities, in place
-  void acceleration_from(std::span<double> x) const;  // and back
+  void acceleration_from(std::span<double> x) const;  // the inverse
   void mass_from(std::span<double> M, int n) const;   // M <- B^T M B
 };
 
