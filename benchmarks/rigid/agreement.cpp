@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kRate = 240;
 
-// How an engine's end differs from the expected one; empty: not more than is tolerated.
+// How an engine's final state differs from the expected one; empty: within the tolerances.
 std::string judge(const scenes::Touchstone& stone, const Figure& figure, double& worst) {
   if (!figure.missing.empty()) return figure.missing;
   if (figure.ended != "finished") return figure.ended;

@@ -84,7 +84,7 @@ void Child::end() {
   }
 }
 
-// Its answers have ended: so has it, or nearly.
+// Call at the end of its output: it has ended or is about to.
 std::string Child::how_it_ended() {
   int status = 0;
   waitpid(std::exchange(pid_, -1), &status, 0);
@@ -94,7 +94,7 @@ std::string Child::how_it_ended() {
 
 void Child::tell(const std::string& line) {
   const std::string whole = line + "\n";
-  // Who has ended already is found out when it does not answer.
+  // A failed write is ignored: hear() detects that the program has ended.
   [[maybe_unused]] const ssize_t written = write(to_, whole.data(), whole.size());
 }
 
@@ -118,7 +118,7 @@ tl::expected<Answer, std::string> Child::hear(double seconds) {
     if (got < 0 && errno == EINTR) continue;
     if (got <= 0) return tl::make_unexpected(how_it_ended());
     heard_.append(bytes, static_cast<std::size_t>(got));
-    if (heard_.size() > 100000) heard_.clear();  // nobody's answer
+    if (heard_.size() > 100000) heard_.clear();  // a line of this length is no answer
   }
 }
 

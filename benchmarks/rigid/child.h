@@ -1,4 +1,4 @@
-// A program that is told lines and answers lines. Whatever it does, the one who asks goes on.
+// A child process that reads and writes lines. Its failure does not stop the parent.
 #pragma once
 
 #include <sys/types.h>
@@ -15,16 +15,16 @@ struct Answer {
 
 class Child {
  public:
-  // Its errors are added to the file log. The error is a sentence.
+  // Starts the program; its standard error is appended to the file log. The error is a sentence.
   static tl::expected<Child, std::string> start(const std::vector<std::string>& words,
                                                 const std::string& log);
   Child(Child&& other) noexcept;
   Child& operator=(Child&& other) noexcept;
-  ~Child();  // ends it
+  ~Child();  // kills it
 
   void tell(const std::string& line);
-  // The next answer that is one of ready, cannot, more, end; other lines are passed over. The error
-  // says how it ended, or that it did not answer in time; it is ended then.
+  // Returns the next answer: ready, cannot, more or end. Skips other lines. The error says how the
+  // program ended, or that it did not answer in time; then it is killed.
   tl::expected<Answer, std::string> hear(double seconds);
 
  private:

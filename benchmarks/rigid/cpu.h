@@ -1,5 +1,4 @@
-// What this process has used so far. Of WebAssembly that is node's process: WASI has no clock of a
-// thread.
+// Processor time and memory that this process has used so far.
 #pragma once
 
 #include <cstdio>
@@ -10,7 +9,8 @@
 
 namespace rigid {
 
-// Of this thread [us].
+// Processor time of this thread [us]. In WebAssembly that of node's process: WASI has no thread
+// clock.
 inline double cpu_us() {
 #ifdef __wasi__
   __wasi_timestamp_t ns = 0;
@@ -23,7 +23,7 @@ inline double cpu_us() {
 #endif
 }
 
-// The most that was resident at once. Not by getrusage, which begins at what the parent had.
+// Peak resident memory [MB]. Does not use getrusage, which starts at the parent's value.
 inline double peak_mb() {
   std::FILE* status = std::fopen("/proc/self/status", "r");
   if (!status) return 0.0;

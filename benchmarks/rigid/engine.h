@@ -1,5 +1,5 @@
-// What the comparison asks of an engine, ours or a peer. Each is a program of its own (runner.cpp
-// has its main), so that its peak of memory is its own and its crash ends nothing else.
+// The interface of an engine in the comparison, ours or a peer. Each engine is a separate program
+// (runner.cpp has its main), so that its peak memory can be measured and a crash affects no other.
 #pragma once
 
 #include <cmath>
@@ -15,25 +15,26 @@ namespace rigid {
 class Engine {
  public:
   virtual ~Engine() = default;
-  // The settings that its makers recommend, as a phrase for the table.
+  // Its settings, which its developers recommend, as a phrase for the table.
   virtual std::string settings() const = 0;
-  // One step of the dt that it was made for; all that is timed. False: it cannot go on.
+  // One step of the dt given at construction; only this is timed. False: it cannot continue.
   virtual bool step() = 0;
-  // Why it cannot, when step() has said so.
+  // Why it cannot continue, after step() has returned false.
   virtual std::string trouble() const { return "no finite state"; }
-  // What happens between two steps (scenes::Event), not timed.
+  // Events between two steps (scenes::Event), not timed.
   virtual void launch(const scenes::Launch& launch) = 0;
-  // Of scenes in which bodies come and go, which not every engine is given: indices.
+  // By index, for scenes in which bodies appear and disappear. Not every engine gets these scenes.
   virtual void add_body(int) {}
   virtual void remove_body(int) {}
   virtual void add_joint(int) {}
   virtual void remove_joint(int) {}
-  // T_world_body of all bodies, in the scene's order; of one that does not exist that of its start.
+  // T_world_body of all bodies, in the scene's order; the initial pose of a body that does not
+  // exist.
   virtual std::vector<vp::SE3> poses() const = 0;
 };
 
-// Why it cannot have the scene, of an engine that has been taught bodies of simple shapes only,
-// which are there all the time and which it moves itself; empty: it can.
+// For engines whose adapter supports only permanent, non-kinematic bodies of simple shapes: why it
+// cannot run the scene; empty: it can.
 inline std::string beyond_simple(const scenes::Scene& scene) {
   if (scenes::has_terrain(scene)) return "this comparison gives it no terrain";
   for (const scenes::Body& body : scene.bodies) {
@@ -51,7 +52,7 @@ inline std::string beyond_simple(const scenes::Scene& scene) {
   return {};
 }
 
-// The engine with the scene in it, or why it cannot have it; each program has one.
+// The engine with the scene, or why it cannot run it. Each program defines it.
 using MadeEngine = tl::expected<std::unique_ptr<Engine>, std::string>;
 MadeEngine make_engine(const scenes::Scene& scene, double dt);
 

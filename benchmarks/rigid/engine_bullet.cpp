@@ -1,7 +1,7 @@
-// Bullet, single precision as its package has it: sequential impulses with 10 iterations, split
-// impulses, a dynamic tree as broad phase; all its defaults. Bullet multiplies two surfaces'
-// friction and so has the root of ours each. A kinematic body is told before each step where it
-// will be at its end; from that Bullet takes its velocity.
+// Bullet in single precision, as its package is built, with its defaults: sequential impulses with
+// 10 iterations, split impulses, a dynamic tree as broad phase. Bullet multiplies the friction
+// coefficients of two surfaces, so each gets the square root of ours. A kinematic body gets its
+// pose at the end of the step before each step; Bullet computes its velocity from that.
 #include <btBulletDynamicsCommon.h>
 
 #include <cmath>
@@ -32,7 +32,7 @@ vp::SE3 pose_of(const btTransform& T) {
   return {vp::Mat3{column(0), column(1), column(2)}, {p.x(), p.y(), p.z()}};
 }
 
-// Shapes as Bullet has them. What shares its data in the scene does so here.
+// Bullet's shapes. Shapes that share data in the scene share it here.
 class Shapes {
  public:
   btCollisionShape* of(const scenes::Body& body) {
@@ -96,7 +96,7 @@ class Shapes {
   std::map<const void*, btCollisionShape*> shared_;
 };
 
-// Where a kinematic body will be at the end of the step.
+// The pose of a kinematic body at the end of the step.
 class Path final : public btMotionState {
  public:
   explicit Path(const scenes::Body& body)
@@ -189,7 +189,7 @@ class Bullet final : public Engine {
     info.m_startWorldTransform = transform(body.T_world_body);
     info.m_friction = static_cast<btScalar>(std::sqrt(material.friction));
     info.m_restitution = static_cast<btScalar>(material.restitution);
-    // Bullet multiplies a body's with the other's friction, and adds both products.
+    // Bullet multiplies a body's rolling friction by the other's friction, and adds both products.
     if (moves && material.rolling_friction > 0.0) {
       info.m_rollingFriction =
           static_cast<btScalar>(material.rolling_friction / std::sqrt(material.friction));
@@ -229,8 +229,8 @@ class Bullet final : public Engine {
   btSequentialImpulseConstraintSolver solver_;
   btDiscreteDynamicsWorld world_{&dispatcher_, &broad_phase_, &solver_, &configuration_};
   Shapes shapes_;
-  std::vector<std::unique_ptr<btRigidBody>> bodies_;  // null: it does not exist now
-  std::vector<std::unique_ptr<Path>> paths_;          // of the kinematic ones
+  std::vector<std::unique_ptr<btRigidBody>> bodies_;  // null: does not exist now
+  std::vector<std::unique_ptr<Path>> paths_;          // of kinematic bodies
   std::vector<int> kinematic_;
   std::vector<std::unique_ptr<btTypedConstraint>> joints_;
 };

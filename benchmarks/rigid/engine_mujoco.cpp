@@ -1,6 +1,6 @@
-// MuJoCo: its defaults (Newton's method, pyramidal cones, 100 iterations at most, 1e-8), the scene
-// as its XML. A body hangs in the tree by the first of its joints; a joint that would close a loop
-// is an equality constraint.
+// MuJoCo with its defaults (Newton's method, pyramidal cones, at most 100 iterations, 1e-8); the
+// scene is converted to its XML. The first joint of a body connects it to the tree; a joint that
+// would close a loop is an equality constraint.
 #include <fmt/format.h>
 #include <mujoco/mujoco.h>
 
@@ -16,14 +16,14 @@
 namespace rigid {
 namespace {
 
-// A Newton step factors a matrix of all velocities: beyond this many bodies it takes minutes.
+// A Newton step factors a matrix of all velocities: with more bodies than this it takes minutes.
 constexpr std::size_t kMostBodies = 3000;
 
-// Elements of an XML, of which a body is one, in each other.
+// Maximum nesting depth of bodies in the XML.
 constexpr int kDeepest = 90;
 
-// Its data has room for as many rows of constraints, four to a contact, as the model says, in a
-// buffer whose bytes MuJoCo 2.2 counts in an int: 12 rows^2 + 24 rows velocities, and little else.
+// The model sets the maximum number of constraint rows, four for each contact. MuJoCo 2.2 counts
+// the bytes of their buffer in an int: 12 rows^2 + 24 rows velocities, plus small terms.
 int most_rows(double velocities) {
   constexpr double kMostBytes = 2.0e9;
   return static_cast<int>(std::sqrt(velocities * velocities + kMostBytes / 12.0) - velocities);
@@ -84,7 +84,7 @@ class Xml {
   const std::string& text() const { return text_; }
 
  private:
-  // A body and all that hangs on it; by: the joint that holds it, or -1.
+  // Writes a body and its descendants. by: the joint to its parent, or -1.
   void hang(std::size_t i, const vp::SE3& T_world_parent, long by, int depth) {
     hung_[i] = true;
     const scenes::Body& body = scene_.bodies[i];
@@ -108,7 +108,7 @@ class Xml {
     text_ += "</body>\n";
   }
 
-  // In the frame of its child, with the limits of a hinge as seen from there.
+  // The joint in the frame of its child; the limits of a hinge are for rotation of the child.
   static std::string joint(const scenes::Joint& j, int child) {
     const bool turned = child == j.a;
     const vp::SE3& at = turned ? j.T_a_joint : j.T_b_joint;
@@ -124,7 +124,8 @@ class Xml {
                        numbers(at.rotation().cz), limits);
   }
 
-  // What closes loops, a hinge by two points of its axis; and joined bodies do not meet.
+  // Joints that close loops, a hinge by two points of its axis. Excludes collisions of joined
+  // bodies.
   std::string rest() const {
     std::string equality, contact;
     for (std::size_t j = 0; j < scene_.joints.size(); ++j) {
@@ -159,7 +160,7 @@ class Mujoco final : public Engine {
     const Xml xml(scene, dt);
     mjVFS files;
     mj_defaultVFS(&files);
-    // Its files are at most an int long, with the end of the string.
+    // The length of a file is an int and includes the terminating zero.
     if (mj_makeEmptyFileVFS(&files, "scene.xml", static_cast<int>(xml.text().size()) + 1) != 0) {
       return tl::make_unexpected("its model cannot be handed over");
     }
@@ -180,7 +181,7 @@ class Mujoco final : public Engine {
   std::string settings() const override { return "double; Newton; pyramidal cones"; }
   std::string trouble() const override { return trouble_; }
   bool step() override {
-    // What a step that fails leaves behind is of no use.
+    // A failed step leaves an unusable state, so the state before it is restored.
     const std::vector<mjtNum> q(data_->qpos, data_->qpos + model_->nq);
     const std::vector<mjtNum> v(data_->qvel, data_->qvel + model_->nv);
     const mjtNum time = data_->time;
@@ -200,7 +201,7 @@ class Mujoco final : public Engine {
       if (!again) return false;
     }
   }
-  // Of a free joint: linear in the world, angular in the body's frame.
+  // The velocities of a free joint are linear in the world frame and angular in the body's frame.
   void launch(const scenes::Launch& launch) override {
     const int v = model_->body_dofadr[ids_[launch.body]];
     const vp::Vec3 spin = poses()[launch.body].unrotate(launch.spin);
@@ -230,7 +231,8 @@ class Mujoco final : public Engine {
       launch({0.0, i, body.velocity, body.spin});
     }
   }
-  // Its data anew, with so many rows or as many as it can have. False: it had these already.
+  // Creates its data again with this many rows, or with the maximum. Returns false if it has the
+  // maximum already.
   bool make_room(int rows) {
     const int most = most_rows(model_->nv);
     if (data_ && model_->njmax == most) {
@@ -241,7 +243,7 @@ class Mujoco final : public Engine {
     if (data_) mj_deleteData(data_);
     model_->njmax = std::min(rows, most);
     model_->nconmax = model_->njmax / 3;
-    // As it would choose itself.
+    // The same formula as MuJoCo's own choice.
     const double all = model_->njmax + model_->nv;
     model_->nstack = static_cast<int>(std::min(5.0 * all * all + 1e5, 2e9));
     data_ = mj_makeData(model_);

@@ -1,6 +1,6 @@
-// ODE, double precision as its package has it: QuickStep with its 20 iterations, sweep and prune,
-// at most 4 contacts a pair, the friction pyramid that its manual recommends, a contact layer of 1
-// mm against jitter.
+// ODE in double precision, as its package is built: QuickStep with 20 iterations, sweep and prune,
+// at most 4 contacts per pair, the friction pyramid that its manual recommends, and a contact layer
+// of 1 mm against jitter.
 #include <ode/ode.h>
 
 #include <algorithm>
@@ -75,7 +75,7 @@ class Ode final : public Engine {
 
  private:
   struct Placed {
-    dBodyID body;  // null: it stands
+    dBodyID body;  // null: static
     vp::SE3 start;
     double friction;
   };
@@ -102,7 +102,7 @@ class Ode final : public Engine {
   void add(const scenes::Body& body) {
     const vp::SE3& T = body.T_world_body;
     dGeomID geom = geometry(body.parts[0].shape, T);
-    // The index of a body travels as its geometry's user pointer.
+    // The user pointer of a geometry is the index of its body.
     dGeomSetData(geom, reinterpret_cast<void*>(bodies_.size()));
     dMatrix3 R;
     set_rotation(T.rotation(), R);

@@ -18,13 +18,14 @@ class Ours final : public Engine {
   std::string settings() const override { return "defaults"; }
   bool step() override {
     if (rods_) rods_->drive(world_.world(), steps_);
-    // As the game does, balls that have left the table come back.
+    // Restores the initial state now and then, as the game puts balls back that have left the
+    // table.
     if (rods_ && steps_ % 2000 == 1999) (void)world_.world().restore(start_);
     ++steps_;
     const auto status = world_.step(dt_);
     return status && !status->non_finite;
   }
-  void launch(const scenes::Launch&) override {}  // SceneWorld does it, and the rest, in its step
+  void launch(const scenes::Launch&) override {}  // SceneWorld handles all events in its step
   std::vector<vp::SE3> poses() const override { return world_.poses(); }
 
  private:

@@ -1,4 +1,4 @@
-// A scene by name: of the catalogue, or "tableN", the foosball table with N balls.
+// A scene by name: one of the catalogue, or "tableN", the foosball table with N balls.
 #pragma once
 
 #include <string_view>

@@ -1,5 +1,5 @@
 // rigid-bench: scenes of rigid bodies in Virtual Physics and in its peers. Prints tables and writes
-// the rows that ./bench keeps.
+// the CSV rows that ./bench stores.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -29,7 +29,7 @@ std::vector<std::string> engine_options() {
   return options;
 }
 
-// One line for each engine that said how it is set.
+// One line for each engine that has reported its settings.
 std::string settings(const std::vector<Figure>& figures) {
   std::string out = "\n";
   std::set<std::string> told;
@@ -45,7 +45,7 @@ int run(const Plan& plan, const std::string& file) {
   for (const std::string& name : plan.scenes) {
     if (const auto scene = load(name); !scene) return fail(kExitUsage, scene.error().message);
   }
-  std::ofstream(plan.log).close();  // what earlier runs complained of
+  std::ofstream(plan.log).close();  // clears the errors of earlier runs
   const auto said = [](const std::string& what) { std::fprintf(stderr, "  %s\n", what.c_str()); };
   said("what is known in closed form");
   const auto agreed = agreement(plan);
@@ -86,7 +86,7 @@ int main(int argc, char** argv) {
                  "large_pyramid", "shaken_pyramid", "stirred_pile", "table1",      "table200"},
       .rates = {60, 240, 1000},
       .engines = engine_options()};
-  // Large and with a goal at 60 Hz alone; who names scenes has them at all rates.
+  // Large scenes with goals at 60 Hz only. Scenes named by --scenes run at all rates.
   const std::set<std::string> after_box3d{
       "joint_grid",  "rain",     "trees100",      "trees25",        "washer",
       "convex_pile", "junkyard", "large_pyramid", "shaken_pyramid", "stirred_pile"};

@@ -18,12 +18,12 @@
 namespace rigid {
 namespace {
 
-constexpr double kTurn = 0.25;  // of the scene's time [s]
-constexpr double kBusy = 10.0;  // times its processor time that a turn may take by the clock
-// Who stops before this share of the scene has nothing to show.
+constexpr double kTurn = 0.25;  // simulated time [s]
+constexpr double kBusy = 10.0;  // maximum wall time of a turn, in multiples of its processor time
+// An engine that stops before this fraction of the scene has no results.
 constexpr double kLeastShare = 0.1;
 
-// A folder that is gone afterwards.
+// A temporary folder, removed by the destructor.
 class Scratch {
  public:
   Scratch() {
@@ -65,13 +65,13 @@ double quantile(std::vector<double> x, double share) {
   return *at;
 }
 
-// What a program left behind (runner.cpp); nothing if it is not whole.
+// The results file of a program (runner.cpp). read_left() returns nothing if it is incomplete.
 struct Left {
   double simulated = 0.0, rss_mb = 0.0, fastest = -1.0;
   std::vector<double> steps;
   std::vector<vp::SE3> poses;
 };
-// Not by >>, which knows no "nan".
+// The operator >> does not read "nan".
 double read_number(std::istream& in) {
   std::string word;
   in >> word;
@@ -148,7 +148,8 @@ class Race {
     return is_ours(kind.name) ? kOursMore * peers : peers;
   }
 
-  // Of our builds with the native one, if both have come as far.
+  // Compares the final poses of our other builds with the native one, if both have simulated the
+  // same time.
   static void compare_bits(std::vector<Figure>& figures) {
     const auto native = std::find_if(figures.begin(), figures.end(),
                                      [](const Figure& f) { return f.engine == kOurs; });
@@ -159,7 +160,7 @@ class Race {
     }
   }
 
-  // The program, the scene as it wants it, and the rest alike for all.
+  // The program, the scene in the format that it requires, and the arguments common to all.
   tl::expected<std::vector<std::string>, std::string> command(const EngineKind& kind,
                                                               const std::string& file) {
     const auto missing = [](const std::string& path) { return !std::filesystem::exists(path); };
@@ -275,7 +276,8 @@ double share(const Figure& a, const Figure& b) {
 
 namespace {
 
-// Of whom goals compare. All of them, or none: who is run more often looks faster.
+// The engines that goals compare. Either all of them run repeatedly or none: more runs give lower
+// minimum times.
 bool is_compared(const Figure& figure) {
   return figure.engine == kOurs || figure.engine == kReference;
 }

@@ -1,5 +1,4 @@
-// What engines' programs may do, played by shell scripts: whatever it is, it is a line in the
-// table.
+// Shell scripts imitate engines' programs with all kinds of failures: each is a line in the table.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -42,7 +41,7 @@ class Race : public testing::Test {
   std::vector<Figure> run() {
     return measure(plan_, [](const std::string&) {});
   }
-  // Why there is nothing of the one engine.
+  // Why the only engine has no results.
   std::string missing() {
     const auto figures = run();
     EXPECT_EQ(figures.size(), 1u);
@@ -113,12 +112,12 @@ TEST_F(Race, LeavesOutWhoStopsEarlyAndCountsLostBodies) {
   EXPECT_NE(table(figures).find("stopped: diverged"), std::string::npos);
 }
 
-// Programs that take another time in every run n.
+// Programs whose times differ in every run n.
 class Repeated : public Race {
  protected:
   Repeated() { plan_.engines = {"vphysics", "bullet"}; }
 
-  // Of three steps; `end` is a coordinate of where its bodies end.
+  // Runs three steps; `end` is a coordinate of its bodies' final poses.
   void play(const std::string& program, const std::string& end, const std::string& steps) {
     const std::string count = folder_ + "/" + program + ".count";
     std::ofstream(count) << "0\n";
@@ -144,7 +143,7 @@ TEST_F(Repeated, KeepsTheLeastOfEachStep) {
   EXPECT_EQ(figures[1].least_us, (std::vector<double>{101, 97, 133}));
   EXPECT_DOUBLE_EQ(share(figures[0], figures[1]), 25.0 / 101.0);
   EXPECT_NE(csv(figures).find("tower10@60,Bullet,runs,3,\n"), std::string::npos);
-  // With one that was run once, the first runs are compared.
+  // If one engine was run only once, the first runs are compared.
   Figure once = figures[1];
   once.runs = 1;
   EXPECT_DOUBLE_EQ(share(figures[0], once), 25.0 / 101.0);
@@ -171,7 +170,7 @@ TEST_F(Repeated, CountsAllOrNone) {
   EXPECT_EQ(too_long[0].median_us, 40.0);
 }
 
-// Our own program, whole: two engines that take turns, one of which does not answer.
+// Our own complete program: two engines that take turns, one of which does not answer.
 TEST_F(Race, GoesOnWithTheOthers) {
   std::filesystem::create_symlink(RIGID_OURS, folder_ + "/rigid-ours");
   script("rigid-bullet", "echo ready; read turn; echo more; kill -KILL $$\n");
@@ -183,11 +182,11 @@ TEST_F(Race, GoesOnWithTheOthers) {
   EXPECT_EQ(figures[1].missing, "");
   EXPECT_EQ(figures[1].ended, "finished");
   EXPECT_DOUBLE_EQ(figures[1].simulated, 10.0);
-  EXPECT_EQ(figures[1].steps_us.size(), 560u);  // 600 less the first of each of 40 turns
+  EXPECT_EQ(figures[1].steps_us.size(), 560u);  // 600 without the first of each of 40 turns
   EXPECT_GT(figures[1].p99_us, figures[1].median_us);
   EXPECT_GT(figures[1].rss_mb, 1.0);
   EXPECT_GE(figures[1].fastest, 0.0);
-  EXPECT_LT(figures[1].fastest, 1e-3);  // [m/s]: the tower stands
+  EXPECT_LT(figures[1].fastest, 1e-3);  // [m/s]: the tower is at rest
   EXPECT_EQ(figures[1].standing.of, 10);
   const std::string rows = csv(figures);
   EXPECT_NE(rows.find("tower10@60,Bullet,missing,crashed: Killed,"), std::string::npos);
@@ -202,7 +201,7 @@ TEST_F(Race, LeavesHigherRatesOutWhereItIsTold) {
 }
 
 TEST_F(Race, TimesNobodyWhoHasTheScenesWrong) {
-  // Stays where it is.
+  // Does not move.
   script("rigid-bullet",
          "echo ready; read turn; (echo simulated 1; echo rss_mb 1; echo fastest -1; echo steps 0; "
          "echo poses " +
@@ -228,7 +227,7 @@ Figure timed(const char* engine, const std::vector<double>& steps) {
   return figure;
 }
 
-// A pile costs little while it falls: who was cut short there must not look the faster for it.
+// A pile costs little while it falls: an engine that was stopped then must not appear faster.
 TEST(Share, IsOfTheStepsThatBothHaveMade) {
   const Figure whole = timed("Bullet", {10, 10, 10, 90, 90, 90, 90, 90});
   const Figure cut = timed("ODE", {20, 20, 20});
@@ -237,13 +236,13 @@ TEST(Share, IsOfTheStepsThatBothHaveMade) {
   EXPECT_DOUBLE_EQ(share(whole, timed("MuJoCo", {})), 0.0);
 }
 
-// A crash is no way to lose a goal.
+// A crash must not remove a goal from the report.
 TEST(Goals, AreKeptWhereThereIsNothingToShow) {
   const std::vector<Figure> crashed = {
       {.scene = "towers1120", .engine = kOurs, .rate = 60, .missing = "crashed"}};
   EXPECT_NE(csv(crashed).find("towers1120@60,goal,drift_mm,5,mm\n"), std::string::npos);
   EXPECT_EQ(csv(crashed).find("pyramid1128"), std::string::npos);
-  EXPECT_EQ(csv(crashed).find("share_of_bullet"), std::string::npos);  // Bullet was not asked
+  EXPECT_EQ(csv(crashed).find("share_of_bullet"), std::string::npos);  // Bullet was not run
   EXPECT_NE(goals_table(crashed).find("short"), std::string::npos);
   EXPECT_EQ(goals_table(crashed).find("met\n"), std::string::npos);
 }

@@ -30,7 +30,7 @@ std::optional<double> share_of_bullet(const std::vector<Figure>& figures, const 
   return of > 0.0 ? std::optional(of) : std::nullopt;
 }
 
-// Goals are of Virtual Physics and "at most", but what is in place is "all".
+// Goals for Virtual Physics: upper bounds of its results.
 struct Goal {
   const char* subject;
   const char* metric;
@@ -77,7 +77,8 @@ constexpr Goal kGoals[] = {
     {"shaken_pyramid@60", "share_of_bullet", 0.20, ""},
     {"stirred_pile@60", "share_of_bullet", 0.25, ""},
     {"table1@1000", "step_median_us", 10, "us"},
-    // Of n log n between 1,000 and 100,000: 1 + log(log 100,000 / log 1,000) / log 100.
+    // The exponent of n log n between 1,000 and 100,000: 1 + log(log 100,000 / log 1,000) /
+    // log 100.
     {"heaps@60", "growth_exponent", 1.11, ""},
 };
 
@@ -85,7 +86,7 @@ struct Row {
   std::string metric, value, unit;
 };
 
-// Drift is said where "in place" is where a body began; a gap where there are joints.
+// Drift is reported if "in place" refers to the initial positions; the gap, if there are joints.
 std::vector<Row> rows_of(const std::vector<Figure>& figures, const Figure& f) {
   if (!f.missing.empty()) {
     std::string why = f.missing;
@@ -122,12 +123,13 @@ bool is_our_heap(const Figure& f) {
   return f.engine == kOurs && f.scene.starts_with("heap");
 }
 
-// p of the power n^p that fits the cost of heaps of n boxes best, once they lie, in the logarithms.
+// The exponent p of the power n^p that best fits the cost of heaps of n boxes at rest: a linear fit
+// of the logarithms.
 std::optional<double> growth_exponent(const std::vector<Figure>& figures) {
   double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
   for (const Figure& f : figures) {
     if (!is_our_heap(f)) continue;
-    if (f.settled_us <= 0.0) return {};  // one that came to no end is not left out of the fit
+    if (f.settled_us <= 0.0) return {};  // no fit without the heaps that did not finish
     const double u = std::log(std::stod(f.scene.substr(4))), v = std::log(f.settled_us);
     n += 1.0, x += u, y += v, xx += u * u, xy += u * v;
   }
@@ -146,8 +148,8 @@ std::optional<double> reached(const std::vector<Figure>& figures, const Goal& go
   return 1e3 * (metric == "drift_mm" ? ours->standing.drift : ours->standing.penetration);
 }
 
-// Whether what the goal is of was run: then it is judged, also where there is nothing to show for
-// it.
+// Whether the scenes and engines of the goal were run. If so, the goal is reported, even without
+// results.
 bool concerns(const std::vector<Figure>& figures, const Goal& goal) {
   const std::string_view metric = goal.metric;
   if (metric == "growth_exponent") {
@@ -161,13 +163,13 @@ bool concerns(const std::vector<Figure>& figures, const Goal& goal) {
   return ran(kOurs) && (metric != "share_of_bullet" || ran(kReference));
 }
 
-// Behind an engine's row.
+// The note after an engine's row.
 std::string note_on(const Figure& f) {
   if (f.stopped()) return "  " + f.ended;
   return f.bits_as_native && f.engine != kOurs ? "  the native program's bits" : "";
 }
 
-// "-" where there is none.
+// The value of a metric, or "-".
 std::string cell(const std::vector<Row>& rows, const char* metric) {
   for (const Row& row : rows) {
     if (row.metric == metric) return row.value;

@@ -1,4 +1,4 @@
-// What ./bench rigid prints and keeps.
+// The output of ./bench rigid: tables and CSV rows.
 #pragma once
 
 #include <string>
@@ -8,9 +8,9 @@
 
 namespace rigid {
 
-// Of one scene at one rate.
+// The results of one scene at one rate.
 std::string table(const std::vector<Figure>& figures);
-// What was to be reached beside what was; empty: nothing of it was measured.
+// The goals and the measured values; empty: nothing was measured for them.
 std::string goals_table(const std::vector<Figure>& figures);
 // subject,engine,metric,value,unit; goals as the engine "goal".
 std::string csv(const std::vector<Figure>& figures);

@@ -1,12 +1,12 @@
-// The main of each engine's program: rigid-ENGINE SCENE HZ CPU_SECONDS FILE. It steps the scene
-// when it is told to, so that engines take turns, and leaves in FILE what it measured.
+// The main of each engine's program: rigid-ENGINE SCENE HZ CPU_SECONDS FILE. It steps the scene on
+// request, so that engines take turns, and writes its results to FILE.
 //
-//   it says    ready SETTINGS           the scene is built
-//              cannot SENTENCE          and ends: the engine cannot have the scene
-//   it is told N                        steps to do
-//   it says    more                     they are done
-//              end WHY                  FILE is written, it ends: finished, budget, or stopped and
-//              why
+//   output     ready SETTINGS           the scene is built
+//              cannot SENTENCE          the engine cannot run the scene; the program ends
+//   input      N                        number of steps to run
+//   output     more                     they are done
+//              end WHY                  FILE is written, the program ends; WHY: finished, budget,
+//                                       or stopped with the reason
 //
 // FILE: "simulated S", "rss_mb M", "fastest V" [m/s] or -1, "steps K" and K lines [us], "poses B"
 // and B lines, each the three columns of the rotation and the position. It ends with "whole".
@@ -47,8 +47,9 @@ class Run {
     times_.reserve(static_cast<std::size_t>(steps_));
   }
 
-  // Steps of a turn; why it is over, or nothing. The first of several finds the caches as the last
-  // engine left them and is not kept, unless a turn is so short that it would be a large share.
+  // Runs the steps of a turn. Returns why the run is over, or nothing. The first step finds the
+  // caches as the last engine has left them; its time is dropped, except in turns of less than ten
+  // steps.
   std::string turn(long count) {
     const bool drop_first = count >= 10;
     for (long i = 0; i < count && done_ < steps_; ++i) {
@@ -93,7 +94,7 @@ class Run {
     }
   }
 
-  // The fastest body's displacement in the last step, by its time; of a run that came to its end.
+  // The maximum mean speed of a body in the last step; -1 if the run did not reach the end.
   double fastest(const std::vector<vp::SE3>& poses) const {
     if (done_ < steps_) return -1.0;
     double longest = 0.0;
@@ -127,7 +128,7 @@ class Run {
   long steps_, done_ = 0;
   double spent_us_ = 0.0;
   std::size_t happened_ = 0;
-  std::vector<vp::SE3> before_last_;  // step
+  std::vector<vp::SE3> before_last_;  // poses before the last step
   std::vector<double> times_;
 };
 

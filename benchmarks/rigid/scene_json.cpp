@@ -21,7 +21,7 @@ json limit(double angle) {
   return std::isfinite(angle) ? json(angle) : json(nullptr);
 }
 
-// Data of hulls and meshes, each once; a shape names it by its index.
+// The data of hulls and meshes, each once; shapes refer to them by index.
 class Data {
  public:
   int index_of(const scenes::Hull& hull) {
@@ -123,7 +123,7 @@ json joint(const scenes::Scene& scene, const scenes::Joint& joint) {
           {"b", joint.b},
           {"in_a", pose(joint.T_a_joint)},
           {"in_b", pose(joint.T_b_joint)},
-          // The joint's x and z axes in both bodies, for those who want no quaternion.
+          // The joint's x and z axes in both bodies, for engines that take no quaternion.
           {"x_a", vector(joint.T_a_joint.rotation().cx)},
           {"z_a", vector(joint.T_a_joint.rotation().cz)},
           {"x_b", vector(joint.T_b_joint.rotation().cx)},

@@ -7,7 +7,7 @@
 
 namespace rigid {
 
-// False: the file cannot be written.
+// Returns false if the file cannot be written.
 bool write_json(const scenes::Scene& scene, const std::string& file);
 
 }  // namespace rigid

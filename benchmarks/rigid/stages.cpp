@@ -1,5 +1,5 @@
-// rigid-stages HZ SCENE...: how long each stage of a step of Virtual Physics takes on the scenes,
-// and what it had to do: means over each scene, by the clock; and how the scene stands at its end.
+// rigid-stages HZ SCENE...: the wall time of each stage of a step of Virtual Physics and its
+// counters, as means over each scene, and the quality of the scene's final state.
 #include <algorithm>
 #include <array>
 #include <chrono>

@@ -13,7 +13,8 @@ const foosball::TableSpec& spec() {
 }
 
 constexpr scenes::Material kField{0.3, 0.3, 0.00015}, kWall{0.2, 0.75, 0.0}, kBall{0.5, 0.0, 0.0};
-// A man of its own, so that no change of the game's characters changes what is compared.
+// A man for the benchmark only, so that changes of the game's characters do not change the
+// comparison.
 constexpr foosball::CharacterBody kMan{.foot_width = 0.020,
                                        .foot_depth = 0.018,
                                        .foot_reach = 0.0735,
@@ -33,7 +34,7 @@ void add_fixed(scenes::Scene& scene, const scenes::Shape& shape, const Vec3& at,
   scene.bodies.push_back(body);
 }
 
-// Side walls, end walls with their goals, the boxes behind these.
+// Side walls, end walls with goals, and the boxes behind the goals.
 void add_walls(scenes::Scene& scene) {
   const foosball::TableSpec& t = spec();
   constexpr double kThick = 0.1;  // half [m]
@@ -64,7 +65,7 @@ void add_ball(scenes::Scene& scene, const Vec3& at, const Vec3& velocity) {
   scene.bodies.push_back(ball);
 }
 
-// The slide has no mass of its own but the hand's; the turn carries rod and men.
+// The slide has only the hand's mass; the rotating link carries rod and men.
 vp::Expected<vp::Model> rod_model(const foosball::RodSpec& rod) {
   const foosball::TableSpec& t = spec();
   const foosball::CharacterBody& man = kMan;
@@ -95,7 +96,7 @@ vp::Expected<vp::Model> rod_model(const foosball::RodSpec& rod) {
 vp::Expected<void> add_men(vp::World& world, vp::BodyId rod, const foosball::RodSpec& where) {
   const foosball::CharacterBody& man = kMan;
   for (int i = 0; i < where.men; ++i) {
-    // The rod's z is the table's y, its y the table's -z.
+    // The rod's z axis is the table's y axis, its y axis the table's -z axis.
     for (const foosball::ManBox& box : foosball::boxes_of(man)) {
       const Vec3 &c = box.centre, &h = box.half_extents;
       vp::ColliderDesc desc;
@@ -159,7 +160,7 @@ void Rods::drive(vp::World& world, long step) {
   if (step % 100 != 0) return;
   const long target = step / 100;
   for (std::size_t i = 0; i < rods_.size(); ++i) {
-    // Angles that do not repeat: as good as chance here.
+    // Non-repeating angles, sufficiently random here.
     const double phase = static_cast<double>(target) * 2.4 + static_cast<double>(i) * 1.7;
     const double reach = spec().rods[i].slide_limit;
     const auto [s, c] = vp::sin_cos(phase * phase);

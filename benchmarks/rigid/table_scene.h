@@ -1,5 +1,5 @@
-// The foosball table with any number of balls: its walls and balls as a scene, its rods as what
-// Virtual Physics has for them.
+// The foosball table with any number of balls. Its walls and balls are a scene; its rods are
+// articulations of Virtual Physics.
 #pragma once
 
 #include <vector>
@@ -10,14 +10,14 @@
 namespace rigid {
 
 inline constexpr int kMostBalls = 1000;
-// Precondition: 1 <= balls <= kMostBalls. One ball rolls; more are let fall between the rods.
+// Precondition: 1 <= balls <= kMostBalls. A single ball rolls; several fall between the rods.
 scenes::Scene table_scene(int balls);
 
-// Eight rods of four men each, driven as by strong hands that swing and slide without a plan.
+// Eight rods of four men each, with strong drives whose targets swing and slide at random.
 class Rods {
  public:
   static vp::Expected<Rods> create(vp::World& world);
-  // Before the step of that number: new targets, ten times a second.
+  // Call before each step, with its number: sets new targets ten times a second.
   void drive(vp::World& world, long step);
 
  private:

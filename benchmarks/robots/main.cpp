@@ -1,5 +1,6 @@
-// Robots on the ground in Virtual Physics and in MuJoCo, at 5 ms: the same links, masses, joints,
-// motors and torques, in turn for a quarter of a second of the scene each.
+// Robots on the ground in Virtual Physics and in MuJoCo, with steps of 5 ms: the same links,
+// masses, joints, motors and torques. The engines take turns of a quarter of a second of simulated
+// time.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
@@ -18,9 +19,9 @@ constexpr double kStep = 0.005;  // [s]
 constexpr int kSlice = 50;       // steps
 
 struct Result {
-  std::vector<double> slices;  // mean time of a step of each [us]
-  double deepest = 0.0;        // below the ground, in the second half [m]
-  double speed = 0.0;          // the largest, in the end
+  std::vector<double> slices;  // mean step time of each turn [us]
+  double deepest = 0.0;        // maximum depth below the ground, in the second half [m]
+  double speed = 0.0;          // maximum velocity at the end
 };
 
 double depth(const Robot& robot, const Simulation& simulation) {
@@ -53,7 +54,7 @@ double median(std::vector<double> x) {
 }
 
 struct Plan {
-  double seconds = 10.0;  // of the scene
+  double seconds = 10.0;  // simulated time
   int runs = 3;
   std::vector<std::string> names = robot_names();
   std::string csv;

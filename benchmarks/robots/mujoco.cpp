@@ -1,5 +1,5 @@
 // MuJoCo with its defaults: Newton's method, pyramidal cones, 1e-8, Euler's method with implicit
-// damping. Links do not meet one another, as they do not in Virtual Physics.
+// damping. Links do not collide with one another, as in Virtual Physics.
 #include "mujoco.h"
 
 #include <fmt/format.h>
@@ -54,7 +54,7 @@ class Xml {
         i, numbers(std::get<vp::RevoluteJoint>(link.spec.joint).axis), f.lower, f.upper,
         link.spec.damping + link.damping, link.spec.armature);
   }
-  // With all that hangs on it; joints of links without mass come in the next one.
+  // Writes a link and its descendants; the joints of links without mass go into the next link.
   void add(int i, const std::string& joints, const vp::Vec3* at = nullptr) {
     const Link& link = robot_.links[static_cast<std::size_t>(i)];
     const vp::Vec3& here = at ? *at : link.spec.T_parent_joint.position();

@@ -65,8 +65,8 @@ class Builder {
   Robot robot_;
 };
 
-// 27 velocities, 19 capsules and spheres: it is dropped on its back and stays there, its joints
-// damped and otherwise free within their limits.
+// 27 velocities, 19 capsules and spheres. It is dropped on its back and stays there; its joints are
+// damped and move freely within their limits.
 Robot humanoid() {
   Builder b("humanoid", SE3(Exp(Vec3{0, -0.5 * vp::kPi, 0}), {0, 0, 0.4}));
   const int chest = b.base({{{0, -0.07, 0}, {0, 0.07, 0}, 0.07},
@@ -104,7 +104,7 @@ Robot humanoid() {
   return b.take();
 }
 
-// 18 velocities: a trunk on four legs of three joints that stiff motors hold.
+// 18 velocities: a trunk on four legs of three joints; stiff motors keep its posture.
 Robot quadruped() {
   Builder b("quadruped", SE3(vp::Mat3::identity(), {0, 0, 0.42}));
   const int trunk =
@@ -131,12 +131,12 @@ Robot quadruped() {
   return b.take();
 }
 
-// 14 velocities: a ball on four legs of two joints, pushed by random torques.
+// 14 velocities: a ball on four legs of two joints, driven by random torques.
 Robot ant() {
   Builder b("ant", SE3(vp::Mat3::identity(), {0, 0, 0.6}));
   const int torso = b.base({{{0, 0, 0}, {0, 0, 0}, 0.25}});
   b.armature = 1.0;
-  constexpr double kHalf = 0.7;  // an eighth of a turn's sine and cosine, nearly
+  constexpr double kHalf = 0.7;  // approximately sin(45 degrees) = cos(45 degrees)
   const Vec3 ways[] = {
       {kHalf, kHalf, 0}, {-kHalf, kHalf, 0}, {-kHalf, -kHalf, 0}, {kHalf, -kHalf, 0}};
   for (const Vec3& way : ways) {

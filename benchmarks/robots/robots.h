@@ -10,18 +10,18 @@
 
 namespace robots {
 
-// A segment swept by a sphere; a sphere where both ends are one. In the link's frame.
+// A capsule; a sphere if both ends coincide. In the link's frame.
 struct RoundShape {
   vp::Vec3 from, to;
   double radius;
 };
 
-// All joints are revolute, but the first link's, which is free. A link without mass shares its
-// origin and axes with its one child: together they are a joint of two or three axes.
+// All joints are revolute, except the first link's, which is free. A link without mass shares its
+// origin and axes with its only child: together they are a joint of two or three axes.
 struct Link {
   vp::LinkSpec spec;
   std::vector<RoundShape> shapes;
-  // Of its joint: where it starts and what its motor pulls it to; or the largest random torque.
+  // Of its joint: the initial angle and the motor's target, or the maximum random torque.
   double position = 0.0;
   double stiffness = 0.0, damping = 0.0;
   double random_torque = 0.0;
@@ -40,11 +40,11 @@ Robot make_robot(std::string_view name);
 
 inline constexpr double kFriction = 0.8;
 
-// A rotation that takes the z axis there, a unit vector.
+// A rotation that maps the z axis to this unit vector.
 vp::Mat3 facing(const vp::Vec3& z);
 
-// In [-1, 1]: a new one for each joint with random torques after every kHeldSteps, joint after
-// joint, the same in both engines.
+// In [-1, 1]: one value for each joint with random torques, joint after joint, and new ones after
+// every kHeldSteps. The same in both engines.
 inline constexpr int kHeldSteps = 10;
 class Torques {
  public:
@@ -54,13 +54,13 @@ class Torques {
   std::mt19937_64 numbers_;
 };
 
-// One engine with one robot.
+// One robot in one engine.
 class Simulation {
  public:
   virtual ~Simulation() = default;
   virtual void step() = 0;
   virtual vp::SE3 pose(int link) const = 0;  // of a link with mass
-  virtual double speed() const = 0;          // the largest of all its velocities
+  virtual double speed() const = 0;          // the maximum of all its velocities
 };
 
 }  // namespace robots
