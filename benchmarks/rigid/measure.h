@@ -72,7 +72,7 @@ struct Figure {
   double p99_us = 0.0;      // of the first run
   double settled_us = 0.0;  // median of the last quarter of a finished run; else 0
   double rss_mb = 0.0;
-  double fastest = -1.0;  // max mean speed of a body in the last step [m/s]; < 0: unknown
+  double fastest = -1.0;        // max mean speed of a body in the last step [m/s]; < 0: unknown
   bool bits_as_native = false;  // its poses equal those of the native program
   scenes::Standing standing{};  // quality of the final state
   int runs = 1;

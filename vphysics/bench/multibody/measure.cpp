@@ -254,7 +254,7 @@ class ModelRun {
     if (batches_.empty()) batches_ = make_batches(model_, states_);
     for (const auto& batch : batches_) {
       const bool one = batch->lanes() == 1;
-      if (one && call == BatchCall::forward) continue;  // has its figure as an engine
+      if (one && call == BatchCall::forward) continue;  // measured as an engine
       Figure figure{.model = model_.name,
                     .engine = kEngines[0].name,
                     .metric = fmt::format("{}_{}_us", name_of(call), batch->name())};

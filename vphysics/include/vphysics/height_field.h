@@ -35,7 +35,7 @@ class HeightField {
   // m.
   [[nodiscard]] static Expected<HeightField> of(const HeightGrid& grid);
 
-  // The same data, scaled along the axes of the field's frame. The factors multiply the present
+  // The same data, scaled along the axes of the field's frame. The factors multiply the current
   // scale. Errors: factors, or products of them, outside [1e-6, 1e6].
   [[nodiscard]] Expected<HeightField> scaled(const Vec3& factors) const;
 

@@ -41,7 +41,7 @@ class TriangleMesh {
                                                  std::span<const Triangle> triangles,
                                                  const MeshOptions& options = {});
 
-  // The same data, scaled along the axes of the mesh's frame. The factors multiply the present
+  // The same data, scaled along the axes of the mesh's frame. The factors multiply the current
   // scale. Errors: factors, or products of them, outside [1e-6, 1e6].
   [[nodiscard]] Expected<TriangleMesh> scaled(const Vec3& factors) const;
 

@@ -286,8 +286,8 @@ class World {
   // It is computed from the momenta, gravity, the user's forces and the contacts, rolling friction
   // included: exact at rest, to the order of dt in motion. A free root without damping and armature
   // has only its joint_effort(): the momentum that position corrections of contacts change is in no
-  // reaction. If StepStatus::impact_limit stops the articulation, the joints' reactions include
-  // what stops it. Zero before the first step, after restore() and after a step in which the
+  // reaction. If StepStatus::impact_limit stops the articulation, the joints' reactions include the
+  // stop. Zero before the first step, after restore() and after a step in which the
   // articulation left the range of numbers. The first query after a step costs O(links); the first
   // of all allocates. Precondition: the articulation has that link.
   JointForce joint_reaction(ArticulationId articulation, int link) const;

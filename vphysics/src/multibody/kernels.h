@@ -41,7 +41,7 @@ extern const Table kBaseline;
 // Only in libraries built with VP_INSTRUCTION_SETS.
 extern const Table kAvx2;
 extern const Table kAvx512;
-// Of double alone, without fused multiply-add and in the order of the baseline: its bits.
+// For double only, without fused multiply-add and in the order of the baseline: the same bits.
 extern const Kernels kAvx2SameBits;
 extern const Kernels kAvx512SameBits;
 

@@ -5,7 +5,7 @@
 //   v += h a
 //   restitution   contacts that touch within h and bounce do so now, in sequence
 //   warm start    v += M^-1 J^T p          p: the impulses of the last sub-step
-//   solve         soft: a bias velocity removes penetration, a separation may close and no more;
+//   solve         soft: a bias velocity removes penetration, an approach may close a separation;
 //                 iterations after the first skip contacts that the last one has hardly changed
 //   x += h v
 //   relax         the same without the bias velocity, so that no bias velocity remains
@@ -146,7 +146,7 @@ struct Grip {
   V t, b, r_a, r_b;
 };
 
-// Updates two tangential impulses p at the slip velocity u, at most limit long. Sticking: the
+// Updates two tangential impulses p at the slip velocity u, with |p| <= limit. Sticking: the
 // full 2x2 block stops the slip. Sliding: one effective mass, since the block would rotate the
 // impulse away from the slip direction.
 template <int W, int P>

@@ -58,7 +58,7 @@ struct PointPart {
 // Reference for angular rows: axes of the joint's two frames at the start of the step, world frame.
 struct AxesPart {
   Field3 a_x, a_y, b_x, b_z;
-  Field twist;           // accumulated, but for the full revolutions at the start of the step [rad]
+  Field twist;           // accumulated, without the full revolutions at the start of the step [rad]
   Field cone_x, cone_y;  // the cone's half angles [rad]
 };
 struct RowPart {

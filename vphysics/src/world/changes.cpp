@@ -128,7 +128,7 @@ Expected<void> World::set_motion(BodyId id, Motion motion) {
       return invalid(Errc::unsupported, std::string("set_motion: it is joined, and ") + kNotJoined);
     }
   }
-  std::optional<Inertia> inertia;  // nullopt: the present one
+  std::optional<Inertia> inertia;  // nullopt: the current one
   Vec3 centre = body->centre;
   if (motion == Motion::dynamic && body->mass_from_colliders) {
     inertia = inertia_of_colliders(*body, impl_->colliders);

@@ -2,7 +2,7 @@
 //
 // A contact slot stores the sum of the contact's normal impulses over the sub-steps, and the normal
 // impulse of each point in the last sub-step. The sum is divided among the points in these
-// proportions. Friction is that of the last sub-step, scaled alike.
+// proportions. Friction is that of the last sub-step, scaled by the same ratio.
 #include "vphysics/assert.h"
 #include "world/impl.h"
 #include "world/lane_fields.h"

@@ -27,7 +27,7 @@ class JointReactions {
   // Advances the time of the impulses that follow by h.
   void pass(double h) { time_ += h; }
   void back_to_start() { time_ = 0.0; }
-  // Gravity and the user's forces act for h, at the present poses.
+  // Gravity and the user's forces act for h, at the current poses.
   void act(double h) { acting_ += h * time_; }
   // On a link, in the world frame. The moment is about the world's origin.
   void add_impulse(int link, const Vec3& impulse, const Vec3& moment);
@@ -49,7 +49,7 @@ class JointReactions {
 
   // Data of the step that are not recorded here.
   struct Step {
-    std::span<const double> start_q, q, v;  // q and v: present values
+    std::span<const double> start_q, q, v;  // q and v: current values
     Vec3 gravity;
     std::span<const double> dof_impulses;  // of the whole step
   };

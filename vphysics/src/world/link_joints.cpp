@@ -49,7 +49,7 @@ void World::Impl::note_joined_bodies() {
   }
 }
 
-// The poses after h, at the present velocities, of links with joints in rows.
+// The poses after h, at the current velocities, of links with joints in rows.
 void World::Impl::find_next_poses(double h) {
   if (impacts.row_joints.empty()) return;
   impacts.next_poses.resize(bodies.size());

@@ -10,7 +10,7 @@ namespace {
 // Free fall covers 0.3 m in this time.
 constexpr double kDivisionTime = 0.25;  // [s]
 
-// Number of regions for a number of bodies, given the present number `now`: a power of two, or 0
+// Number of regions for a number of bodies, given the current number `now`: a power of two, or 0
 // instead of 1. It decreases only if the fewer regions would be at most three quarters full.
 std::size_t regions_for(std::size_t bodies, std::size_t max_bodies, std::size_t now) {
   std::size_t count = 1;

@@ -34,7 +34,7 @@ struct RowJointStep {
   bool with_memory() const { return of != RowsOf::impact; }
 };
 
-// The body at one end: its present pose, the velocity of its reference point, and the pose to which
+// The body at one end: its current pose, the velocity of its reference point, and the pose to which
 // that leads at the end of the step.
 struct RowEnd {
   BodyPose now;

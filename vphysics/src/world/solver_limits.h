@@ -27,7 +27,7 @@ inline constexpr double kMaxJointSeparation = 0.5;
 inline constexpr double kRotationError = 0.2;
 
 // A joint limit gets a row, in steps h, if its distance is below this: twice the distance covered
-// at the present speed, since an impulse may add to it, plus that at 1 m/s or 1 rad/s.
+// at the current speed, since an impulse may add to it, plus that at 1 m/s or 1 rad/s.
 inline double stop_range(double h, double speed) {
   return h * (2.0 * std::fabs(speed) + 1.0);
 }

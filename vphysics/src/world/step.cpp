@@ -1,7 +1,7 @@
 // One step: forces, then contacts and impacts in the order of time.
 //
 //   integrate forces over dt
-//   repeat   solve the present contacts
+//   repeat   solve the current contacts
 //            advance everything at constant twists to the next impact of a continuous body
 //   until the end of the step; after max_impacts_per_step impacts, bodies that would collide stop
 //
