@@ -27,7 +27,7 @@ TEST(GoldenScenes, TowersOf1120Boxes) {
 TEST(GoldenScenes, APileOfBoxesSpheresAndCapsules) {
   EXPECT_EQ(hash_after(pile(120, Pour::mixed), 420, 240.0), 5920628632208148908u);
 }
-// In 16 regions, which its bodies leave and enter.
+// In 16 regions; bodies move from region to region.
 TEST(GoldenScenes, APileInRegions) {
   vp::WorldDesc settings;
   settings.region_bodies = 8;
