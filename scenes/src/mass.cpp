@@ -2,9 +2,9 @@
 //
 // A polyhedron is a sum of tetrahedra from a point inside it to the triangles (a, b, c) of its
 // faces. With that point as origin and d = det(a, b, c), the volume is d/6, the first moments are
-// d/24 (a + b + c), and the second moments, the integral of x x^T, are d/120 (s s^T + a a^T + b b^T
-// + c c^T), s = a + b + c. (Tonon, Explicit exact formulas for the 3-D tetrahedron inertia tensor,
-// 2004.)
+// d/24 (a + b + c), and the second moments, the integral of x x^T, are
+//   d/120 (s s^T + a a^T + b b^T + c c^T),  s = a + b + c.
+// (Tonon, Explicit exact formulas for the 3-D tetrahedron inertia tensor, 2004.)
 //
 // The principal axes are the eigenvectors of the second moments, by Jacobi rotations (Golub, Van
 // Loan, Matrix Computations, section 8.5).

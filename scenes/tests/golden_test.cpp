@@ -1,5 +1,5 @@
 // Scenes of many bodies end in the same bits on every machine: g++, clang++, WebAssembly. A change
-// of a hash is a change of results and belongs into the changelog.
+// of a hash is a change of results and belongs in the changelog.
 #include <gtest/gtest.h>
 
 #include "scenes/catalogue.h"

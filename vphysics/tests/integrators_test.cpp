@@ -183,8 +183,9 @@ struct Method {
   double bound;  // with steps of 1 ms
 };
 
-// theta'' = -(m g l / I) sin theta from rest at theta0: period 2 pi / (omega agm(1,
-// cos(theta0/2))). Measured: pair 3e-13, RK4 8e-13, variational 3e-6.
+// theta'' = -(m g l / I) sin theta from rest at theta0: the period is
+//   2 pi / (omega agm(1, cos(theta0/2))).
+// Measured: pair 3e-13, RK4 8e-13, variational 3e-6.
 TEST(ClosedForm, PendulumIsBackAfterItsPeriod) {
   const double m = 1.3, l = 0.7, g = 9.81, I = m * l * l + 0.02, start = 2.8;
   const Model model = one_body(RevoluteJoint{{0, -1, 0}},

@@ -391,8 +391,9 @@ TEST(Stewart, HasTheLegsThatInverseKinematicsGives) {
   }
 }
 
-// With nearly massless legs, the slider forces act on the platform along the legs: J V' - dad_V (J
-// V) = sum of (p x f, f) + weight. The error of the legs' mass is proportional to it.
+// With nearly massless legs, the slider forces act on the platform along the legs:
+//   J V' - dad_V (J V) = sum of (p x f, f) + weight
+// The error of the legs' mass is proportional to it.
 TEST(Stewart, AcceleratesAsNewtonAndEulerSay) {
   Random random(94);
   const SE3 X(Exp(Vec3{0.1, -0.2, 0.3}).matrix(), {0.05, -0.08, 1.1});

@@ -60,7 +60,7 @@ void play(Scene& s, Random& random, int ticks) {
 }
 
 // Two seconds of the scene. The constant is the same for g++ and clang++, at -O0 and -O3. A change
-// of it is a change of results and belongs into the changelog.
+// of it is a change of results and belongs in the changelog.
 TEST(Determinism, GoldenHashOfAScene) {
   Scene s = make_scene();
   Random random(41);
