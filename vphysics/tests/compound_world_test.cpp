@@ -113,8 +113,9 @@ TEST(CompoundWorld, AnLTopplesWhenItsCentreOfMassIsBeyondItsFoot) {
   }
 }
 
-// Falling over an edge without slip, the potential energy becomes rotation: I w^2 / 2 = m g (h0 -
-// h). I about the edge is computed here from the two boxes.
+// Falling over an edge without slip, the potential energy becomes rotation:
+//   I w^2 / 2 = m g (h0 - h)
+// I about the edge is computed here from the two boxes.
 TEST(CompoundWorld, AnLFallsAsItsInertiaAboutTheEdgeSays) {
   const double arm = 0.6, density = 1000.0;
   const double m1 = density * 0.04, m2 = density * 0.04 * arm, m = m1 + m2;
