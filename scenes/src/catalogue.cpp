@@ -12,9 +12,9 @@ struct Builder {
   Scene (*build)();
 };
 
-constexpr double kTilted = 0.5;  // chain200's start [rad]
+constexpr double kTilted = 0.5;  // initial tilt of chain200 [rad]
 
-// Of the comparison with other engines first, in the order of its report.
+// First the scenes of the comparison with other engines, in the order of its report.
 constexpr Builder kBuilders[] = {
     {{"towers1120", "8 x 14 towers of 10 boxes"}, [] { return towers(8, 14, 10); }},
     {{"pyramid1128", "a wall pyramid of 1128 boxes, base 47"}, [] { return pyramid(47); }},

@@ -1,4 +1,4 @@
-// What happens in a scene and when.
+// The events of a scene, in their order.
 #include <algorithm>
 #include <cmath>
 #include <tuple>

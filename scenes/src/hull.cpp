@@ -1,4 +1,4 @@
-// The convex hull of a few points, by trying the plane through every three of them.
+// The convex hull of a few points, by brute force over the planes through every three of them.
 #include <algorithm>
 #include <cmath>
 
@@ -7,7 +7,7 @@
 namespace scenes {
 namespace {
 
-constexpr double kFlat = 1e-9;  // of the extent: farther from a plane is not on it
+constexpr double kFlat = 1e-9;  // of the extent: points farther from a plane are not on it
 
 double extent_of(const std::vector<Vec3>& points) {
   double largest = 0.0;
@@ -15,12 +15,12 @@ double extent_of(const std::vector<Vec3>& points) {
   return largest;
 }
 
-// Of the points on a plane, those that are corners of their hull in it, counter-clockwise about the
-// normal: gift wrapping (Jarvis, 1973).
+// The corners of the convex hull of points on a plane, counter-clockwise about the normal: gift
+// wrapping (Jarvis, 1973).
 std::vector<int> ring_of(const std::vector<Vec3>& points, const std::vector<int>& on_plane,
                          const Vec3& normal, double tolerance) {
   const auto at = [&](int i) { return points[static_cast<std::size_t>(i)]; };
-  // The point that is farthest along an edge direction is a corner.
+  // The farthest point along an edge direction is a corner.
   const Vec3 along = at(on_plane[1]) - at(on_plane[0]);
   const Vec3 across = cross(normal, along);
   const int first = *std::max_element(on_plane.begin(), on_plane.end(), [&](int i, int j) {
@@ -68,7 +68,7 @@ Hull hull_of(std::vector<Vec3> points) {
       if (beyond > tolerance) return;
       if (beyond >= -tolerance) on_plane.push_back(m);
     }
-    // Once for each face: by the first three of its points in order.
+    // Adds each face once: for the first three of its points in order.
     const bool first_three = on_plane[0] == std::min({i, j, k});
     if (!first_three) return;
     for (const Polyhedron::Face& face : out.faces) {
@@ -85,7 +85,7 @@ Hull hull_of(std::vector<Vec3> points) {
       }
     }
   }
-  // Points that no face has are left out.
+  // Removes points that belong to no face.
   std::vector<int> renamed(points.size(), -1);
   for (Polyhedron::Face& face : out.faces) {
     for (int& corner : face.corners) {

@@ -1,5 +1,5 @@
-// Bodies that are hulls of points: stones in a pile and in a yard, cubes in a drum. The numbers are
-// those of the scenes of the same names in Box3D's benchmark, z up instead of y.
+// Bodies with convex hulls: stones in a pile and in a yard, cubes in a drum. The numbers are those
+// of the scenes of the same names in Box3D's benchmark, with z up instead of y.
 #include <cmath>
 
 #include "parts.h"
@@ -17,14 +17,15 @@ Body stone(std::vector<Vec3> points) {
   make_principal(body);
   return body;
 }
-// Copies stand with the points where they were given, about their centre.
+// Copies a body to a position, with its points oriented as they were given.
 Body at(const Body& made, const Vec3& position) {
   Body body = made;
   body.T_world_body = SE3(position) * made.T_world_body;
   return body;
 }
 
-// Random points on a sphere. The generator and its seed are the original's, for the same stone.
+// Random points on a sphere. The generator and its seed are the original's, so that the stone is
+// the same.
 std::vector<Vec3> random_points(int count, double radius) {
   std::uint32_t state = 42;
   const auto next = [&] {
@@ -40,8 +41,8 @@ std::vector<Vec3> random_points(int count, double radius) {
   return points;
 }
 
-// Points spread evenly over a sphere: their angles about an axis grow by the golden ratio's share
-// of a turn (Fibonacci lattice).
+// Points spread evenly over a sphere: their angles about an axis grow by the golden ratio's
+// fraction of a revolution (Fibonacci lattice).
 std::vector<Vec3> lattice_points(int count, double radius) {
   const double turn = 2.0 * vp::kPi / (0.5 * (1.0 + std::sqrt(5.0)));
   std::vector<Vec3> points;
@@ -53,7 +54,7 @@ std::vector<Vec3> lattice_points(int count, double radius) {
   return points;
 }
 
-// Of the drum, between two angles about its axis, which is y, and two radii.
+// A sector of the drum, between two angles about its axis, y, and two radii.
 Hull sector(double from, double to, double inner, double outer, double half_length) {
   std::vector<Vec3> points;
   for (const double angle : {from, to}) {
@@ -98,7 +99,7 @@ Scene convex_pile(int along, int layers) {
   return scene;
 }
 
-// The stones begin half a metre higher than the original's, of which some begin in the column.
+// The stones start half a metre higher than the original's, where some start inside the column.
 Scene junkyard(int along, int layers) {
   constexpr double kRadius = 1.5, kPitch = 4.0, kLowest = 25.5;             // of the stones [m]
   constexpr double kHalf = 50.0, kThick = 1.0, kHigh = 8.0, kMiddle = 7.0;  // of the walls [m]

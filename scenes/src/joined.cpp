@@ -7,7 +7,8 @@
 namespace scenes {
 namespace {
 
-// Joins two bodies at a point of the world, with the joint's z along an axis of the world.
+// Joins two bodies at a point of the world, with the joint's z axis along a given axis of the
+// world.
 void join(Scene& scene, Joint::Kind kind, int a, int b, const Vec3& point,
           const vp::Mat3& axes = vp::Mat3::identity(), double lower = -Joint::kNever,
           double upper = Joint::kNever) {
@@ -15,11 +16,11 @@ void join(Scene& scene, Joint::Kind kind, int a, int b, const Vec3& point,
   scene.joints.push_back({kind, a, b, Inv(scene.bodies[a].T_world_body) * frame,
                           Inv(scene.bodies[b].T_world_body) * frame, lower, upper});
 }
-// A frame whose z is the world's y.
+// A rotation whose z axis is the world's y axis.
 constexpr vp::Mat3 kAlongY{{1, 0, 0}, {0, 0, -1}, {0, 1, 0}};
 
-// A figure of 1.8 m and 68 kg that looks along x, arms down; places relative to the ground below
-// it.
+// A figure of 1.8 m and 68 kg that faces x, with its arms down. Positions are relative to the
+// ground below it.
 enum Limb {
   pelvis,
   abdomen,
@@ -51,7 +52,7 @@ struct LimbJoint {
   Vec3 point;
   double lower, upper;
 };
-constexpr double kFlex = 2.4, kStretch = 0.05;  // elbows and knees bend one way [rad]
+constexpr double kFlex = 2.4, kStretch = 0.05;  // elbows and knees bend in one direction [rad]
 const LimbJoint kLimbJoints[] = {
     {Joint::Kind::ball, pelvis, abdomen, {0, 0, 1.085}, 0, 0},
     {Joint::Kind::ball, abdomen, chest, {0, 0, 1.235}, 0, 0},
@@ -65,9 +66,10 @@ const LimbJoint kLimbJoints[] = {
     {Joint::Kind::hinge, thigh_l, shin_l, {0, 0.10, 0.485}, -kStretch, kFlex},
     {Joint::Kind::hinge, thigh_r, shin_r, {0, -0.10, 0.485}, -kStretch, kFlex}};
 
-// Bars of one weight between two hinges hang still if the tangents of their slopes grow by the same
-// step from each to the next: the horizontal pull is the same everywhere, the vertical one grows by
-// a bar's weight. The first end is at start; the other is returned.
+// Bars of equal weight between two hinges are in equilibrium if the tangents of their slopes
+// increase by the same step from each bar to the next: the horizontal force is equal everywhere,
+// and the vertical force increases by a bar's weight. The first end is at start; the function
+// returns the other end.
 struct BarSpec {
   int count;
   double pitch;  // between hinges [m]
@@ -113,7 +115,8 @@ Scene ragdolls(int along_x, int along_y, int layers) {
   for (int k = 0; k < layers; ++k) {
     for (int i = 0; i < along_x; ++i) {
       for (int j = 0; j < along_y; ++j) {
-        // Leaning, each another way, for none to stay on its feet; about the middle of its height.
+        // Each figure leans in another direction, about the middle of its height, so that none
+        // stays on its feet.
         const double yaw = 0.7 * i + 1.9 * j + 2.3 * k;
         const auto [s, c] = vp::sin_cos(3.1 * yaw);
         const SE3 middle = turned(
@@ -149,7 +152,7 @@ Scene chain(int links, double tilt) {
 }
 
 Scene joint_grid(int side) {
-  constexpr double kPitch = 1.0, kRadius = 0.4;  // [m]: they do not meet while it swings
+  constexpr double kPitch = 1.0, kRadius = 0.4;  // [m]: they do not collide while it swings
   Scene scene;
   std::vector<int> column_before, column;
   for (int k = 0; k < side; ++k) {

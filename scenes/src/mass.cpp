@@ -1,12 +1,12 @@
-// Masses and moments of inertia of the solids, of uniform density.
+// Masses and moments of inertia of solids of uniform density.
 //
 // A polyhedron is a sum of tetrahedra from a point inside it to the triangles (a, b, c) of its
-// faces. With that point as origin and d = det(a, b, c), one has the volume d/6, the first moments
-// d/24 (a + b + c), and the second moments, the integral of x x^T,
-// d/120 (s s^T + a a^T + b b^T + c c^T), s = a + b + c. (Tonon, Explicit exact formulas for the 3-D
-// tetrahedron inertia tensor, 2004.)
+// faces. With that point as origin and d = det(a, b, c), the volume is d/6, the first moments are
+// d/24 (a + b + c), and the second moments, the integral of x x^T, are
+//   d/120 (s s^T + a a^T + b b^T + c c^T),  s = a + b + c.
+// (Tonon, Explicit exact formulas for the 3-D tetrahedron inertia tensor, 2004.)
 //
-// The principal axes are the eigenvectors of the second moments, by Jacobi's rotations (Golub, Van
+// The principal axes are the eigenvectors of the second moments, by Jacobi rotations (Golub, Van
 // Loan, Matrix Computations, section 8.5).
 #include <algorithm>
 #include <cmath>
@@ -30,7 +30,7 @@ Mass box_mass(const Box& b, double density) {
           {s * (h.y * h.y + h.z * h.z), s * (h.z * h.z + h.x * h.x), s * (h.x * h.x + h.y * h.y)}};
 }
 
-// A cylinder and two half balls, whose centres of mass are 3/8 r beyond its ends.
+// A cylinder and two hemispheres, whose centres of mass are 3/8 r beyond its ends.
 Mass capsule_mass(const Capsule& c, double density) {
   const double r = c.radius, h = c.half_length;
   const double cylinder = density * 2.0 * vp::kPi * r * r * h;
@@ -52,7 +52,7 @@ struct Integrals {
 
   Vec3 centre() const { return (1.0 / mass) * first; }
   Sym3 central() const { return second - outer(mass, centre()); }
-  // In the frame in which this one has the pose T.
+  // The same integrals in the frame in which this frame has the pose T.
   Integrals moved(const SE3& T) const {
     const Vec3 f = T.rotate(first), &p = T.position();
     Sym3 C = rotated(T.rotation(), second) + outer(mass, p);
@@ -94,14 +94,15 @@ Integrals hull_integrals(const Polyhedron& hull, double density) {
 
 Integrals integrals_of(const Shape& shape, double density) {
   if (const auto* hull = std::get_if<Hull>(&shape)) return hull_integrals(*hull->data, density);
-  const Mass own = mass_of(shape, density);  // symmetrical about its frame's planes
+  const Mass own = mass_of(shape, density);  // symmetric about its frame's planes
   const Vec3& I = own.moments;
   const double half = 0.5 * (I.x + I.y + I.z);
   return {own.mass, {}, {half - I.x, half - I.y, half - I.z, 0.0, 0.0, 0.0}};
 }
 
-// Columns: unit eigenvectors, right-handed. A product of rotations, one for each pair of axes in
-// turn, after which that pair's entry is zero; 12 rounds take the others below rounding.
+// Columns: unit eigenvectors, right-handed. A product of Jacobi rotations, one for each pair of
+// axes in turn, each of which makes that pair's entry zero. 12 sweeps reduce the off-diagonal
+// entries below rounding.
 Mat3 eigenvectors(const Sym3& A) {
   double a[3][3] = {{A.xx, A.xy, A.zx}, {A.xy, A.yy, A.yz}, {A.zx, A.yz, A.zz}};
   double v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};

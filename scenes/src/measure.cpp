@@ -1,9 +1,9 @@
-// How deep bodies are in each other, and how far they are from where they were.
+// Penetration depths of bodies and their displacements from the start.
 //
-// A sphere, a capsule and a box are a core (a point, a segment, a box) and a radius around it.
-// While the cores are apart, the depth is the sum of the radii less the cores' distance; once they
-// meet, it is the least overlap along the axes that can part two boxes (faces and pairs of edges:
-// Gottschalk, Lin, Manocha, OBBTree, 1996), which for boxes is exact, and the radii. Hulls and
+// A sphere, a capsule and a box are a core (a point, a segment, a box) with a radius. While the
+// cores are separated, the depth is the sum of the radii minus the distance of the cores. Once they
+// overlap, it is the radii plus the smallest overlap along the separating axes of two boxes (faces
+// and pairs of edges: Gottschalk, Lin, Manocha, OBBTree, 1996), which is exact for boxes. Hulls and
 // meshes: measure_hull.h.
 #include "scenes/measure.h"
 
@@ -43,7 +43,7 @@ const Vec3& column(const Core& core, int i) {
   return i == 0 ? R.cx : i == 1 ? R.cy : R.cz;
 }
 
-// The least overlap of the two cores along the axes that can part them; negative: they are apart.
+// The smallest overlap of two cores along the separating axes; negative if they are separated.
 double core_overlap(const Core& a, const Core& b) {
   const Vec3 d = b.pose.position() - a.pose.position();
   double least = std::numeric_limits<double>::infinity();
@@ -58,7 +58,7 @@ double core_overlap(const Core& a, const Core& b) {
     for (int j = 0; j < 3; ++j) {
       const Vec3 n = cross(column(a, i), column(b, j));
       const double length = norm(n);
-      if (length > 1e-6) try_axis((1.0 / length) * n);  // else parallel: faces part them as well
+      if (length > 1e-6) try_axis((1.0 / length) * n);  // else parallel: the face axes suffice
     }
   }
   return least;
@@ -70,8 +70,8 @@ double distance_to(const Core& core, const Vec3& point) {
   return norm(Vec3{beyond(p.x, core.half.x), beyond(p.y, core.half.y), beyond(p.z, core.half.z)});
 }
 
-// Along a segment the distance from a convex set is convex, so that a search by thirds finds the
-// least: 100 of them take its length below rounding.
+// The distance of a segment's points from a convex set is a convex function. Ternary search finds
+// its minimum: 100 iterations reduce the interval below rounding.
 template <class DistanceAt>
 double least_along(double half_length, const DistanceAt& at) {
   double lower = -half_length, upper = half_length;
@@ -86,7 +86,7 @@ double least_along(double half_length, const DistanceAt& at) {
   return at(0.5 * (lower + upper));
 }
 
-// Of a point or a segment from another core.
+// Distance of a point or a segment from another core.
 double core_distance(const Core& thin, const Core& other) {
   return least_along(thin.half.z, [&](double z) {
     return distance_to(other, thin.pose * Vec3{0.0, 0.0, z});
@@ -98,7 +98,7 @@ double ground_penetration(const SE3& ground, const Core& core) {
   return core.radius + extent(core, up) - dot(up, core.pose.position() - ground.position());
 }
 
-// From a point above the ground, as far as reach; beyond it more.
+// Distance of a point above the ground, exact up to `reach`; beyond it a larger value.
 double distance_to(const Terrain& terrain, const Vec3& p, double reach) {
   const auto corner = [&](int i, int j) {
     const double height = (*terrain.heights)[static_cast<std::size_t>(j * terrain.columns + i)];
@@ -127,7 +127,7 @@ double terrain_penetration(const Terrain& terrain, const SE3& T, const Core& cor
         inverse_times(T, core.pose * Vec3{corner & 1 ? h.x : -h.x, corner & 2 ? h.y : -h.y,
                                           corner & 4 ? h.z : -h.z});
     const Terrain::Below below = terrain.below(p.x, p.y);
-    const double above = below.normal.z * (p.z - below.height);  // its triangle's plane
+    const double above = below.normal.z * (p.z - below.height);  // above its triangle's plane
     const bool apart = core.round() && above > 0.0;
     deepest =
         std::max(deepest, core.radius - (apart ? distance_to(terrain, p, core.radius) : above));
@@ -155,7 +155,7 @@ double terrain_penetration(const Terrain& terrain, const SE3& T, const Polyhedro
   return deepest;
 }
 
-// A hull and what is no hull: a core with a radius, or a box.
+// A hull and a core with a radius, or a box.
 double hull_penetration(const Polyhedron& hull, const SE3& T, const Core& core) {
   if (!core.round()) return hulls_penetration(hull, T, box_polyhedron(core.half), core.pose);
   const auto in_hull = [&](double z) { return inverse_times(T, core.pose * Vec3{0.0, 0.0, z}); };
@@ -193,7 +193,7 @@ bool is_ground(const Shape& shape) {
   return std::holds_alternative<Ground>(shape) || std::holds_alternative<Terrain>(shape);
 }
 
-// A part of a body in the world, with its bounds.
+// A part of a body in the world, with its AABB.
 struct Placed {
   const Shape* shape;
   SE3 pose;
@@ -235,7 +235,7 @@ bool bounds_meet(const Placed& a, const Placed& b) {
          b.lower.y <= a.upper.y && a.lower.z <= b.upper.z && b.lower.z <= a.upper.z;
 }
 
-// The meshes' grids, each made once.
+// The grids of the meshes; each is built once.
 class Grids {
  public:
   const MeshGrid& of(const Mesh& mesh) {
@@ -246,7 +246,7 @@ class Grids {
   std::map<const Triangles*, MeshGrid> grids_;
 };
 
-// A moving shape and any other one.
+// A shape of a moving body and any other shape.
 double penetration(const Shape& a, const SE3& T_world_a, const Shape& b, const SE3& T_world_b,
                    Grids& grids) {
   if (is_ground(a) || std::holds_alternative<Mesh>(a))
@@ -304,8 +304,8 @@ bool is_finite_pose(const SE3& T) {
   return is_finite(T.position()) && is_finite(R.cx) && is_finite(R.cy) && is_finite(R.cz);
 }
 
-// What moves is swept along x against what moves; against what stands, which is little but wide,
-// each is looked at.
+// Pairs of moving parts by sweep and prune along x. Fixed parts are few but large, so each is
+// tested against all moving ones.
 double deepest_penetration(const Scene& scene, std::span<const SE3> poses, double time) {
   std::vector<Placed> moving, standing;
   for (int i = 0; i < static_cast<int>(scene.bodies.size()); ++i) {

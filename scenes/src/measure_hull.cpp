@@ -76,7 +76,7 @@ MeshGrid::MeshGrid(const Triangles& mesh) : mesh_(&mesh) {
       upper_[i] = std::max(upper_[i], v[i]);
     }
   }
-  // About two triangles a square.
+  // About two triangles a cell.
   const double x = std::max(upper_.x - lower_.x, 1e-9), y = std::max(upper_.y - lower_.y, 1e-9);
   const double squares = 0.5 * static_cast<double>(mesh.corners.size());
   const double size = std::max({std::sqrt(x * y / squares), 1e-3 * x, 1e-3 * y});
@@ -127,8 +127,8 @@ MeshGrid::Cells MeshGrid::sorted(std::size_t count, const BoundsOf& bounds_of) c
   return cells;
 }
 
-// Of triangles at the same distance, as at a common edge, the one whose plane is farther off says
-// on which side the point is.
+// Of triangles at the same distance, as at a common edge, the one whose plane is farther from the
+// point decides on which side the point is.
 double MeshGrid::behind(const Vec3& p, double reach) const {
   const Vec3 around{reach, reach, reach};
   double nearest = reach, off_plane = 0.0, sign = 0.0;

@@ -1,4 +1,4 @@
-// How deep polyhedra and triangles are in other shapes; for measure.cpp.
+// Penetration depths of polyhedra and triangle meshes; for measure.cpp.
 #pragma once
 
 #include <algorithm>
@@ -10,33 +10,34 @@
 namespace scenes {
 
 Polyhedron box_polyhedron(const Vec3& half_extents);
-// From a point to a triangle: to its plane where the foot lies inside, else to the nearest edge.
+// Distance of a point from a triangle: from its plane if the projected point is inside, else from
+// the nearest edge.
 double triangle_distance(const Vec3 (&corners)[3], const Vec3& p);
-// How deep a point of the hull's frame is in it: the distance from the nearest face's plane;
-// negative outside, but then not always the distance.
+// Depth of a point below the nearest face's plane, in the hull's frame. Negative outside, but then
+// not always the distance.
 double depth_in(const Polyhedron& hull, const Vec3& p);
-// 0 inside.
+// Distance of a point from a hull; 0 inside.
 double hull_distance(const Polyhedron& hull, const Vec3& p);
-// The deepest corner of the one in the other.
+// The depth of the deepest corner of one hull in the other.
 double hulls_penetration(const Polyhedron& a, const SE3& T_world_a, const Polyhedron& b,
                          const SE3& T_world_b);
 
-// What meets a mesh: points with a radius around them, which are a sphere's centre, the ends of a
+// Points with a radius that represent a shape against a mesh: a sphere's centre, the ends of a
 // capsule's axis, or corners.
 struct Probe {
   std::vector<Vec3> points;  // in the shape's frame
   double radius = 0.0;
-  Vec3 centre;         // of a ball around the shape, in its frame
-  double reach = 0.0;  // that ball's radius [m]
+  Vec3 centre;         // of the bounding sphere, in the shape's frame
+  double reach = 0.0;  // radius of the bounding sphere [m]
 };
 
-// Triangles by the squares of a grid over x and y in which their bounds are.
+// Triangles and vertices of a mesh, sorted into the cells of a grid over x and y by their bounds.
 class MeshGrid {
  public:
-  explicit MeshGrid(const Triangles& mesh);  // which is to outlive it
+  explicit MeshGrid(const Triangles& mesh);  // the mesh must outlive the grid
 
-  // How deep the probe's points are behind the triangle next to them, up to its reach, and the
-  // mesh's vertices in the shape, by depth_of(vertex in the shape's frame).
+  // The largest depth of the probe's points behind their nearest triangle, within the probe's
+  // reach, and of the mesh's vertices in the shape, by depth_of(vertex in the shape's frame).
   template <class DepthOf>
   double penetration(const Probe& probe, const SE3& T_mesh_shape, const DepthOf& depth_of) const {
     double deepest = -kFar;
@@ -52,12 +53,13 @@ class MeshGrid {
 
  private:
   static constexpr double kFar = 1e9;
-  // Those of cell k are items[starts[k]] to items[starts[k + 1] - 1].
+  // The items of cell k are items[starts[k]] to items[starts[k + 1] - 1].
   struct Cells {
     std::vector<std::uint32_t> starts, items;
   };
 
-  // > 0: behind the nearest triangle; -kFar: none is within reach.
+  // Depth of a point behind its nearest triangle, negative in front; -kFar if no triangle is within
+  // reach.
   double behind(const Vec3& p, double reach) const;
   int column(double x) const;
   int row(double y) const;

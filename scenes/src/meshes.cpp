@@ -1,5 +1,5 @@
-// What falls on triangles: trees on waves, ragdolls on fields and rings. The numbers are those of
-// the scenes of the same names in Box3D's benchmark, z up instead of y.
+// Bodies that fall on triangle meshes: trees on waves, ragdolls on fields and rings. The numbers
+// are those of the scenes of the same names in Box3D's benchmark, with z up instead of y.
 #include <cmath>
 
 #include "parts.h"
@@ -8,7 +8,8 @@
 namespace scenes {
 namespace {
 
-// Of columns x rows cells about the origin, each cut along the diagonal from its lower corner.
+// A grid of columns x rows cells about the origin, each split along the diagonal from its lower
+// corner.
 template <class Height>
 Mesh grid_mesh(int columns, int rows, double cell, const Height& height) {
   Triangles out;
@@ -31,7 +32,7 @@ Mesh grid_mesh(int columns, int rows, double cell, const Height& height) {
   return {std::make_shared<const Triangles>(std::move(out))};
 }
 
-// A ring about the y axis: `around` pieces of a tube of `across` sides.
+// A torus about the y axis: `around` pieces of a tube of `across` sides.
 Mesh ring_mesh(int around, int across, double radius, double thickness) {
   Triangles out;
   for (int i = 0; i < around; ++i) {
@@ -55,12 +56,12 @@ Mesh ring_mesh(int around, int across, double radius, double thickness) {
   return {std::make_shared<const Triangles>(std::move(out))};
 }
 
-// A stem of prisms that become thinner, its foot at the origin.
+// A stem of prisms, each thinner than the one below, with its foot at the origin.
 Body tree() {
   constexpr int kPieces = 22, kSides = 6;
-  constexpr double kThick = 0.75, kLong = 1.5, kThinner = 0.95;  // [m], [m], of the piece below
+  constexpr double kThick = 0.75, kLong = 1.5, kThinner = 0.95;  // [m], [m], per piece
   constexpr double kDensity = 1.0;
-  // Box3D's is 0.05 of the radius of each piece's largest inner ball; here all have the mean.
+  // Box3D's is 0.05 of the radius of each piece's largest inscribed sphere; here all have the mean.
   const Material bark{0.9, 0.0, 0.02};
   Body body;
   double middle = 1.0, radius = kThick;
@@ -79,7 +80,7 @@ Body tree() {
 
 Scene trees(int count, int cells_per_metre) {
   constexpr int kAlongX = 150, kAlongY = 200;                    // of the ground [m]
-  constexpr double kAmplitude = 0.4, kPerX = 0.1, kPerY = 0.05;  // [m], waves a metre
+  constexpr double kAmplitude = 0.4, kPerX = 0.1, kPerY = 0.05;  // [m], waves per metre
   constexpr double kFirst = 70.0, kPitch = 3.0, kFoot = 1.0;     // [m]
   constexpr double kSpin = 0.5;                                  // [rad/s], of the fastest
   Scene scene;
@@ -125,7 +126,7 @@ Scene rain(int along, int group) {
       add(scene, std::move(ground));
     }
   }
-  // A column's figures are there until the column has its turn again.
+  // A column's figures exist until the column is created again.
   const double life = kEvery * along;
   for (int n = 0; kEvery * n < scene.seconds; ++n) {
     const std::size_t first = scene.bodies.size();

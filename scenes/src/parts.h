@@ -1,4 +1,4 @@
-// Pieces that several scenes are made of.
+// Parts that several scenes use.
 #pragma once
 
 #include <cmath>
@@ -20,7 +20,7 @@ inline Body fixed_body(const Shape& shape, const SE3& pose, const Material& mate
   body.motion = Motion::fixed;
   return body;
 }
-// The index of what is added.
+// Returns the index of the added body.
 inline int add(Scene& scene, Body body) {
   scene.bodies.push_back(std::move(body));
   return static_cast<int>(scene.bodies.size()) - 1;
@@ -28,19 +28,19 @@ inline int add(Scene& scene, Body body) {
 inline int add_floor(Scene& scene, const Material& material = {}) {
   return add(scene, fixed_body(Ground{}, SE3{}, material));
 }
-// A floor and four walls of 1 m around the square |x|, |y| <= side / 2, whose inside is what "in
-// place" means.
+// A floor and four walls of 1 m around the square |x|, |y| <= side / 2. Bodies within this square
+// are in place.
 void add_pit(Scene& scene, double side, double height);
 
-// A figure of kRagdollBodies bodies that stands on the frame's origin, z up, and looks along x.
+// A figure of kRagdollBodies bodies. It stands on the frame's origin with z up and faces x.
 void add_ragdoll(Scene& scene, const SE3& T_world_ground);
 
-// Of regular polygons about z, the first corner on the side of x.
+// A prism over a regular polygon about the z axis. Its first corner is in the direction of x.
 Hull prism(double radius, double bottom, double height, int sides);
 
-// Gives the body at each time k / kKnots the velocity that takes it to where it is to be at the
-// next: at those times it is on the path, between them on chords.
-inline constexpr double kKnots = 60.0;  // [1/s]: at 60 Hz a chord is a step
+// Launches the body at each time k / kKnots with the velocity that takes it to the next point of
+// the path. At these times it is on the path, between them on chords.
+inline constexpr double kKnots = 60.0;  // [1/s]: at 60 Hz a chord is one step
 template <class Path>
 void follow(Scene& scene, int body, const Path& path) {
   const int knots = static_cast<int>(std::lround(scene.seconds * kKnots));
@@ -51,7 +51,7 @@ void follow(Scene& scene, int body, const Path& path) {
   }
 }
 
-// A right-handed turn about the axis [rad].
+// A right-handed rotation by a rotation vector [rad].
 inline SE3 turned(const Vec3& rotation_vector, const Vec3& position) {
   return SE3(vp::Exp(rotation_vector), position);
 }

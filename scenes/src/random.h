@@ -1,5 +1,5 @@
-// Fixed-seed numbers for the scenes: splitmix64, the same on every machine. Source: Steele, Lea,
-// Flood, Fast splittable pseudorandom number generators, 2014.
+// Fixed-seed random numbers for the scenes: splitmix64, the same on every machine. Source: Steele,
+// Lea, Flood, Fast splittable pseudorandom number generators, 2014.
 #pragma once
 
 #include <cstdint>

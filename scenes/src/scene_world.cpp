@@ -5,7 +5,7 @@
 namespace scenes {
 namespace {
 
-// What shapes may share; null: nothing.
+// The data that shapes may share; null if the kind has none.
 const void* data_of(const Shape& shape) {
   if (const auto* h = std::get_if<Hull>(&shape)) return h->data.get();
   if (const auto* m = std::get_if<Mesh>(&shape)) return m->data.get();
@@ -167,7 +167,7 @@ vp::Expected<void> SceneWorld::handle(const Event& event) {
       return add_joint(index);
     case Event::Kind::remove_body:
       return world_.destroy_body(std::exchange(bodies_[index], vp::BodyId{}));
-    case Event::Kind::remove_joint:  // goes with its body
+    case Event::Kind::remove_joint:  // destroyed with its body
       return {};
     case Event::Kind::launch:
       return launch(scene_.launches[index]);

@@ -14,8 +14,8 @@ InPlace within(double distance) {
   return rule;
 }
 
-// A card and its frames. A leaning pair has its feet length sin apart from the middle; its upper
-// edges touch, and two ridges at height length cos + thickness sin carry what lies on it.
+// A card and its frames. The feet of a leaning pair are length sin from the centre. Its upper edges
+// touch; two ridges at height length cos + thickness sin carry the cards above.
 struct Card {
   double length = 0.09, width = 0.06, thickness = 0.003;  // [m]
   double lean = 0.35;                                     // from the vertical [rad]
@@ -24,7 +24,7 @@ struct Card {
   Box box() const { return {{0.5 * thickness, 0.5 * width, 0.5 * length}}; }
   double storey() const { return length * cosine + thickness * sine; }
 };
-// Between neighbouring cards that lie, less than the ridges of a pair are apart [m].
+// Between neighbouring flat cards; smaller than the distance between the ridges of a pair [m].
 constexpr double kCardGap = 0.001;
 
 void add_leaning_pair(Scene& scene, const Card& card, const Material& paper, double x, double z) {
@@ -69,7 +69,7 @@ Scene dominoes(int count) {
     const double angle = kPitch / kRadius * i;
     const auto [s, c] = vp::sin_cos(angle);
     const SE3 foot = turned({0, 0, angle + 0.5 * vp::kPi}, {kRadius * c, kRadius * s, 0.0});
-    // The first leans over its front edge, beyond its centre of mass.
+    // The first domino leans over its front edge, beyond its centre of mass.
     const Vec3 edge{half.x, 0.0, 0.0};
     const SE3 lean = turned({0.0, i == 0 ? kTip : 0.0, 0.0}, edge);
     add(scene, body_of(Box{half}, foot * lean * SE3(Vec3{-half.x, 0.0, half.z})));
@@ -90,13 +90,13 @@ Scene heavy_on_light(double ratio) {
 Scene t_handle() {
   constexpr double kAluminium = 2700.0;
   const Box bar{{0.1, 0.015, 0.015}}, stem{{0.015, 0.015, 0.05}};
-  // The centre of mass lies between the two, by their masses.
+  // The centre of mass is between the two parts, weighted by their masses.
   const double apart = bar.half_extents.z + stem.half_extents.z;
   const double share = mass_of(stem, 1.0).mass / (mass_of(stem, 1.0).mass + mass_of(bar, 1.0).mass);
   Body handle;
   handle.parts.push_back({bar, SE3(Vec3{0, 0, -share * apart}), kAluminium, {}});
   handle.parts.push_back({stem, SE3(Vec3{0, 0, (1.0 - share) * apart}), kAluminium, {}});
-  handle.spin = {0.2, 0.0, 8.0};  // about the axis of the middle moment, nearly
+  handle.spin = {0.2, 0.0, 8.0};  // nearly about the intermediate axis
   Scene scene;
   scene.gravity = {};
   scene.seconds = 20.0;
@@ -152,8 +152,8 @@ Scene conveyor() {
     add(scene, body_of(Box{{0.3, 0.3, half_height}},
                        SE3(Vec3{0.3 + 0.8 * i, 0.0, kHeight + kRadius + half_height}), {}, 200.0));
   }
-  // Beside it spheres of growing rolling friction on a slope: where the lever arm is more than the
-  // radius times the slope's tangent, they stay.
+  // Beside it are spheres of increasing rolling friction on a slope. They stay if the lever arm is
+  // larger than the radius times the slope's tangent.
   const double tangent = 0.2, c = 1.0 / std::sqrt(1.0 + tangent * tangent), s = tangent * c;
   const SE3 slope(vp::Mat3{{c, 0, -s}, {0, 1, 0}, {s, 0, c}}, {2.5, 3.0, 0.8});
   const Box board{{2.5, 1.0, 0.05}};

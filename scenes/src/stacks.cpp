@@ -1,4 +1,4 @@
-// Boxes of 1 m and density 1000 that stand on each other exactly, and what is poured into a pit.
+// Boxes of 1 m and density 1000 in exact stacks, and bodies poured into a pit.
 #include <cmath>
 
 #include "parts.h"
@@ -9,7 +9,7 @@ namespace scenes {
 namespace {
 
 constexpr Box kCrate{{0.5, 0.5, 0.5}};
-constexpr double kTowerPitch = 2.0;    // between neighbouring towers' axes [m]
+constexpr double kTowerPitch = 2.0;    // between the axes of neighbouring towers [m]
 constexpr double kPyramidPitch = 1.1;  // boxes of a row do not touch [m]
 
 InPlace near_start() {
@@ -18,12 +18,12 @@ InPlace near_start() {
   return rule;
 }
 
-// A pit's floor is cut into cells, one body of a layer above each. A layer is shifted against the
-// last, so that what falls does not build columns.
+// The pit's floor is divided into cells, with one body of a layer above each. Each layer is shifted
+// relative to the one below, so that falling bodies do not form columns.
 constexpr double kPitCell = 1.25;                // [m]
 constexpr double kPourPitch = 1.2;               // of the bodies, in all directions [m]
 constexpr double kLayers = 10000.0 / (24 * 24);  // so that 10,000 need a pit of 30 m
-constexpr double kPourHeight = 1.0;              // the lowest layer's centre [m]
+constexpr double kPourHeight = 1.0;              // centre of the lowest layer [m]
 constexpr double kTilt = 0.09;     // of a box, about each axis: it stays within the pitch [rad]
 constexpr double kMaxShift = 0.3;  // [m]
 
@@ -38,7 +38,7 @@ Body poured(int kind, Random& random, const Vec3& position) {
   return body_of(kCrate, turned(kTilt * turn, position));
 }
 
-// Rows of boxes, each one shorter than the row below it, in the x-z plane.
+// Rows of boxes in the xz plane, each one box shorter than the row below it.
 void add_pyramid(Scene& scene, int base, double pitch, const Body& box) {
   const double side = 2.0 * std::get<Box>(box.parts[0].shape).half_extents.z;
   for (int row = 0; row < base; ++row) {
@@ -135,10 +135,10 @@ double pit_side(int count) {
 
 namespace {
 
-// The lowest layer's centre is at that height [m].
+// `height`: centre of the lowest layer [m].
 Scene poured_pile(int count, Pour what, double height) {
   Scene scene;
-  if (what == Pour::boxes) scene.seconds = 4.0;  // the last layer is down after 3
+  if (what == Pour::boxes) scene.seconds = 4.0;  // the last layer has landed after 3
   const int cells = cells_of(count);
   const int layers = (count + cells * cells - 1) / (cells * cells);
   const double side = pit_side(count);
@@ -161,8 +161,8 @@ Scene pile(int count, Pour what) {
   return poured_pile(count, what, kPourHeight);
 }
 
-// A body of 1 m fits between the paddle's ends and the walls, and below the lowest layer the
-// paddle.
+// A body of 1 m fits between the paddle's ends and the walls; the paddle fits below the lowest
+// layer.
 Scene stirred_pile(int count) {
   constexpr double kHalfHeight = 1.0, kClear = 0.05, kHalfWidth = 0.2, kToWall = 2.5;  // [m]
   constexpr double kSpin = 0.5;                                                        // [rad/s]

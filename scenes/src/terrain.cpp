@@ -1,4 +1,4 @@
-// Ground by its height, and what is let loose on it.
+// Height fields, and bodies released on them.
 #include <algorithm>
 #include <cmath>
 
@@ -9,7 +9,7 @@
 namespace scenes {
 namespace {
 
-// A bowl with hills in it: what rolls stays in.
+// A bowl with hills in it: rolling bodies stay inside.
 double bowl(double x, double y) {
   const double hills = vp::sin_cos(0.9 * x).sin * vp::sin_cos(0.8 * y + 0.4).sin +
                        0.4 * vp::sin_cos(2.1 * x + 1.3 * y).sin;
@@ -58,7 +58,7 @@ Scene hills(int count) {
   add(scene, fixed_body(ground, SE3(Vec3{-0.5 * kSide, -0.5 * kSide, 0.0})));
   scene.in_place.lower = {-0.5 * kSide, -0.5 * kSide, -1.0};
   scene.in_place.upper = {0.5 * kSide, 0.5 * kSide, 1e9};
-  // On the slopes of a square, well apart from one another.
+  // On the slopes of a square, well separated from one another.
   Random random(29);
   constexpr double kPitch = 1.3;
   const int along = static_cast<int>(std::ceil(std::sqrt(count)));
@@ -77,7 +77,7 @@ Scene hills(int count) {
 
 namespace {
 
-// With the centre of mass, which lies on the z axis, at the origin.
+// A body with its centre of mass, which is on the z axis, at the origin.
 Body centred(std::vector<Part> parts) {
   double mass = 0.0, moment = 0.0;
   for (const Part& part : parts) {
@@ -118,7 +118,7 @@ Body dumbbell() {
 }  // namespace
 
 Scene furniture(int along, int layers) {
-  constexpr double kPitch = 1.15;  // no two can meet, however they are turned [m]
+  constexpr double kPitch = 1.15;  // no two can collide in any orientation [m]
   Scene scene;
   add_pit(scene, kPitch * (along + 1), 3.0);
   Random random(31);

@@ -6,7 +6,7 @@ namespace scenes {
 namespace {
 
 constexpr double kEnd = 1.0, kG = 9.81, kMu = 0.6;  // [s], [m/s^2]
-constexpr double kAway = 5.0;                       // between what must not meet [m]
+constexpr double kAway = 5.0;                       // distance between separate cases [m]
 
 class Course {
  public:
@@ -15,7 +15,7 @@ class Course {
     add_floor(out_.scene);
   }
   int add(Body body) { return scenes::add(out_.scene, std::move(body)); }
-  // Of a point that begins at a place in the world and ends at another.
+  // Expects a point with a given initial position in the world to end at another.
   void expect(const char* what, int body, const Vec3& point, const Vec3& end, double tolerance) {
     out_.expectations.push_back({what, body, point, end, tolerance});
   }
@@ -36,14 +36,14 @@ Body moving(const Shape& shape, const Vec3& at, const Vec3& velocity, double den
   return body;
 }
 
-// It slides until friction has stopped it, v^2 / (2 mu g) on.
+// It slides until friction stops it, after v^2 / (2 mu g).
 void add_slider(Course& b, double y) {
   constexpr double kSpeed = 5.0, kHalf = 0.25;
   const int body = b.add(moving(Box{{0.5, 0.5, kHalf}}, {0, y, kHalf}, {kSpeed, 0, 0}));
   b.expect("a box slides", body, {}, {kSpeed * kSpeed / (2.0 * kMu * kG), y, kHalf}, 0.08);
 }
 
-// It slides until it rolls, at 5/7 of its speed, as long as its moment of inertia is 2/5 m r^2.
+// It slides until it rolls at 5/7 of its speed, if its moment of inertia is 2/5 m r^2.
 void add_roller(Course& b, double y) {
   constexpr double kSpeed = 3.0, kRadius = 0.5;
   const double slips = 2.0 * kSpeed / (7.0 * kMu * kG);
@@ -53,8 +53,8 @@ void add_roller(Course& b, double y) {
            {way + 5.0 / 7.0 * kSpeed * (kEnd - slips), y, kRadius}, 0.08);
 }
 
-// Both fall; the one runs into the other, of twice its mass. However they part, their centre of
-// mass goes on.
+// Both fall, and one collides with the other, of twice its mass. Whatever the impulse, the motion
+// of their common centre of mass is unchanged.
 void add_collision(Course& b, double y) {
   constexpr double kSpeed = 3.0, kGap = 0.5, kHeight = 20.0;
   const Box crate{{0.5, 0.5, 0.5}};
@@ -93,8 +93,8 @@ void add_launched(Course& b, double y) {
   b.expect("a ball is launched on its way", body, {}, {kSpeed * again, y, z}, 0.08);
 }
 
-// The angle below the horizontal of a pendulum let go from there: x'' = k cos x, by Runge and
-// Kutta's method of fourth order, to 1e-9.
+// The angle below the horizontal of a pendulum released from there: x'' = k cos x, by the
+// fourth-order Runge-Kutta method, to 1e-9.
 double pendulum_angle(double k, double seconds) {
   constexpr int kSteps = 2000;
   const double h = seconds / kSteps;
@@ -109,7 +109,7 @@ double pendulum_angle(double k, double seconds) {
   return x;
 }
 
-// A bar along x, held at its end by a joint whose z is the world's y or -y.
+// A bar along x. A joint at its end has its z axis along the world's y or -y.
 constexpr double kHalf = 0.5;
 constexpr Box kBar{{kHalf, 0.05, 0.05}};
 constexpr double kHeight = 5.0;
@@ -154,7 +154,7 @@ Touchstone joined_touchstone() {
                  kind == Joint::Kind::hinge ? "a bar swings on a hinge" : "a bar swings on a ball",
                  add_bar(b, kind, y, 1.0, -kNever, kNever), y, swung, 0.08);
   }
-  // A bar falls by turning about +y: the joint's angle grows where its z is +y.
+  // The bar falls with a rotation about +y: the joint's angle grows where its z axis is +y.
   constexpr double kStop = 0.5;
   double y = next();
   expect_angle(b, "a bar falls onto its hinge's upper limit",

@@ -35,7 +35,7 @@ double total_mass(const Scene& scene) {
   return sum;
 }
 
-// FNV-1a over the bits of every number that says where a scene begins.
+// FNV-1a over the bits of all numbers of a scene's initial state.
 std::uint64_t hash_of(const Scene& scene) {
   std::uint64_t hash = 0xcbf29ce484222325u;
   const auto add = [&](double x) {
@@ -159,10 +159,10 @@ TEST(Catalogue, BeginsWithNothingInAnythingElse) {
     EXPECT_EQ(standing.in_place, standing.of) << name;
     worst = std::max(worst, standing.penetration);
   }
-  std::printf("deepest %.1e m\n", worst);  // 3e-17 m: the feet of the first cards
+  std::printf("deepest %.1e m\n", worst);  // measured 3e-17 m: the feet of the first cards
 }
 
-// What is said to stand begins on its support, so that it has nowhere to fall.
+// Bodies of a stack start in contact with their support, so they do not fall.
 TEST(Catalogue, BeginsWithEachBodyOfAStackOnItsSupport) {
   for (const char* name :
        {"towers1120", "pyramid1128", "tower10", "pyramid10", "heavy", "cards", "large_pyramid"}) {
@@ -183,7 +183,7 @@ TEST(Catalogue, BeginsWithEachBodyOfAStackOnItsSupport) {
   }
 }
 
-// By the engine's solids. Hulls that are shared are made once.
+// Mass properties by the engine's solids. Shared hulls are built once.
 class EngineSolids {
  public:
   vp::Inertia of(const Part& part) {
@@ -219,7 +219,7 @@ TEST(Catalogue, GivesDynamicBodiesTheirCentreOfMassAndPrincipalAxes) {
     for (const Body& body : scene.bodies) {
       if (body.motion != Motion::dynamic) continue;
       vp::Inertia sum;
-      double extent = 1.0;  // [m], of what is added up
+      double extent = 1.0;  // [m], of the summed values
       for (const Part& part : body.parts) {
         sum = sum + solids.of(part);
         extent = std::max(extent, norm(part.T_body_shape.position()));
@@ -239,7 +239,7 @@ TEST(Catalogue, GivesDynamicBodiesTheirCentreOfMassAndPrincipalAxes) {
   }
 }
 
-// Its edges have two triangles each, and what it encloses is a torus of 16 x 16 pieces.
+// Each edge has two triangles, and the mesh encloses a torus of 16 x 16 pieces.
 TEST(Catalogue, RainsOnRingsThatAreClosedAndFaceOutwards) {
   const Scene scene = scene_of("rain");
   const auto& ring = *std::get<Mesh>(scene.bodies[0].parts[1].shape).data;
@@ -256,7 +256,7 @@ TEST(Catalogue, LetsTreesBeginAsTheyTip) {
   for (std::size_t i = 1; i < scene.bodies.size(); ++i) {
     const Body& tree = scene.bodies[i];
     ASSERT_EQ(tree.parts.size(), 22u);
-    // Its foot is at rest.
+    // The tree's foot is at rest.
     const Vec3 at{0.0, tree.T_world_body.position().y, 1.0};
     const Vec3 velocity = tree.velocity + cross(tree.spin, at - tree.T_world_body.position());
     EXPECT_LT(norm(velocity), 1e-12);
@@ -281,14 +281,14 @@ TEST(Catalogue, PoursTenThousandAsTheFamilyDoes) {
   EXPECT_EQ(hash_of(heap), hash_of(pile));
   EXPECT_DOUBLE_EQ(pit_side(1120), 10.0);
   EXPECT_DOUBLE_EQ(pit_side(10000), 30.0);
-  // As deep everywhere: the number of layers differs by less than a tenth.
+  // Equally deep: the number of layers differs by less than a tenth.
   for (const int count : {1000, 2000, 5000, 20000, 50000, 100000}) {
     const double cells = pit_side(count) * pit_side(count) / (1.25 * 1.25);
     EXPECT_NEAR(count / cells, 10000.0 / 576.0, 1.9) << count;
   }
 }
 
-// The same bits from every compiler, at every level, on every machine.
+// The same bits with every compiler, every optimisation level, and on every machine.
 TEST(Catalogue, MakesTheSameBitsEverywhere) {
   const std::map<std::string, std::uint64_t> kGolden = {
       {"towers1120", 0x89f08141f108495u},

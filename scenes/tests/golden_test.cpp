@@ -1,5 +1,5 @@
 // Scenes of many bodies end in the same bits on every machine: g++, clang++, WebAssembly. A change
-// of a hash is a change of results and belongs into the changelog.
+// of a hash is a change of results and belongs in the changelog.
 #include <gtest/gtest.h>
 
 #include "scenes/catalogue.h"
@@ -27,7 +27,7 @@ TEST(GoldenScenes, TowersOf1120Boxes) {
 TEST(GoldenScenes, APileOfBoxesSpheresAndCapsules) {
   EXPECT_EQ(hash_after(pile(120, Pour::mixed), 420, 240.0), 5920628632208148908u);
 }
-// In 16 regions, which its bodies leave and enter.
+// In 16 regions; bodies move from region to region.
 TEST(GoldenScenes, APileInRegions) {
   vp::WorldDesc settings;
   settings.region_bodies = 8;

@@ -20,7 +20,7 @@ std::vector<Vec3> box_corners(const Vec3& half) {
   return out;
 }
 
-// Each edge runs once in each direction: the faces close.
+// Each edge occurs once in each direction: the surface is closed.
 bool is_closed(const Polyhedron& hull) {
   std::vector<std::pair<int, int>> edges;
   for (const Polyhedron::Face& face : hull.faces) {
@@ -40,7 +40,7 @@ TEST(HullOf, OfABoxesCornersHasItsFacesAndNothingElse) {
   points.push_back({0.2, 0.3, -0.4});  // inside
   points.push_back({1.0, 0.5, 0.5});   // on a face
   points.push_back({1.0, 2.0, 0.7});   // on an edge
-  points.push_back(points[3]);         // a corner again
+  points.push_back(points[3]);         // a duplicate corner
   const Hull hull = hull_of(points);
   EXPECT_EQ(hull.data->points.size(), 8u);
   ASSERT_EQ(hull.data->faces.size(), 6u);
@@ -61,7 +61,7 @@ TEST(HullOf, ManyPointsOnASphereCloses) {
   }
   const Hull hull = hull_of(points);
   EXPECT_EQ(hull.data->points.size(), 40u);
-  EXPECT_EQ(hull.data->faces.size(), 2u * 40u - 4u);  // Euler, all faces triangles
+  EXPECT_EQ(hull.data->faces.size(), 2u * 40u - 4u);  // Euler's formula, all faces triangles
   EXPECT_TRUE(is_closed(*hull.data));
 }
 
@@ -117,7 +117,7 @@ TEST(MakePrincipal, GivesATurnedBoxItsMomentsAndLeavesItWhereItIs) {
   }
 }
 
-// A cube cut in two: the parts together have the moments of the whole.
+// A cube cut in two: the parts together have the moments of the complete cube.
 TEST(MakePrincipal, TakesSeveralPartsTogether) {
   Body body;
   body.parts.push_back({Box{{0.5, 0.25, 0.5}}, SE3(Vec3{3.0, 0.25, 1.0}), 1000.0, {}});

@@ -31,7 +31,7 @@ struct Case {
 
 TEST(Penetration, IsWhatASketchSays) {
   const SE3 on_edge = turned({0.25 * vp::kPi, 0, 0}, {0, 0, 0});
-  // Its diagonal from (-1, -1, -1) to (1, 1, 1) stands upright.
+  // Its diagonal from (-1, -1, -1) to (1, 1, 1) is vertical.
   const double tilt = std::acos(1.0 / kRoot3);
   const SE3 on_corner = turned(Vec3{-tilt / kRoot2, tilt / kRoot2, 0}, {0, 0, 0});
   const SE3 up(on_corner.rotation(), {0, 0, 0.85});
@@ -91,9 +91,9 @@ TEST(Penetration, IsAsItIsFromEveryPointOfView) {
   }
 }
 
-// Two convex bodies are parted by a shift along n as long as they overlap along it: the depth is
-// the least over all directions. Sampled ones are never less, and among many one is nearly the
-// best.
+// A translation along n separates two convex bodies by their overlap along n: the depth is the
+// minimum over all directions. Sampled directions give no smaller value, and with many samples one
+// is close to the minimum.
 TEST(Penetration, OfBoxesIsTheLeastOverlapOverAllDirections) {
   Random random(7);
   const auto reach = [](const Box& box, const SE3& T, const Vec3& n) {
@@ -180,7 +180,7 @@ TEST(Standing, CountsBodiesWithoutAPoseAsLost) {
   EXPECT_EQ(standing.drift, 0.0);
 }
 
-// The sweep along x leaves out no pair: against all pairs.
+// Sweep and prune along x omits no pair: against brute force.
 TEST(Standing, FindsTheDeepestOfAllPairs) {
   Random random(11);
   for (int round = 0; round < 20; ++round) {
@@ -213,7 +213,7 @@ Hull cube_hull(double half) {
   return hull_of(points);
 }
 
-// Four squares of 1 m about the origin, up is +z.
+// Four squares of 1 m about the origin, with +z up.
 Mesh square_mesh() {
   Triangles out;
   for (int j = 0; j < 3; ++j) {
@@ -249,7 +249,7 @@ TEST(HullPenetration, OfBallsAndCapsulesIsThatOfTheBox) {
     for (const Shape& other : {ball, capsule}) {
       const double by_box = penetration(box, SE3{}, other, T);
       const double radius = other.index() == ball.index() ? 0.3 : 0.2;
-      if (by_box >= radius) continue;  // the cores meet: another measure
+      if (by_box >= radius) continue;  // the cores overlap: another measure
       EXPECT_NEAR(penetration(hull, SE3{}, other, T), by_box, 1e-9) << i;
     }
   }
@@ -262,7 +262,7 @@ TEST(MeshPenetration, IsHowFarSomethingIsBehindIt) {
   for (const Shape& cube : {Shape(cube_hull(0.25)), Shape(Box{{0.25, 0.25, 0.25}})}) {
     EXPECT_NEAR(penetration(mesh, tilted, cube, at(0.24)), 0.01, 1e-12);
     EXPECT_NEAR(penetration(cube, at(0.3), mesh, tilted), -0.05, 1e-12);
-    // Wholly behind it, and no longer in it.
+    // Completely behind it, and no longer in it.
     EXPECT_LT(penetration(mesh, tilted, cube, at(-1.0)), 0.0);
   }
   EXPECT_NEAR(penetration(mesh, tilted, Sphere{0.25}, at(0.24)), 0.01, 1e-12);
@@ -270,7 +270,7 @@ TEST(MeshPenetration, IsHowFarSomethingIsBehindIt) {
   EXPECT_NEAR(penetration(mesh, tilted, Capsule{0.05, 0.2}, at(0.24)), 0.01, 1e-12);
 }
 
-// A vertex that sticks up into a face between its corners.
+// A vertex that penetrates a face between the face's corners.
 TEST(MeshPenetration, SeesAPeakInAFace) {
   Triangles out;
   out.vertices = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, {0, 0, 0.5}};

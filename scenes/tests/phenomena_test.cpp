@@ -1,4 +1,4 @@
-// What the small scenes are there to show, at 1 kHz, each against its closed form.
+// The phenomenon of each small scene at 1 kHz, against its closed form.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -27,8 +27,8 @@ void run(SceneWorld& world, double seconds) {
   }
 }
 
-// The slopes' tangent is 0.5: friction of 1% more holds, of 1% less lets go. The acceleration is
-// that of the second half of the run, when the contacts have found their load.
+// The slopes' tangent is 0.5: with friction 1% above it a box stays, 1% below it slides. The
+// acceleration is that of the second half of the run, when the contact forces have converged.
 TEST(Phenomena, SlidingBeginsAtTheAngleOfFriction) {
   SceneWorld world = world_of("ramp");
   const Scene& scene = world.scene();
@@ -56,7 +56,7 @@ TEST(Phenomena, SlidingBeginsAtTheAngleOfFriction) {
   }
 }
 
-// A ball of restitution e let fall by h comes up to e^2 h.
+// A ball with restitution e, dropped from h, rises to e^2 h.
 TEST(Phenomena, BouncesAreAsHighAsTheRestitutionSays) {
   SceneWorld world = world_of("bounce");
   std::vector<double> top(world.bodies().size(), 0.0);
@@ -80,7 +80,7 @@ TEST(Phenomena, BouncesAreAsHighAsTheRestitutionSays) {
   std::printf("heights off by %.2f%% at most\n", 100.0 * worst);
 }
 
-// The complete elliptic integral of the first kind, by the arithmetic and geometric means.
+// The complete elliptic integral of the first kind, by the arithmetic-geometric mean.
 double elliptic_k(double m) {
   double a = 1.0, g = std::sqrt(1.0 - m);
   for (int i = 0; i < 40; ++i) {
@@ -91,7 +91,7 @@ double elliptic_k(double m) {
   return 0.5 * vp::kPi / a;
 }
 
-// Landau and Lifshitz, Mechanics, section 37: I1 < I2 < I3, and the body turns about I2, nearly.
+// Landau and Lifshitz, Mechanics, section 37: I1 < I2 < I3, with rotation nearly about I2.
 double flip_period(double I1, double I2, double I3, double E2, double L2) {
   if (L2 < E2 * I2) std::swap(I1, I3);
   const double rate = std::sqrt((I3 - I2) * (L2 - E2 * I1) / (I1 * I2 * I3));
@@ -102,7 +102,7 @@ double flip_period(double I1, double I2, double I3, double E2, double L2) {
 TEST(Phenomena, AHandleFlipsAtTheTimesOfEulersEquations) {
   SceneWorld world = world_of("handle");
   const Body& body = world.scene().bodies[0];
-  const Vec3 I = mass_of(body).moments;  // x: least, z: middle, y: greatest
+  const Vec3 I = mass_of(body).moments;  // x: min, z: intermediate, y: max
   ASSERT_LT(I.x, I.z);
   ASSERT_LT(I.z, I.y);
   const Vec3 w = body.spin;
@@ -140,7 +140,7 @@ TEST(Phenomena, WhatIsToStandStands) {
   }
 }
 
-// Loads, impacts and ratios of mass as scenes have them are no trouble.
+// Typical loads, impacts and mass ratios cause no position error.
 TEST(Phenomena, NoOrdinarySceneReportsAPositionError) {
   struct Case {
     const char* name;
@@ -172,9 +172,8 @@ TEST(Phenomena, NoOrdinarySceneReportsAPositionError) {
   }
 }
 
-// What is let loose on hills and poured as compounds stays on them and in the pit. Balls roll on
-// for longer than the scene lasts; furniture comes to rest. Measured: 0.39 and 0.003 m/s; 0.006 and
-// 0.013 mm.
+// Bodies released on hills and compounds poured into a pit stay there. Balls roll for longer than
+// the scene lasts; furniture comes to rest. Measured: 0.39 and 0.003 m/s; 0.006 and 0.013 mm.
 TEST(Phenomena, HillsAndPitsHoldWhatIsLetLooseInThem) {
   for (const auto& [name, slow] : {std::pair{"hills", 1.0}, std::pair{"furniture", 0.05}}) {
     SceneWorld world = world_of(name);
@@ -192,8 +191,7 @@ TEST(Phenomena, HillsAndPitsHoldWhatIsLetLooseInThem) {
   }
 }
 
-// Each domino passes it on: they fall in their order, all of them, each at nearly the time of the
-// one before after the first few.
+// Each domino topples the next: all fall in order, after the first few at nearly equal intervals.
 TEST(Phenomena, ADominoRunRunsToItsEnd) {
   SceneWorld world = world_of("dominoes");
   std::vector<double> fell(world.bodies().size(), 0.0);
@@ -230,7 +228,7 @@ TEST(Phenomena, RollersCarryAtTheSpeedOfTheirSurface) {
   }
 }
 
-// On a slope of tangent 0.2 a ball of radius 0.1 m stays where the lever arm is above 0.02 m.
+// On a slope of tangent 0.2, a ball of radius 0.1 m stays where the lever arm is above 0.02 m.
 TEST(Phenomena, RollingFrictionHoldsABallOnASlope) {
   SceneWorld world = world_of("conveyor");
   const Scene& scene = world.scene();
@@ -256,8 +254,8 @@ TEST(Phenomena, RollingFrictionHoldsABallOnASlope) {
   EXPECT_EQ(rolled, 3);
 }
 
-// Of a cradle's balls the last swings as high as the first was raised, and back, while those
-// between hang still.
+// The last ball of a cradle swings as high as the first was raised, and back, while the balls
+// between stay at rest.
 TEST(Phenomena, ACradlePassesTheBlowOn) {
   SceneWorld world = world_of("cradle");
   const Scene& scene = world.scene();
@@ -266,14 +264,14 @@ TEST(Phenomena, ACradlePassesTheBlowOn) {
     if (scene.bodies[i].motion == Motion::dynamic) balls.push_back(i);
   }
   ASSERT_EQ(balls.size(), 5u);
-  constexpr double kPivot = 1.4, kLength = 1.0;  // of the scene [m]
+  constexpr double kPivot = 1.4, kLength = 1.0;  // as in the scene [m]
   const auto height = [&](std::size_t ball) {
     return world.poses()[balls[ball]].position().z - (kPivot - kLength);
   };
   const double raised = height(0);
   ASSERT_NEAR(raised, kLength * (1.0 - std::cos(0.8)), 1e-9);
-  // Periods of 1.0007 * 2.09 s: swings of half as long.
-  std::vector<double> peaks;  // of the last and the first in turn
+  // Periods of 1.0007 * 2.09 s; each swing takes half a period.
+  std::vector<double> peaks;  // of the last and the first ball in turn
   double between = 0.0, highest = 0.0;
   bool last_swings = true;
   for (int i = 0; i < 4000; ++i) {

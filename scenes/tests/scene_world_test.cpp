@@ -24,7 +24,7 @@ TEST(SceneWorld, BeginsAsTheSceneSays) {
     for (std::size_t i = 0; i < poses.size(); ++i) {
       const vp::SE3& expected = scene.bodies[i].T_world_body;
       if (!exists(scene.bodies[i], 0.0)) continue;
-      // A world may hold a rotation otherwise than as it was given it.
+      // A world may store a rotation in another form.
       ASSERT_LT(norm(poses[i].position() - expected.position()), 1e-15) << entry.name;
       ASSERT_LT(norm(poses[i].rotation().cx - expected.rotation().cx), 1e-14) << entry.name;
       const vp::se3 V = world.world().velocity(world.bodies()[i]);
@@ -75,7 +75,7 @@ TEST(SceneWorld, HasBodiesAndTheirJointsWhileTheyExist) {
     return Joint{Joint::Kind::ball, a, b, SE3(Vec3{0.5, 0.0, 0.0}), SE3(Vec3{-0.5, 0.0, 0.0})};
   };
   scene.joints = {joint(0, 1), joint(1, 2)};
-  scene.launches = {{0.05, 1, {9.0, 9.0, 9.0}, {}}};  // of a body that is not there yet
+  scene.launches = {{0.05, 1, {9.0, 9.0, 9.0}, {}}};  // of a body that does not exist yet
   SceneWorld world = world_of(scene);
   const double dt = 0.01;
   for (int i = 0; i < 40; ++i) {
@@ -89,7 +89,7 @@ TEST(SceneWorld, HasBodiesAndTheirJointsWhileTheyExist) {
     }
   }
   EXPECT_EQ(world.happened(), 9u);
-  // What was made at 0.2 s has fallen from there, held by nothing since 0.3 s.
+  // The body created at 0.2 s has fallen, and has had no joint since 0.3 s.
   EXPECT_EQ(measure(scene, world.poses(), world.time()).of, 2);
 }
 
@@ -109,7 +109,7 @@ TEST(SceneWorld, TakesAKinematicBodyAlongAPath) {
   EXPECT_NEAR(farthest, 0.005, 1e-6);
 }
 
-// Joints hold: the frames' origins stay together at every step.
+// Joints hold: the origins of their frames stay together at every step.
 TEST(SceneWorld, HoldsJointsTogether) {
   struct Case {
     const char* scene;
@@ -135,7 +135,7 @@ TEST(SceneWorld, GivesBackWhatTheWorldRefuses) {
   EXPECT_EQ(world.time(), 0.0);
 }
 
-// A second of a tower at 1 kHz: the scene, its world and the measures together.
+// A second of a tower at 1 kHz: the scene, its world and its measures together.
 TEST(SceneWorld, HoldsATower) {
   SceneWorld world = world_of(make_scene("tower10").value());
   for (int i = 0; i < 1000; ++i) ASSERT_TRUE(world.step(0.001).has_value());

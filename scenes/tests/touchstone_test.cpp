@@ -17,7 +17,7 @@ TEST(Touchstone, BeginsFreeAndJoined) {
   }
 }
 
-// What is expected moves: a body that stays where it began has nothing right.
+// Each expected point moves, so that a body that stays at its start fails.
 TEST(Touchstone, ExpectsMoreThanItTolerates) {
   for (const Touchstone& stone : {touchstone(), joined_touchstone()}) {
     const auto start = start_poses(stone.scene);

@@ -1,4 +1,4 @@
-// The articulated inertia against 6x6 matrices: equation (6) beside equation (7).
+// The articulated inertia against 6x6 matrices: equation (6) against equation (7).
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
@@ -49,14 +49,14 @@ se3 random_twist(Random& random) {
 Inertia random_inertia(Random& random) {
   return Inertia(random.uniform(0.5, 3), Vec3{1, 2, 1.5}).Xform(random.pose(1));
 }
-// As general as any: of a body with another hanging on it.
+// A general articulated inertia: that of a body with another body hanging on it.
 AInertia random_articulated(Random& random) {
   const AInertia J = random_inertia(random);
   const dse3 eta = J * random_twist(random);
   return J + 0.3 * (eta * eta) + random_inertia(random);
 }
 
-// The line of the paper's Table 2 as it stands, against equation (7) in matrices.
+// The line of the paper's Table 2, verbatim, against equation (7) in matrices.
 TEST(EquationSix, AsTableTwoWritesItIsEquationSeven) {
   Random random(31);
   constexpr int n = 2;

@@ -1,4 +1,5 @@
-// A warm step takes nothing from the heap: every operator new of the program is counted.
+// A warm step does not allocate. The test replaces operator new and counts every call in the
+// program.
 #include <gtest/gtest.h>
 
 #include <malloc.h>
@@ -21,7 +22,7 @@
 
 namespace {
 long g_allocations = 0;
-std::size_t g_live = 0;  // bytes that are taken
+std::size_t g_live = 0;  // bytes allocated
 
 void* taken(void* p) {
   if (!p) std::abort();
@@ -58,7 +59,7 @@ void operator delete(void* p, std::size_t) noexcept {
 namespace vp::test {
 namespace {
 
-// Rays, casts, overlaps and the nearest, in a world that moves on between them.
+// Ray casts, shape casts, overlap and nearest queries, in a world that moves on between them.
 TEST(Queries, AllocateNothingOnceWarm) {
   World world;
   add_ground(world, {});
@@ -136,12 +137,12 @@ TEST(Step, AllocatesNothingOnceWarm) {
     }
     ASSERT_TRUE(status);
   }
-  EXPECT_GT(g_allocations, 0);  // the counter counts
-  EXPECT_GT(hits, 10);          // and there was something to do
+  EXPECT_GT(g_allocations, 0);  // checks that the counter works
+  EXPECT_GT(hits, 10);          // and that queries had hits
   EXPECT_EQ(during, 0);
 }
 
-// Of a world in which all sleep, after a sensor has been put among them.
+// A sensor is added to a world in which all bodies sleep.
 TEST(Step, OfAWorldAsleepAllocatesNothing) {
   WorldDesc desc;
   desc.sleep_after = 0.1;
@@ -167,7 +168,7 @@ TEST(Step, OfAWorldAsleepAllocatesNothing) {
   EXPECT_EQ(world.counters().awake, 0u);
 }
 
-// Tables and balls thrown about on a mesh: contacts of many parts come and go.
+// Tables and balls fall on a mesh: contacts of many parts begin and end.
 TEST(Step, WithMeshesAndCompoundsAllocatesNothingOnceWarm) {
   World world({.gravity = {0, 0, -9.81}});
   Random random(55);
@@ -207,9 +208,9 @@ TEST(Step, WithMeshesAndCompoundsAllocatesNothingOnceWarm) {
   EXPECT_EQ(during, 0);
 }
 
-// A heap that lies, having been thrown about in a pit, and is divided anew every quarter of a
-// second. As long as it is thrown some room is still made now and then: hundreds of colours of
-// regions, and lists, each have to see their largest number of contacts first.
+// A heap is thrown about in a pit, then lies still; its regions are recomputed every quarter of a
+// second. While it is thrown, a few allocations still occur: hundreds of region colours, and lists,
+// each have to reach their largest number of contacts first.
 TEST(Step, WithRegionsAllocatesNothingOnceWarm) {
   constexpr int kThrow = 60, kThrown = 20 * kThrow, kLies = kThrown + 200, kSteps = kLies + 400;
   WorldDesc desc;
@@ -243,7 +244,7 @@ TEST(Step, WithRegionsAllocatesNothingOnceWarm) {
   EXPECT_EQ(lying, 0);
 }
 
-// Boxes, hulls and compounds that are swept: the second time that the same happens.
+// Continuous boxes, hulls and compounds. The second run of the same scene counts.
 TEST(Step, WithContinuousBodiesOfAnyShapeAllocatesNothingOnceWarm) {
   World world;
   Random random(57);
@@ -270,7 +271,7 @@ TEST(Step, WithContinuousBodiesOfAnyShapeAllocatesNothingOnceWarm) {
     for (int i = 0; i < 800; ++i) {
       const long before = g_allocations;
       const auto status = world.step(0.002);
-      if (pass == 1 && i > 2) {  // restore() takes memory that the steps give back
+      if (pass == 1 && i > 2) {  // restore() takes memory that the steps return
         during += g_allocations - before;
         impacts += world.counters().impacts;
       }
@@ -305,7 +306,7 @@ TEST(Step, WithTheFirstContactOfAContinuousBodyAllocatesNothing) {
   }
 }
 
-// Robots that stand, welded to one another and to a crate, which is later let go.
+// Standing robots, welded to one another and to a crate that is later released.
 TEST(Step, WithJointsOfLinksAllocatesNothingOnceWarm) {
   World world;
   add_ground(world, {0.8, 0.0, 0.0});
@@ -341,8 +342,8 @@ TEST(Step, WithJointsOfLinksAllocatesNothingOnceWarm) {
   EXPECT_EQ(during[1], 0);
 }
 
-// What goes back again and again, as look-ahead does, takes no memory for it: the world and what it
-// has read change places.
+// Repeated rollback, as look-ahead does it, allocates nothing: restore() swaps the world's memory
+// with that of the decoded snapshot.
 TEST(Restore, AllocatesNothingOnceWarm) {
   World world;
   Random random(57);
@@ -369,7 +370,7 @@ TEST(Restore, AllocatesNothingOnceWarm) {
   EXPECT_EQ(during, 0);
 }
 
-// Every call beside the dynamics, on a tree with every joint.
+// Every algorithm besides the dynamics, on a tree with every kind of joint.
 TEST(TreeAlgorithms, AllocateNothing) {
   Random random(52);
   const Model model = random_tree(random, 40);
@@ -439,7 +440,7 @@ TEST(Integrators, AllocateNothingInAStep) {
   EXPECT_EQ(g_allocations - before, 0);
 }
 
-// A linkage with friction, a stop, a motor: everything that has been sized for the model once.
+// A linkage with friction, a stop and a motor. The model's data is sized once.
 TEST(ConstrainedDynamics, AllocatesNothing) {
   const Inertia bar = Inertia(1.0, Vec3{1e-3, 0.02, 0.02}).InvXform(SE3(Vec3{0.25, 0, 0}));
   ModelBuilder builder;
@@ -470,10 +471,10 @@ TEST(ConstrainedDynamics, AllocatesNothing) {
     std::fill(tau.begin(), tau.end(), 0.0);
   }
   EXPECT_EQ(g_allocations - before, 0);
-  EXPECT_NEAR(q[0], 0.2, 1e-9);  // it went to its stop
+  EXPECT_NEAR(q[0], 0.2, 1e-9);  // it reached its stop
 }
 
-// Rests, moves a little, all move; queries, snapshots and rollbacks.
+// Phases in which nothing moves, few move and all move; queries, snapshots and rollbacks.
 TEST(PairFinder, AllocatesNothingOnceWarm) {
   collide::PairFinder finder;
   Random random(7);
@@ -529,9 +530,9 @@ TEST(PairFinder, AllocatesNothingOnceWarm) {
   EXPECT_EQ(during, 0);
 }
 
-// What a world of boxes takes, with all scratch of its steps: those that touch nothing, and those
-// of the same number that lie on one another, ten high. A body's share has room for its first
-// contacts, taken ahead so that a busy step need not; vectors have up to twice what they need.
+// Memory of a world of boxes, with all scratch memory of its steps: separated boxes, and the same
+// number in stacks of ten. Each body includes capacity for its first contacts, reserved in advance
+// so that a busy step need not allocate. Vectors hold up to twice what they need.
 TEST(Memory, OfABodyAndOfAContactIsAsTheDocumentationSays) {
   struct Taken {
     double bytes = 0.0, contacts = 0.0;

@@ -1,4 +1,4 @@
-// How articulated dynamics rounds: the two arithmetics against each other, the same bits on every
+// Rounding of articulated dynamics: the two arithmetics against each other, identical bits on every
 // machine where they are promised, and masses and lengths far from one.
 #include <gtest/gtest.h>
 
@@ -24,7 +24,8 @@ Results all_of(const Model& model, const State& s, Arithmetic arithmetic) {
   return out;
 }
 
-// Measured: 3e-14 of the largest at most; 0 where the machine has the baseline only.
+// Measured: at most 3e-14 of the largest value, and 0 on a machine with the baseline instruction
+// set only.
 TEST(Arithmetic, FastestAndReproducibleAgreeToRounding) {
   Random random(171);
   for (int round = 0; round < 50; ++round) {
@@ -38,7 +39,7 @@ TEST(Arithmetic, FastestAndReproducibleAgreeToRounding) {
   }
 }
 
-// No lane knows of another, and one state's groups of slots compute what a slot of a batch does.
+// Lanes are independent. The slot groups of one state compute the same bits as a slot of a batch.
 TEST(Arithmetic, ReproducibleHasTheSameBitsInEveryLane) {
   using P = PackT<double, 4>;
   Random random(174);
@@ -50,7 +51,7 @@ TEST(Arithmetic, ReproducibleHasTheSameBitsInEveryLane) {
     std::vector<Results> alone;
     for (int lane = 0; lane < P::kLanes; ++lane) {
       State s = random_state(random, model);
-      // An angle of many turns in one lane changes nothing in another.
+      // An angle of many revolutions in one lane changes nothing in another.
       for (int link = 0; lane == 3 && link < model.links(); ++link) {
         if (!std::holds_alternative<RevoluteJoint>(model.link(link).joint)) continue;
         s.q[static_cast<std::size_t>(model.first_coordinate(link))] += 3e6;
@@ -80,8 +81,8 @@ TEST(Arithmetic, ReproducibleHasTheSameBitsInEveryLane) {
   }
 }
 
-// FNV-1a over the bits. The constant is the same for every compiler, level and machine: a change of
-// it is a change of results.
+// FNV-1a over the bits. The constant is the same for every compiler, optimisation level and
+// machine. A change of it is a change of results.
 TEST(Arithmetic, ReproducibleHasGoldenBits) {
   Random random(172);
   std::uint64_t hash = 14695981039346656037u;
@@ -98,8 +99,8 @@ TEST(Arithmetic, ReproducibleHasGoldenBits) {
   EXPECT_EQ(hash, 17807220277372965333u);
 }
 
-// The same tree with every mass times `mass` and every length times `length`, gravity too: turning
-// goes alike, sliding `length` times as far; moments and forces follow.
+// The same tree with every mass times `mass`, and every length and gravity times `length`.
+// Rotations stay equal, translations scale by `length`, torques and forces follow.
 struct Scaled {
   Model model;
   State state;

@@ -50,7 +50,7 @@ TEST(Drive, OfAllJointsAtOnceIsThatOfEach) {
   EXPECT_EQ(one.world.state_hash(), all.world.state_hash());
 }
 
-// Whatever the gains, no step changes the momentum by more than max_force * dt.
+// With any gains, no step changes the momentum by more than max_force * dt.
 TEST(Drive, NeverExceedsItsForce) {
   for (const double stiffness : {1e2, 1e6, 1e12}) {
     OneJoint j = make_joint(link_of(PrismaticJoint{}));
@@ -79,8 +79,8 @@ TEST(Drive, AnyStiffnessIsStable) {
   }
 }
 
-// SlotImpulses against a wall, a motor presses with k (target - q), no more and no less: seen as
-// the impulse of the contact.
+// A motor presses a box against a wall with exactly k (target - q). The contact's impulse shows the
+// force.
 TEST(Drive, PressesWithItsSpringForce) {
   OneJoint j = make_joint(link_of(PrismaticJoint{}));
   ColliderDesc box;
@@ -97,7 +97,7 @@ TEST(Drive, PressesWithItsSpringForce) {
   EXPECT_LT(std::fabs(q), 4e-4);
   EXPECT_NEAR(j.world.pose(load).position().z, 0.2, 4e-4);
   EXPECT_NEAR(j.world.joint_velocity(j.id, 0, 0), 0.0, 1e-4);
-  // A new wall in the place of the old one: the event of their first touch tells the impulse.
+  // A new wall replaces the old one. The begin event of its first contact reports the impulse.
   must(j.world.destroy_body(wall));
   add_fixed(j.world, Box{{1, 1, 0.1}}, {}, behind);
   must(j.world.step(kDt));
@@ -139,7 +139,8 @@ TEST(Limit, AJointBeginsAtTheStopNextToZero) {
   EXPECT_EQ(j.world.joint_position(j.id, 0, 0), 0.3);
 }
 
-// Mass 2 on a limit of 500 N/m that a force of 2 g presses: it rests g m / k beyond it.
+// A mass of 2 kg with weight 2 g presses on a soft limit of 500 N/m: it rests g m / k beyond the
+// limit.
 TEST(Limit, ASoftOneGivesWay) {
   LinkSpec link = link_of(PrismaticJoint{});
   link.forces = {stops(-0.1, 1.0)};
@@ -158,20 +159,21 @@ TEST(Spring, SwingsWithItsPeriodAndIsStableAtAnyStiffness) {
   OneJoint j = make_joint(link);
   const double period = 2 * kPi * std::sqrt(2.0 / 200.0);
   double highest = 0.0, at = 0.0;
-  for (int i = 1; i <= 700; ++i) {  // to beyond the first turning point, at 2 rest
+  for (int i = 1; i <= 700; ++i) {  // past the first turning point, at 2 rest
     must(j.world.step(kDt));
     const double q = j.world.joint_position(j.id, 0, 0);
     if (q > highest) highest = q, at = i * kDt;
   }
   EXPECT_NEAR(at, period / 2, 0.01 * period);
-  EXPECT_NEAR(highest, 1.0, 0.03);  // implicit: a little is lost
+  EXPECT_NEAR(highest, 1.0, 0.03);  // implicit integration loses a little energy
   link.forces[0].stiffness = 1e15;
   OneJoint stiff = make_joint(link, {0, 0, -9.81});
   for (int i = 0; i < 100; ++i) must(stiff.world.step(kDt));
   EXPECT_NEAR(stiff.world.joint_position(stiff.id, 0, 0), 0.5, 1e-9);
 }
 
-// Sliding at 1 m/s against 3 N: mass 2 stops after m v / f, and stays against less than that.
+// Sliding at 1 m/s against a friction of 3 N, a mass of 2 kg stops after m v / f. It then stays at
+// rest against smaller forces.
 TEST(Friction, OfAJointStopsItAndHoldsIt) {
   LinkSpec link = link_of(PrismaticJoint{{1, 0, 0}});
   link.forces = {JointForces{}};
@@ -204,13 +206,13 @@ TEST(Friction, InfiniteLocksAJointAlsoInImpacts) {
   for (int i = 0; i < 100; ++i) {
     must(j.world.step(kDt));
     hit = hit || !j.world.contact_events().empty();
-    ASSERT_NEAR(j.world.joint_position(j.id, 0, 0), 0.0, 1e-5);  // the corrections of penetration
+    ASSERT_NEAR(j.world.joint_position(j.id, 0, 0), 0.0, 1e-5);  // position correction
   }
   EXPECT_TRUE(hit);
 }
 
-// A link whose centre of mass lies 0.2 m from a horizontal axis: T = 2 pi sqrt(I / (m g l)) for
-// small swings.
+// A link whose centre of mass is 0.2 m from a horizontal axis: T = 2 pi sqrt(I / (m g l)) for small
+// amplitudes.
 TEST(Pendulum, SwingsWithItsPeriod) {
   LinkSpec link;
   link.joint = RevoluteJoint{};
@@ -237,16 +239,16 @@ TEST(Pendulum, SwingsWithItsPeriod) {
 }
 
 TEST(Joint, DampingAndArmatureEnterAsWritten) {
-  LinkSpec link = link_of(PrismaticJoint{});  // mass 2
+  LinkSpec link = link_of(PrismaticJoint{});  // mass 2 kg
   link.armature = 3.0;
-  link.damping = 10.0;  // rate 10 / 5 per second
+  link.damping = 10.0;  // decay rate 10 / 5 per second
   OneJoint j = make_joint(link);
   must(j.world.set_joint_state(j.id, 0, 0, 0.0, 1.0));
   for (int i = 0; i < 1000; ++i) must(j.world.step(kDt));
   EXPECT_NEAR(j.world.joint_velocity(j.id, 0, 0), std::exp(-2.0), 1e-3);
 }
 
-// However hard it is hit, a link stays on its axis.
+// A link stays on its axis, however strong an impact is.
 TEST(Joint, NeverComesApart) {
   OneJoint j = make_joint(rod_link(0.0, 0.5), {0, 0, -9.81});
   ColliderDesc box;
@@ -290,7 +292,8 @@ TEST(Joint, ALinkFixedToTheWorldDoesNotMove) {
   EXPECT_FALSE(world.apply_impulse(world.link_body(id, 0), {1, 0, 0}, {}));
 }
 
-// A free rod struck by a ball: angular momentum about the rod's axis and momentum along it stay.
+// A ball hits a free rod: the angular momentum about the rod's axis and the momentum along it are
+// conserved.
 TEST(Joint, ABallAndAFreeRodExchangeMomentum) {
   World world({.gravity = {}});
   const Material bouncy{0.2, 0.7, 0.0};
@@ -311,7 +314,7 @@ TEST(Joint, ABallAndAFreeRodExchangeMomentum) {
   const double L = about_axis(), p = along();
   for (int i = 0; i < 25; ++i) must(world.step(kDt));
   EXPECT_GT(std::fabs(world.joint_velocity(rod.articulation, 0, 1)), 1.0);
-  EXPECT_NEAR(about_axis(), L, 1e-4 * std::fabs(L));  // the position correction may move the arm
+  EXPECT_NEAR(about_axis(), L, 1e-4 * std::fabs(L));  // position correction changes the arm
   EXPECT_NEAR(along(), p, 1e-9);
 }
 

@@ -1,4 +1,4 @@
-// The tree of bounds against going through all of them.
+// The tree of AABBs against brute force.
 #include "collide/bounding_tree.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ FloatBounds random_box(Random& random, double world, double size) {
   return box_at(centre, {x, y, z});
 }
 
-// What a tree should hold.
+// The expected items of a tree.
 using Truth = std::map<std::uint32_t, FloatBounds>;
 
 std::vector<TreeItem> items_of(const Truth& truth) {
@@ -80,7 +80,7 @@ TEST(FloatBounds, AreNeverSmallerThanWhatTheyWereMadeOfAndHardlyLarger) {
     EXPECT_LE(collide::rounded_down(x), x);
     EXPECT_GE(collide::rounded_up(x), x);
   }
-  EXPECT_LE(collide::rounded_down(-1e300), -1e14);  // without end, and still a number
+  EXPECT_LE(collide::rounded_down(-1e300), -1e14);  // effectively unbounded, and not NaN
   EXPECT_GE(collide::rounded_up(1e300), 1e14);
 }
 
@@ -165,7 +165,7 @@ TEST(BoundingTree, PairsOfTwoTreesAreThoseOfBruteForce) {
   }
 }
 
-// Boxes that cannot be told apart, lie in one plane, are points, or grow like powers of two.
+// Degenerate boxes: identical, coplanar, points, and sizes that grow like powers of two.
 TEST(BoundingTree, TakesDegenerateBounds) {
   const auto identical = [](std::uint32_t) { return box_at({1, 2, 3}, {1, 1, 1}); };
   const auto points = [](std::uint32_t i) {
@@ -213,7 +213,7 @@ struct Met {
   double entry;
 };
 
-// The fraction at which the moving box first meets the other; negative: never.
+// The fraction at which the moving box first overlaps the other; negative if it never does.
 double entry_of(const collide::Sweep& sweep, const FloatBounds& bounds) {
   double in = 0.0, out = 1.0;
   for (int axis = 0; axis < 3; ++axis) {
@@ -249,10 +249,10 @@ void expect_cast_is_right(const Truth& truth, const BoundingTree& tree, const co
   for (const auto& [item, bounds] : truth) {
     const double entry = entry_of(sweep, bounds);
     if (entry >= 0.0) {
-      ASSERT_EQ(entries.count(item), 1u);  // nothing is missed
+      ASSERT_EQ(entries.count(item), 1u);  // no item is missed
       ASSERT_NEAR(entries[item], entry, error);
       first = std::min(first, entry);
-    } else if (entries.count(item) > 0) {  // and what is found too much is nearly met
+    } else if (entries.count(item) > 0) {  // extra items are within the error
       FloatBounds larger = bounds;
       for (int axis = 0; axis < 3; ++axis) {
         const double by = error * (1.0 + std::fabs(sweep.displacement[axis]) +
@@ -263,7 +263,7 @@ void expect_cast_is_right(const Truth& truth, const BoundingTree& tree, const co
       ASSERT_GE(entry_of(sweep, larger), 0.0);
     }
   }
-  // A limit that is taken at the first hit ends the search there.
+  // A limit reduced at the first hit ends the search there.
   int calls = 0;
   tree.cast(sweep, 1.0, scratch, [&](std::uint32_t item, float) {
     ++calls;
@@ -305,7 +305,8 @@ TEST(BoundingTree, CastsMissNothingFarFromTheOrigin) {
   tree.build(items);
   for (int k = 0; k < 200; ++k) {
     const Vec3 from = far + random.in_cube(30.0);
-    // A float there has steps of an eighth of a metre, a hundredth of the way.
+    // Floats there have a spacing of an eighth of a metre, less than a hundredth of the
+    // displacement.
     expect_cast_is_right(truth, tree, {{from, from}, 30.0 * random.direction()}, 0.15);
   }
 }

@@ -1,5 +1,5 @@
-// Numbers that are none, or too large, at every call that takes numbers and has no test of its own
-// elsewhere: each is refused with a sentence and changes nothing.
+// NaN, infinite and too large numbers at every call that takes numbers and has no such test
+// elsewhere. Each call rejects them with an error message and changes nothing.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -28,7 +28,7 @@ struct Small {
   Rod rod = add_rod(world, 1.0, 0.09, 1, 0.1, {});
 };
 
-// call(number) must be refused for each number that is none, in one place of its arguments.
+// Expects that call(number) fails for every invalid number.
 template <class Call>
 void expect_refused(World& world, const char* what, const Call& call) {
   const std::uint64_t before = world.state_hash();
@@ -113,7 +113,7 @@ TEST(EveryCall, RefusesJointStatesAndDrivesThatAreNone) {
   }
 }
 
-// Links, dofs and ids that there are not.
+// Links, degrees of freedom and ids that do not exist.
 TEST(EveryCall, RefusesWhatDoesNotExist) {
   Small s;
   must(s.world.destroy_body(s.box));
@@ -188,7 +188,7 @@ TEST(EveryCall, RefusesSettingsOfAWorldThatAreNone) {
   EXPECT_TRUE(refused(desc));
 }
 
-// Of shapes made by calls of their own; a scale of zero or below makes none either.
+// Shapes made by their own factory calls. A scale of zero or below is invalid, too.
 TEST(EveryCall, RefusesShapesThatAreNone) {
   const std::vector<double> flat(9, 0.0);
   for (const double x : {kNotANumber, kUnboundedRadius, -kUnboundedRadius, 1e300}) {
@@ -216,7 +216,7 @@ TEST(EveryCall, RefusesShapesThatAreNone) {
   EXPECT_FALSE(Compound::of({}));
 }
 
-// Whose inverses single precision does not hold, or whose squares nothing does.
+// Values whose inverse overflows single precision, or whose square underflows.
 TEST(EveryCall, RefusesMassesAndSizesThatAreTooSmall) {
   Small s;
   const std::uint64_t before = s.world.state_hash();
@@ -272,7 +272,7 @@ TEST(EveryCall, RefusesMomentsThatNoMassHas) {
     EXPECT_EQ(body.error().code, Errc::invalid_argument);
     EXPECT_NE(body.error().message.find("solid_inertia"), std::string::npos);
   }
-  // A disc, a rod, a disc by numbers of two digits, and one that is turned.
+  // A disc, a rod, a disc with rounded values of two digits, and a rotated one.
   for (const Sym3& J : {Sym3{1, 1, 2, 0, 0, 0}, Sym3{1, 1, 1e-9, 0, 0, 0},
                         Sym3{0.083, 0.083, 0.17, 0, 0, 0}, turned(2, 1, 1)}) {
     EXPECT_TRUE(made(J)) << J.zz;
@@ -296,7 +296,8 @@ TEST(EveryCall, TakesASteelCubeOf20Metres) {
   EXPECT_NEAR(world.velocity(body).v.z, 100.0, 1e-6);
 }
 
-// It went on for ever, or from a state that was half a step's.
+// Without the check, a nested step would recurse for ever, or start from the state of a
+// half-finished step.
 TEST(EveryCall, AStepWithinAStepIsRefused) {
   class Restless : public StageObserver {
    public:
@@ -322,7 +323,7 @@ TEST(EveryCall, AStepWithinAStepIsRefused) {
   EXPECT_EQ(s.world.state_hash(), undisturbed.world.state_hash());
 }
 
-// Of a feather's mass down to none, by its colliders.
+// Colliders whose total mass is below the minimum.
 TEST(EveryCall, RefusesAMassFromCollidersThatIsTooSmall) {
   Small s;
   ColliderDesc thin;
@@ -339,8 +340,8 @@ TEST(EveryCall, RefusesAMassFromCollidersThatIsTooSmall) {
   EXPECT_EQ(s.world.state_hash(), before);
 }
 
-// The least of all, of which one lies on another, is jointed or flies, steps without a complaint
-// and leaves alone what stands beside it; in the shortest steps, too.
+// Bodies of the smallest valid masses, inertias and sizes: stacked, and welded to one another. They
+// step without a status flag, with the shortest steps too, and do not affect a body beside them.
 TEST(EveryCall, TakesTheLeastMassesSizesAndTimes) {
   struct Least {
     Inertia inertia;
@@ -395,7 +396,7 @@ TEST(EveryCall, TakesTheLeastMassesSizesAndTimes) {
   }
 }
 
-// Each names the call and which of its arguments is meant.
+// Each message names the call and the argument.
 TEST(EveryCall, SaysWhichArgumentIsStale) {
   Small s;
   const BodyId dead = s.box;

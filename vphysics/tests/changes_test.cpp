@@ -1,4 +1,4 @@
-// Changes of what a world is made of, while it runs.
+// Changes to the bodies, colliders and joints of a running world.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -42,12 +42,12 @@ Boxed add_box(World& world, const Vec3& at, const Material& material = {},
   return b;
 }
 
-// --- mass ----------------------------------------------------------------------------------------
+// --- mass
 
 TEST(Mass, OfABodyWithoutAnInertiaIsThatOfItsColliders) {
   World world;
   const BodyId body = must(world.create_body({}));
-  EXPECT_EQ(world.inertia(body).mass(), 1.0);  // of a body without colliders
+  EXPECT_EQ(world.inertia(body).mass(), 1.0);  // default of a body without colliders
   ColliderDesc a = collider_of(Sphere{0.5}, {});
   a.density = 300.0;
   const ColliderId first = must(world.add_collider(body, a));
@@ -118,7 +118,7 @@ TEST(Mass, ChangedKeepsTheForcesThatWait) {
   EXPECT_LT(norm(world.velocity(body).w - world.velocity(twin).w), 1e-15);
 }
 
-// A crate of a third of the mass is lifted where it was not.
+// A crate with a third of the mass is lifted by a force that did not lift it before.
 TEST(SetInertia, IsFeltByWhatItLiesOn) {
   World world;
   add_ground(world, {});
@@ -137,7 +137,7 @@ TEST(SetInertia, IsFeltByWhatItLiesOn) {
   EXPECT_GT(world.pose(box.body).position().z, 0.7);
 }
 
-// --- gravity, damping, sleep ---------------------------------------------------------------------
+// --- gravity, damping, sleep
 
 TEST(GravityScale, ScalesTheFallOfABody) {
   for (const bool continuous : {false, true}) {
@@ -206,7 +206,7 @@ TEST(AllowSleep, KeepsABodyAwakeWithAllThatItCarries) {
   EXPECT_FALSE(world.is_asleep(below.body));
 }
 
-// --- motion --------------------------------------------------------------------------------------
+// --- motion
 
 TEST(SetMotion, OfAFixedBodyMakesItFallWithTheMassOfItsColliders) {
   World world;
@@ -255,7 +255,7 @@ TEST(SetMotion, KeepsTheVelocity) {
   EXPECT_EQ(world.velocity(box.body), se3{});
 }
 
-// Each begin is followed by one end, whatever becomes of a body.
+// Each begin event is followed by exactly one end event, whatever happens to a body.
 TEST(SetMotion, EndsContactsOnce) {
   Random random(5);
   for (const bool continuous : {false, true}) {
@@ -302,7 +302,7 @@ TEST(SetMotion, RefusesWhatItsCollidersAndJointsForbid) {
   must(world.set_motion(b.body, Motion::dynamic));
   must(world.set_motion(a.body, Motion::fixed));
   run(world, 100);
-  EXPECT_NEAR(world.pose(b.body).position().z, 2.0, 0.02);  // now the other one holds
+  EXPECT_NEAR(world.pose(b.body).position().z, 2.0, 0.02);  // the other body now carries it
 }
 
 TEST(SetMotion, OfABodyOfAPairThatDidNotCountBefore) {
@@ -316,7 +316,7 @@ TEST(SetMotion, OfABodyOfAPairThatDidNotCountBefore) {
   EXPECT_EQ(world.contains(shelf.collider), true);
 }
 
-// --- colliders -----------------------------------------------------------------------------------
+// --- colliders
 
 TEST(SetMaterial, OfTheFloorChangesTheFrictionOfWhatLiesOnIt) {
   WorldDesc settings;
@@ -331,7 +331,7 @@ TEST(SetMaterial, OfTheFloorChangesTheFrictionOfWhatLiesOnIt) {
   run(world, 200);
   ASSERT_TRUE(world.is_asleep(box.body));
   const double start = world.pose(box.body).position().x;
-  must(world.set_material(floor, {0.01, 0, 0}));  // 0.1 of the pair
+  must(world.set_material(floor, {0.01, 0, 0}));  // the pair's friction becomes 0.1
   EXPECT_FALSE(world.is_asleep(box.body));
   run(world, 200);
   const double expected = 0.5 * (2.0 - 0.1 * kG);
@@ -426,7 +426,7 @@ TEST(RemoveCollider, OfALinkAndOfASweptBody) {
   EXPECT_LT(world.pose(ball).position().z, -0.5);
 }
 
-// --- articulations -------------------------------------------------------------------------------
+// --- articulations
 
 TEST(DestroyArticulation, FreesWhatLaysOnItAndItsSlots) {
   WorldDesc settings;
@@ -473,7 +473,7 @@ TEST(DestroyArticulation, FreesWhatLaysOnItAndItsSlots) {
   EXPECT_EQ(world.state_hash(), hash);
 }
 
-// Rods that nothing meets are not looked at; they, too, may go.
+// A rod that no body can reach is remote. It can be destroyed, too.
 TEST(DestroyArticulation, OfARemoteOneAndOfTheLast) {
   World world;
   add_ground(world, {});
@@ -490,7 +490,7 @@ TEST(DestroyArticulation, OfARemoteOneAndOfTheLast) {
   EXPECT_NEAR(world.pose(ball).position().z, kBallRadius, 1e-3);
 }
 
-// --- velocities ----------------------------------------------------------------------------------
+// --- velocities
 
 TEST(VelocityWorld, IsThatOfTheCentreOfMassInTheWorldsAxes) {
   World world(WorldDesc{.gravity = {}});
@@ -521,7 +521,7 @@ TEST(VelocityWorld, IsThatOfTheCentreOfMassInTheWorldsAxes) {
   EXPECT_FALSE(world.set_velocity_world({}, {}));
 }
 
-// --- what is refused -----------------------------------------------------------------------------
+// --- rejected arguments
 
 TEST(Changes, RefuseWhatIsNone) {
   World world;
@@ -560,7 +560,7 @@ TEST(Changes, RefuseWhatIsNone) {
   EXPECT_FALSE(world.create_body(desc));
 }
 
-// A snapshot of before a change is another world's.
+// A snapshot from before a change has another topology hash.
 TEST(Changes, EnterTheDigestOfTheWorld) {
   using Make = void (*)(World&, const Boxed&, const Rod&);
   const Make changes[] = {

@@ -1,6 +1,6 @@
-// Worlds in which bodies, colliders and joints come and go at random between steps. Whatever is
-// done, numbers stay finite, the snapshot is restored to the same bits, and nothing is read that is
-// gone: the sanitizers look on.
+// Random creation and destruction of bodies, colliders and joints between steps. Numbers stay
+// finite, a restored snapshot gives the same bits, and no freed object is read (run under
+// sanitizers).
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -13,14 +13,15 @@
 namespace vp::test {
 namespace {
 
-// VP_CHURN_SEQUENCES=N: so many. Ten thousand take minutes under the sanitizers.
+// VP_CHURN_SEQUENCES=N sets the number of sequences. Ten thousand take minutes under the
+// sanitizers.
 int sequences() {
   const char* wanted = std::getenv("VP_CHURN_SEQUENCES");
   return wanted ? std::max(1, std::atoi(wanted)) : 500;
 }
 constexpr int kCalls = 40;
 
-// What the steps of all sequences met.
+// What occurred in the steps of all sequences.
 struct Seen {
   std::size_t contacts = 0, joints = 0, asleep = 0;
 };
@@ -92,7 +93,7 @@ class Churn {
   static WorldDesc desc(Random& random) {
     WorldDesc d;
     d.sleep_after = random.word() % 2 == 0 ? 0.01 : 0.0;
-    d.sleep_speed = 3.0;  // sooner than in life
+    d.sleep_speed = 3.0;  // high, so that bodies fall asleep early
     if (random.word() % 2 == 0) d.region_bodies = 1 + static_cast<int>(random.word() % 4);
     return d;
   }
@@ -188,7 +189,7 @@ class Churn {
     const auto tree = world_.create_articulation({model_of({link})});
     ASSERT_TRUE(tree.has_value());
     trees_.push_back(*tree);
-    // Sensors: links that are made deep within bodies are another test's matter.
+    // Sensors only. Other tests cover links that are created deep within bodies.
     for (std::size_t i = pick(3); i > 0; --i) (void)add_collider(world_.link_body(*tree, 0), true);
   }
   void create() {
@@ -245,7 +246,7 @@ class Churn {
     for (const BodyId body : bodies_)
       seen.asleep += world_.contains(body) && world_.is_asleep(body);
   }
-  // Each begin is followed by one end.
+  // Checks that each begin event is followed by one end event.
   void follow_events() {
     for (const ContactEvent& event : world_.contact_events()) {
       const std::pair pair{event.a, event.b};
@@ -257,7 +258,7 @@ class Churn {
       if (event.kind == ContactEvent::Kind::end) touching_.erase(pair);
     }
   }
-  // Back to the snapshot after a step: the same step has the same end.
+  // Restores the snapshot after a step. The repeated step must give the same result.
   void save_and_restore() {
     bytes_.clear();
     const auto touching = touching_;

@@ -1,7 +1,7 @@
-// Distance and penetration of every pair of convex shapes. A gap along any direction is a lower
-// bound of the separation, so each answer is proven from below by its own normal, and from above by
-// a search over directions with support functions of the tests' own; polytopes besides by brute
-// force over all their features. PAIRS says how many of each are tried.
+// Distance and penetration of every pair of convex shapes. The separation along any direction is a
+// lower bound of the true separation, so each result's own normal proves it from below. A search
+// over directions with support functions of the tests checks it from above. Polytopes are also
+// checked by brute force over all their features. PAIRS is the number of samples for each pair.
 #include "collide/distance.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,8 @@ namespace {
 using collide::ClosestPoints;
 using collide::PairCache;
 
-// Where curved shapes overlap the answer is good to 1e-9 of both sizes and their distance.
+// Tolerance. Where curved shapes overlap, the result is accurate to 1e-9 of both sizes and their
+// distance.
 constexpr double kNear = 2e-8;
 
 constexpr Kind kBounded[] = {Kind::sphere,   Kind::capsule, Kind::box,
@@ -54,12 +55,12 @@ TEST_P(EveryPairsDistance, IsAsFarApartAsItsNormalProvesAndNoDirectionTellsMore)
     const SE3 Ta = random.pose(0.4), Tb = random.pose(1.0);
     const ClosestPoints c = closest(a, Ta, b, Tb);
     ASSERT_NEAR(norm(c.normal), 1.0, 1e-14);
-    // From below. Measured: 6e-11 at worst, of two cylinders.
+    // Lower bound. Measured: 6e-11 at worst, of two cylinders.
     ASSERT_NEAR(separation_along(a.geometry, Ta, b.geometry, Tb, c.normal), c.distance, 1e-9) << i;
-    // From above. Measured: 8e-10 at worst, of a box and a cone.
+    // Upper bound. Measured: 8e-10 at worst, of a box and a cone.
     ASSERT_LT(sampled_separation(random, a.geometry, Ta, b.geometry, Tb), c.distance + kNear) << i;
     ASSERT_LT(norm(c.on_b - c.on_a - c.distance * c.normal), 1e-8) << i;
-    // Both points are on the surfaces. Measured: 4e-8, where a rim lies deep in a hull.
+    // Both points are on the surfaces. Measured: 4e-8, where a rim is deep in a hull.
     ASSERT_NEAR(signed_distance(a.geometry, inverse_times(Ta, c.on_a)).distance, 0.0, 2e-7) << i;
     ASSERT_NEAR(signed_distance(b.geometry, inverse_times(Tb, c.on_b)).distance, 0.0, 2e-7) << i;
   }
@@ -73,7 +74,7 @@ TEST_P(EveryPairsDistance, IsTheSameSwappedScaledAndFarFromTheOrigin) {
     const SE3 Ta = random.pose(0.4), Tb = random.pose(1.0);
     const ClosestPoints c = closest(a, Ta, b, Tb), swapped = closest(b, Tb, a, Ta);
     ASSERT_NEAR(c.distance, swapped.distance, kNear);
-    const Vec3 far{1e6, -1e6, 3e5};  // where a position is rounded by 1e-10
+    const Vec3 far{1e6, -1e6, 3e5};  // where positions have a spacing of 1e-10
     const ClosestPoints moved = closest(a, SE3(Ta.rotation(), Ta.position() + far), b,
                                         SE3(Tb.rotation(), Tb.position() + far));
     ASSERT_NEAR(c.distance, moved.distance, kNear);
@@ -106,8 +107,8 @@ TEST_P(EveryPairsDistance, OverlapsWhereItsDistanceIsNegative) {
   EXPECT_LT(met, 4 * PAIRS);
 }
 
-// A cache says where to begin; begun anywhere, also from bytes that mean nothing, the answer is the
-// same.
+// A cache gives the starting point of the search. The result is the same from any start, even from
+// arbitrary bytes.
 TEST_P(EveryPairsDistance, IsTheSameWhateverItsCacheHolds) {
   Random random(64);
   const auto [ka, kb] = GetParam();
@@ -134,7 +135,7 @@ TEST_P(EveryPairsDistance, IsTheSameWhateverItsCacheHolds) {
 
 INSTANTIATE_TEST_SUITE_P(Convex, EveryPairsDistance, ::testing::ValuesIn(all_pairs()));
 
-// --- polytopes: all features against all ---------------------------------------------------------
+// --- polytopes: all features against all
 
 double to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
   const Vec3 d = b - a;
@@ -170,7 +171,7 @@ Corners corners_of(const Solid& solid, const SE3& T) {
   return found;
 }
 
-// The gap along n, between the foremost corners.
+// The separation along n, between the support points.
 double corner_gap(const Corners& a, const Corners& b, const Vec3& n) {
   double front = -1e300, back = 1e300;
   for (const Vec3& p : a.vertices) front = std::max(front, dot(n, p));
@@ -210,7 +211,7 @@ double brute_force_separation(const Corners& a, const Corners& b) {
     }
   }
   if (best <= 0.0) return best;
-  // Apart: edges against edges are done; corners over faces.
+  // Separated: edge pairs are done above; vertices against faces follow.
   const Corners* pair[2] = {&a, &b};
   for (int side = 0; side < 2; ++side) {
     for (const Vec3& p : pair[side]->vertices) {
@@ -267,7 +268,7 @@ TEST(ClosestPoints, OfAHalfSpaceAreBelowTheLowestPoint) {
   }
 }
 
-// Same middles, same axes, same faces, corners on corners: where directions vanish.
+// Equal centres, axes, faces, and vertices on vertices: cases where search directions vanish.
 TEST(ClosestPoints, OfShapesInSymmetricPositionsAreProvenToo) {
   Random random(67);
   const double turns[] = {0.0, kPi / 2, kPi, kPi / 4};
@@ -289,7 +290,7 @@ TEST(ClosestPoints, OfShapesInSymmetricPositionsAreProvenToo) {
             const double gap = separation_along(a.geometry, SE3{}, b.geometry, Tb, c.normal);
             ASSERT_NEAR(gap, c.distance, kNear)
                 << a.shape.index() << ' ' << b.shape.index() << ' ' << p.x << p.y << p.z << turn;
-            // The axes of both, and between the middles: none may tell more.
+            // No axis of either shape, and no line between the centres, gives a larger separation.
             for (int k = 0; k < 3; ++k) {
               Vec3 n;
               n[k] = 1.0;

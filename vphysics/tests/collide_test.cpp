@@ -28,10 +28,10 @@ TEST(SignedDistance, AgreesWithTheSampledSeparation) {
       const Geometry& g = solid.geometry;
       const SE3 p(random.in_cube(1.5));
       const auto d = signed_distance(g, p.position());
-      // The sampling is off by 1.6e-4 at most in 900 trials, at edges; the distance is exact.
+      // The error of sampling is at most 1.6e-4 in 900 trials, at edges. The distance is exact.
       ASSERT_NEAR(d.distance, sampled_separation(random, g, SE3{}, point, p), 2e-4);
       ASSERT_NEAR(norm(d.normal), 1.0, 1e-14);
-      // It grows along its normal at rate one, and nowhere lies below its tangent plane.
+      // The distance grows along its normal at rate one, and nowhere is below its tangent plane.
       const Vec3 q = random.in_cube(1.5);
       ASSERT_GE(signed_distance(g, q).distance + 1e-12,
                 d.distance + dot(d.normal, q - p.position()));
@@ -54,10 +54,9 @@ TEST_P(Manifolds, DeepestPointHasTheSampledSeparation) {
     find_manifold(a, Ta, b, Tb, margin, m);
     find_manifold(b, Tb, a, Ta, margin, turned);
     const double truth = sampled_separation(random, a, Ta, b, Tb);
-    // A gap that was sampled is one: the separation is never less. How far the best of them stays
-    // behind it is the sampling's fault: by 2.4e-3 at most, over what g++ and clang++ draw. Edges
-    // against edges nearly along a face are told as the face: by 4.9% of the depth at most in 300
-    // trials.
+    // Every sampled separation is a lower bound of the true one. Sampling falls short of it by at
+    // most 2.4e-3, over the samples of g++ and clang++. Edge pairs nearly along a face are reported
+    // as the face: an error of at most 4.9% of the depth in 300 trials.
     const bool boxes = ka == Kind::box && kb == Kind::box;
     const double behind = 5e-3;
     const double below = boxes ? 1e-3 + 0.05 * std::fabs(truth) : 1e-9;
@@ -72,11 +71,13 @@ TEST_P(Manifolds, DeepestPointHasTheSampledSeparation) {
       ASSERT_LE(m.points[k].separation, margin);
     }
     if (boxes && truth > 0) {
-      // Boxes apart at a corner: the gap along a separating axis is less than the distance.
+      // Separated boxes at a vertex: the separation along a separating axis is less than the
+      // distance.
       ASSERT_GT(deepest, 0.0) << i;
       ASSERT_LE(deepest, truth + behind) << i;
     } else if (ka == Kind::capsule && kb == Kind::box && deepest < -a.radius) {
-      // The axis lies inside: a depth is the way out of one of its points, of which all have to go.
+      // The capsule's axis is inside the box. Each depth is that of one point of the axis; all of
+      // its points have to leave, so the true depth is larger.
       ASSERT_LE(truth, deepest + 1e-9) << i;
     } else {
       ASSERT_GE(deepest, truth - below) << i;
@@ -87,8 +88,8 @@ TEST_P(Manifolds, DeepestPointHasTheSampledSeparation) {
     if (ka != kb) {
       ASSERT_LT(norm(turned.normal + m.normal), 1e-12);
     }
-    // From a to b: moved along the normal, b leaves; but a capsule whose axis is inside a box is
-    // told the way out of that point alone.
+    // The normal points from a to b: moved along it, b leaves a. Exception: for a capsule whose
+    // axis is inside a box, the normal is that of a single point.
     if (ka == Kind::capsule && kb == Kind::box && deepest < -a.radius) continue;
     const SE3 away(Tb.rotation(), Tb.position() + (0.1 - deepest) * m.normal);
     ASSERT_GT(sampled_separation(random, a, Ta, b, away), -0.01 - 0.1 * std::fabs(deepest)) << i;
@@ -135,7 +136,7 @@ TEST(Manifold, OfABoxOnAHalfSpaceHasTheLowestCorners) {
   }
 }
 
-// A fast sphere against a turning, sliding shape, sampled 5,000 times.
+// A fast sphere against a rotating, translating shape, sampled 5,000 times.
 TEST(Sweep, FindsTheFirstImpactOfFineSampling) {
   Random random(34);
   int hits = 0;
@@ -169,7 +170,7 @@ TEST(Sweep, FindsTheFirstImpactOfFineSampling) {
       }
       const double t = time_of_impact(q, 0.0);
       if (first < 0.0) {
-        ASSERT_TRUE(t < 0.0 || separation_at(q, t) < 1e-3) << i;  // grazing between the samples
+        ASSERT_TRUE(t < 0.0 || separation_at(q, t) < 1e-3) << i;  // grazing between samples
         if (t >= 0.0) {
           ASSERT_LT(least, 1e-3);
         }
@@ -187,7 +188,7 @@ TEST(Sweep, FindsTheFirstImpactOfFineSampling) {
 
 TEST(Sweep, GrazingTakesNoMoreThanItsAdvances) {
   const Geometry box{Kind::box, 0, {1, 1, 1}, {}};
-  // Past the face at 1 micrometre, and into it by 1 micrometre.
+  // Past the face by 1 micrometre, and into it by 1 micrometre.
   for (const double offset : {1e-6, -1e-6}) {
     const collide::SweepQuery q{
         {-5, 0, 1.1 + offset}, 0.1, {{-5, 0, 1.1}, {1000, 0, 0}, {}}, &box, {}, {}, 0.01, 1e-9};

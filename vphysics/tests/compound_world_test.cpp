@@ -1,4 +1,5 @@
-// Worlds with compounds: they stand, topple by their true masses, are hit, saved and restored.
+// Worlds with compounds: they stand, topple by their exact masses, collide, and are saved and
+// restored.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +22,7 @@ CompoundPart box_part(const Vec3& half, const Vec3& at) {
   return {Box{half}, SE3(at)};
 }
 
-// Their lowest points are at z = 0.
+// The lowest points are at z = 0.
 Compound table() {
   std::vector<CompoundPart> parts{box_part({0.6, 0.4, 0.02}, {0, 0, 0.72})};
   for (const double x : {-0.55, 0.55}) {
@@ -40,8 +41,8 @@ Compound chair() {
   }
   return Compound::of(parts).value();
 }
-// A post of 0.2 x 0.2 x 1 m over x from 0 to 0.2, and an arm of 0.2 m height at its top that
-// reaches out to x = 0.2 + arm.
+// A post of 0.2 x 0.2 x 1 m over x from 0 to 0.2, with an arm of 0.2 m height at its top that
+// extends to x = 0.2 + arm.
 Compound ell(double arm) {
   const CompoundPart parts[] = {box_part({0.1, 0.1, 0.5}, {0.1, 0, 0.5}),
                                 box_part({0.5 * arm, 0.1, 0.1}, {0.2 + 0.5 * arm, 0, 0.9})};
@@ -95,8 +96,8 @@ TEST(CompoundWorld, TablesChairsAndAnLStandAtEveryStepAndOnEveryGround) {
   EXPECT_LT(worst, 1e-3) << worst;
 }
 
-// Its centre of mass lies over the foot's edge, x = 0.2, where  0.04 * 0.1 = 0.04 arm * arm / 2,
-// that is arm = sqrt(0.2) m: 1% less stands, 1% more topples.
+// Its centre of mass is over the foot's edge, x = 0.2, where 0.04 * 0.1 = 0.04 arm * arm / 2, that
+// is arm = sqrt(0.2) m. An arm 1% shorter stands, 1% longer topples.
 TEST(CompoundWorld, AnLTopplesWhenItsCentreOfMassIsBeyondItsFoot) {
   for (const double share : {0.99, 1.01}) {
     World world;
@@ -112,12 +113,13 @@ TEST(CompoundWorld, AnLTopplesWhenItsCentreOfMassIsBeyondItsFoot) {
   }
 }
 
-// Falling over an edge that does not slip: what the centre of mass loses in height turns it,
-// I w^2 / 2 = m g (h0 - h), I about the edge, worked out here from the two boxes by hand.
+// Falling over an edge without slip, the potential energy becomes rotation:
+//   I w^2 / 2 = m g (h0 - h)
+// I about the edge is computed here from the two boxes.
 TEST(CompoundWorld, AnLFallsAsItsInertiaAboutTheEdgeSays) {
   const double arm = 0.6, density = 1000.0;
   const double m1 = density * 0.04, m2 = density * 0.04 * arm, m = m1 + m2;
-  const double x1 = -0.1, z1 = 0.5, x2 = 0.5 * arm, z2 = 0.9;  // from the edge at x = 0.2
+  const double x1 = -0.1, z1 = 0.5, x2 = 0.5 * arm, z2 = 0.9;  // relative to the edge at x = 0.2
   const double x = (m1 * x1 + m2 * x2) / m, z = (m1 * z1 + m2 * z2) / m;
   const double I = m1 * ((0.2 * 0.2 + 1.0) / 12 + x1 * x1 + z1 * z1) +
                    m2 * ((arm * arm + 0.2 * 0.2) / 12 + x2 * x2 + z2 * z2);
@@ -131,7 +133,7 @@ TEST(CompoundWorld, AnLFallsAsItsInertiaAboutTheEdgeSays) {
   for (int i = 0; i < 2000 && world.pose(body).rotation().cz.x < 0.6; ++i) {
     must(world.step(0.001));
   }
-  const Vec3 up = world.pose(body).rotation().cz;  // tilted by an angle of sine up.x
+  const Vec3 up = world.pose(body).rotation().cz;  // the sine of the tilt angle is up.x
   const double drop = z - (z * up.z - x * up.x);
   const double rate = std::sqrt(2.0 * m * kWeight * drop / I);
   EXPECT_GT(up.x, 0.6);
@@ -145,7 +147,7 @@ TEST(CompoundWorld, MassOfAllCollidersIsThatOfTheirDensities) {
   desc.velocity = {{1, 2, 3}, {4, 5, 6}};
   const BodyId body = must(world.create_body(desc));
   ColliderDesc collider;
-  // Two spheres of 1 and 3 kg at x = -0.3 and 0.1, and a sensor that counts for nothing.
+  // Two spheres of 1 and 3 kg at x = -0.3 and 0.1, and a sensor, which has no mass.
   const double volume = 4.0 / 3.0 * kPi * 1e-3;
   collider.shape = Sphere{0.1};
   collider.T_body_shape = SE3(Vec3{-0.3, 0, 0});
@@ -198,7 +200,7 @@ TEST(CompoundWorld, MassIsRefusedWhereThereIsNone) {
   EXPECT_FALSE(refused({}).empty());
 }
 
-// As one collider, a compound meets what colliders of its parts meet.
+// A compound as one collider collides as separate colliders of its parts do.
 TEST(CompoundWorld, FallsAsTheSamePartsGivenOneByOne) {
   SE3 last[2];
   for (const bool one_by_one : {false, true}) {
@@ -225,7 +227,7 @@ TEST(CompoundWorld, FallsAsTheSamePartsGivenOneByOne) {
     EXPECT_LT(world.pose(body).position().z, 0.2);
     last[one_by_one] = world.pose(body);
   }
-  // The two are solved in other orders.
+  // The two are solved in different orders.
   EXPECT_LT(norm(last[0].position() - last[1].position()), 2e-3);
 }
 
@@ -235,7 +237,7 @@ TEST(CompoundWorld, AContinuousBallNeverGoesThroughIt) {
   for (int shot = 0; shot < 200; ++shot) {
     World world({.gravity = {}});
     const Material material{0.3, 0.6, 0.0};
-    // Thin plates: 4 mm, at 25 mm a tick.
+    // Thin plates of 4 mm, which move 25 mm a step.
     const CompoundPart parts[] = {box_part({0.1, 0.002, 0.1}, {0, 0, 0}),
                                   box_part({0.1, 0.1, 0.002}, {0, 0.1, 0}),
                                   {Capsule{0.01, 0.05}, SE3(Vec3{0.05, -0.06, 0})}};
@@ -261,7 +263,7 @@ TEST(CompoundWorld, AContinuousBallNeverGoesThroughIt) {
   EXPECT_GT(hits, 150);
 }
 
-// Compounds, a mesh and a height field with all that can touch them.
+// Compounds, a mesh and a height field with every kind of shape that can touch them.
 struct Yard {
   World world;
   std::vector<BodyId> bodies;
@@ -300,7 +302,7 @@ TEST(CompoundWorld, RestoredStepsToTheSameBits) {
     must(other.world.restore(bytes));
     EXPECT_EQ(other.world.state_hash(), yard.world.state_hash());
     play(other, 100);
-    must(yard.world.step(0.01));  // away, and back
+    must(yard.world.step(0.01));  // moves on, then restores
     must(yard.world.restore(bytes));
     play(yard, 100);
     ASSERT_EQ(other.world.state_hash(), yard.world.state_hash()) << round;

@@ -43,7 +43,7 @@ TEST(Integrate, MovesAFreeAndABallAlongTheirOwnScrew) {
   const Model free = one_link(random, FreeJoint{}), ball = one_link(random, BallJoint{});
   double worst = 0.0;
   for (int round = 0; round < 500; ++round) {
-    // Angles from none over both sides of the series to more than a turn.
+    // Angles from zero, over both sides of the series threshold, to more than a revolution.
     const double angle = round % 5 == 0 ? 0.0 : std::pow(10.0, random.uniform(-9.0, 0.9));
     const Vec3 w = angle * random.direction(), v = random.in_cube(2);
     for (const Model* model : {&free, &ball}) {
@@ -71,7 +71,7 @@ TEST(Integrate, AddsTheCoordinatesOfEveryOtherJoint) {
   }
 }
 
-// Measured: 1.6e-15, and 2.2e-15 within 1e-7 of half a turn.
+// Measured: 1.6e-15, and 2.2e-15 within 1e-7 of half a revolution.
 TEST(Difference, IsTheStepThatIntegrateTook) {
   Random random(73);
   double worst = 0.0;
@@ -99,7 +99,7 @@ TEST(Difference, IsTheStepThatIntegrateTook) {
   EXPECT_LT(near_half_turn, 1e-14);
 }
 
-// Whichever sign the quaternions have, and however far apart: two arbitrary configurations.
+// With either sign of the quaternions, between two arbitrary configurations.
 TEST(Difference, LeadsFromAnyConfigurationToAnyOther) {
   Random random(74);
   for (int round = 0; round < 100; ++round) {
@@ -157,7 +157,7 @@ void lanes_step_alike(double bound) {
   for (int lane = 0; lane < N; ++lane) {
     states.push_back(random_state(random, model));
     State& s = states.back();
-    for (double& x : s.v) x *= lane % 2 == 0 ? 1.0 : 1e-3;  // both sides of the series in a pack
+    for (double& x : s.v) x *= lane % 2 == 0 ? 1.0 : 1e-3;  // both sides of the threshold
     for (std::size_t i = 0; i < q.size(); ++i) q[i].set(lane, static_cast<T>(s.q[i]));
     for (std::size_t i = 0; i < v.size(); ++i) v[i].set(lane, static_cast<T>(s.v[i]));
   }

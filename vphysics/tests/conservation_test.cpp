@@ -1,4 +1,4 @@
-// What many bodies together keep: momentum, and no more energy than they had.
+// Conservation laws of many bodies: momentum stays constant, and energy never grows.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace {
 
 struct Sums {
   Vec3 momentum, angular;  // world frame, about its origin
-  double energy = 0.0;     // of motion and height [J]
+  double energy = 0.0;     // kinetic and potential energy [J]
 };
 Sums sums_of(const World& world, const std::vector<BodyId>& bodies, const Vec3& gravity) {
   Sums sums;
@@ -45,9 +45,9 @@ Shape shape_of(int i) {
   }
 }
 
-// A cloud of all shapes falls in upon itself, with friction and restitution, joined in part. What
-// touches is solved in single precision: measured 1.3e-7 and, with the turning that is integrated
-// in steps, 3e-4 of what moves.
+// A cloud of all shapes collapses onto itself, with friction and restitution; some bodies are
+// joined. Contacts are solved in single precision: measured 1.3e-7 of the momentum, and 3e-4 of the
+// angular momentum with the error of integrating rotations.
 TEST(Momentum, OfManyThatCollideIsKept) {
   World world(weightless());
   Random random(17);
@@ -81,8 +81,9 @@ TEST(Momentum, OfManyThatCollideIsKept) {
   EXPECT_LT(norm(after.angular - before.angular), 1e-3 * moving);
 }
 
-// Poured into a pit, at each rate and restitution: at no step is there more energy than in any
-// before, but for what a penetration of a hard blow gives back: measured 1.2e-4 of the start's.
+// All shapes are poured into a pit, at each rate and restitution. At no step is the energy above
+// that of any earlier step, except for what the penetration of a hard impact returns: measured
+// 1.2e-4 of the initial energy.
 TEST(Energy, OfAllShapesPouredIntoAPitNeverGrows) {
   for (const double rate : {60.0, 240.0, 1000.0}) {
     for (const double restitution : {0.0, 0.5, 1.0}) {
@@ -116,9 +117,9 @@ TEST(Energy, OfAllShapesPouredIntoAPitNeverGrows) {
   }
 }
 
-// A stack far from the origin stands as one at the origin does. A pose there has steps of 1.2e-10 m
-// at a thousand kilometres; while the boxes still rock, that decides now and then whether a contact
-// has settled: measured 0.2 mm. Single precision would have steps of 62 mm.
+// A stack far from the origin stands as one at the origin does. At a thousand kilometres, positions
+// have a spacing of 1.2e-10 m. While the boxes still rock, this sometimes decides whether a contact
+// has settled: measured 0.2 mm. Single precision would have a spacing of 62 mm.
 TEST(LargeWorlds, AStackAThousandKilometresAwayStandsAsAtTheOrigin) {
   const auto fall = [](const Vec3& origin) {
     World world;

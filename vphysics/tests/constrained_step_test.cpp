@@ -1,5 +1,5 @@
 // Friction, stops, springs and motors within a step: closed forms for one joint; on trees, the
-// forces that inverse dynamics finds, law by law.
+// forces that inverse dynamics finds, against each force law.
 #include "vphysics/multibody/constrained_step.h"
 
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ TEST(DryFriction, SticksBelowItsBoundAndSlidesAboveIt) {
   stuck.tau[0] = 4.99;
   for (int i = 0; i < 1000; ++i) stuck.step();
   EXPECT_EQ(stuck.v[0], 0.0);
-  EXPECT_EQ(stuck.q[0], 0.0);  // no creep at all
+  EXPECT_EQ(stuck.q[0], 0.0);  // no creep
   EXPECT_NEAR(force_law_forces(stuck.data)[0], -4.99, 1e-12);
 
   OneSlide slides({.friction = 5.0});
@@ -63,7 +63,7 @@ TEST(DryFriction, BringsToRestInTimeAndLetsStay) {
     EXPECT_NEAR(slide.v[0], 1.0 - 2.5 * i * kH, 1e-12);
     slide.step();
   }
-  EXPECT_NEAR(slide.q[0], 0.5 * 1.0 * 0.4, 1.0 * kH);  // v t / 2; the method is of the first order
+  EXPECT_NEAR(slide.q[0], 0.5 * 1.0 * 0.4, 1.0 * kH);  // v t / 2; the integrator is of first order
   slide.step();
   const double q = slide.q[0];
   for (int i = 0; i < 100; ++i) slide.step();
@@ -89,7 +89,7 @@ TEST(Stop, IsMetWithoutBounceAndCarriesTheWeight) {
                           .forces = {{.lower = -1.0, .upper = 0.7}}}));
   const Model model = must_build(builder.build());
   ConstrainedData data(model, ConstraintSet());
-  Numbers q{0.0}, v{0.0}, tau{0.0};  // horizontal, and falls: q grows
+  Numbers q{0.0}, v{0.0}, tau{0.0};  // horizontal at first; q grows as it falls
   bool met = false;
   for (int i = 0; i < 2000; ++i) {
     ASSERT_TRUE(constrained_step(model, data, q, v, tau, {}, {}, kH));
@@ -118,7 +118,7 @@ TEST(Stop, LeadsBackWhatBeganBeyondItWithoutThrowingIt) {
   EXPECT_EQ(slide.v[0], 0.0);
 }
 
-// m x'' = -k x - d x' beyond the limit: half a period of a damped oscillation in contact.
+// m x'' = -k x - d x' beyond the limit: half a period of a damped oscillator in contact.
 TEST(SoftLimit, IsASpringAndADamper) {
   const double k = 2e4, d = 40.0, m = 2.0;
   OneSlide slide({.upper = 0.0, .limit_stiffness = k, .limit_damping = d});
@@ -136,7 +136,8 @@ TEST(SoftLimit, IsASpringAndADamper) {
   EXPECT_GT(slide.v[0], -1.0);
 }
 
-// Implicit: an oscillator whose period is far below the step comes to rest at its equilibrium.
+// Implicit integration: an oscillator whose period is far below the step comes to rest at its
+// equilibrium.
 TEST(Spring, OfAnyStiffnessIsStable) {
   for (const double k : {1.0, 1e4, 1e8, 1e15}) {
     OneSlide slide({.stiffness = k, .rest = 0.3}, 1.0);
@@ -178,7 +179,7 @@ TEST(StepMotor, OfAnyStiffnessIsStableAndNeverExceedsItsForce) {
     }
     EXPECT_LT(farthest, 2.5) << k;
   }
-  for (const double k : {1.0, 1e4, 1e8, 1e15}) {  // with all the force it wants
+  for (const double k : {1.0, 1e4, 1e8, 1e15}) {  // with unlimited force
     OneSlide slide({});
     slide.motors = {{.position = 0.5, .stiffness = k, .damping = 2.0}};
     double farthest = 0.0;
@@ -199,7 +200,7 @@ TEST(StepMotor, IsBoundedByItsJointToo) {
   EXPECT_NEAR(motor_forces(slide.data)[0], 1.0, 1e-12);
 }
 
-// A motor too weak for the friction moves nothing; its force is told all the same, and not more.
+// A motor too weak for the friction moves nothing. The reported force is its limit.
 TEST(StepMotor, WorksAgainstFriction) {
   OneSlide slide({.friction = 5.0});
   slide.motors = {{.position = 1.0, .stiffness = 1e6, .max_force = 4.0}};
@@ -212,7 +213,7 @@ TEST(StepMotor, WorksAgainstFriction) {
   EXPECT_NEAR(motor_forces(slide.data)[0], 7.0, 1e-10);
 }
 
-// --- trees: what the joints did, by inverse dynamics, against each law
+// --- trees: joint forces by inverse dynamics, against each force law
 
 JointForces random_forces(Random& random, bool by_coordinate) {
   JointForces f;
@@ -249,8 +250,8 @@ Model random_tree_with_forces(Random& random, int links) {
   return must_build(builder.build());
 }
 
-// The range of what a joint's friction, stops, spring, soft limits, damping and motor may do at the
-// velocity w, after the coordinate was q; the definition, without ramps.
+// The admissible range of a joint's friction, stops, spring, soft limits, damping and motor at the
+// velocity w, after the coordinate was q: the definition, without ramps.
 struct Range {
   double least = 0.0, most = 0.0;
   void add(double force) { least += force, most += force; }
@@ -310,7 +311,7 @@ TEST(ConstrainedStep, ObeysEveryLawOfATree) {
     ASSERT_TRUE(done) << done.error().message;
     ASSERT_TRUE(done->converged);
     rounds = std::max(rounds, done->iterations);
-    // M (v+ - v) / h + h(q, v) = tau + what the laws did; viscous damping is one of the laws.
+    // M (v+ - v) / h + h(q, v) = tau + the forces of the force laws, viscous damping among them.
     Numbers a(n), force(n);
     for (std::size_t i = 0; i < n; ++i) a[i] = (s.v[i] - v[i]) / kH;
     Data links(model);
@@ -346,8 +347,8 @@ TEST(ConstrainedStep, ObeysEveryLawOfATree) {
   EXPECT_GT(clamped_impulse, 50);
 }
 
-// Chains that bend at stiff motors, with friction, stops and springs all at once, from hard starts:
-// Newton's method must find the pieces.
+// Chains with stiff motors, friction, stops and springs at once, from difficult initial states:
+// Newton's method must find the active piece of each force law.
 TEST(ConstrainedStep, SettlesWhateverTheLaws) {
   Random random(102);
   int most = 0, sum = 0;
@@ -390,7 +391,7 @@ TEST(ConstrainedStep, SettlesWhateverTheLaws) {
 
 // --- closed loops
 
-// A parallelogram that hangs in its own plane under gravity, with friction in the crank.
+// A parallelogram linkage that hangs in its plane under gravity, with friction in the crank.
 struct Swing {
   Model model;
   ConstrainedData data;
@@ -413,7 +414,7 @@ struct Swing {
     return must_build(ConstraintSet::make(
         model, {close_hinge({1, SE3(Vec3{1, 0, 0})}, {2, SE3(Vec3{0.5, 0, 0})})}));
   }
-  // About the crank: bars' and coupler's weight at their arms.
+  // About the crank: the weights of the bars and the coupler times their lever arms.
   double weight_moment() const { return -9.81 * std::cos(q[0]) * (0.25 + 2.0 * 0.5 + 0.25); }
   double inertia() const { return 2 * (0.01 + 1.0 * 0.25 * 0.25) + 2.0 * 0.5 * 0.5; }
   void step(std::span<const Motor> motors = {}) {
@@ -454,7 +455,7 @@ TEST(ConstrainedStep, StopsAndLocksHoldALinkageInMotion) {
   for (const double x : locked.v) EXPECT_NEAR(x, 0.0, 1e-9);
 }
 
-// A motor of 1e12 N m/rad, to the folding position and back.
+// A motor of 1e12 N m/rad drives the linkage to its folding position and back.
 TEST(ConstrainedStep, MotorDrivesALinkageAndStaysClosed) {
   Swing swing({});
   std::vector<Motor> motors(3);
@@ -466,7 +467,8 @@ TEST(ConstrainedStep, MotorDrivesALinkageAndStaysClosed) {
     swing.step(motors);
     most = std::max(most, std::fabs(motor_forces(swing.data)[0]));
     for (const double x : swing.data.residual()) open = std::max(open, std::fabs(x));
-    // At 0 all bars lie in one line, and J has lost a row: it goes through, less exactly.
+    // At 0 all bars are collinear, and J loses rank: the linkage passes through, with less
+    // accuracy.
     if (i > 100 && std::fabs(swing.q[0]) > 0.1) {
       ASSERT_NEAR(swing.q[0], motors[0].position, 1e-7);
     } else if (i > 100) {
@@ -477,13 +479,13 @@ TEST(ConstrainedStep, MotorDrivesALinkageAndStaysClosed) {
   EXPECT_LT(open, 1.1e-12);
 }
 
-// The step is of the first order: the error of a falling linkage halves with the step. The
-// reference is its equation of one degree, I q'' = weight moment.
+// The step is of first order: the error of a falling linkage halves with the step. The reference is
+// its equation with one degree of freedom, I q'' = weight moment.
 TEST(ConstrainedStep, ConvergesInTheFirstOrder) {
   const double duration = 0.4;
   const Swing still({});
   const auto slope = [&](double angle) { return -9.81 * std::cos(angle) * 1.5 / still.inertia(); };
-  double angle = 0.5, rate = 0.0;  // by Verlet's method, in steps of a microsecond
+  double angle = 0.5, rate = 0.0;  // Verlet integration, in steps of a microsecond
   for (int i = 0; i < 400000; ++i) {
     rate += 0.5e-6 * slope(angle);
     angle += 1e-6 * rate;
@@ -519,7 +521,7 @@ TEST(JointForces, AreSpringsSoftLimitsAndMotorsInEveryScalar) {
   } cases[] = {
       {{0.2, 0.0}, {0.0, 0.0}, {100 * 0.3 - 2.0, 1.5}},
       {{0.9, 1.2}, {0.5, 0.1}, {-40.0 - 6.0, -(50 * 0.2 + 1.0) + 1.5}},
-      {{0.5, -1.5}, {0.0, 4.0}, {-5.0, 0.0 - 1.5}},  // flies off: no glue
+      {{0.5, -1.5}, {0.0, 4.0}, {-5.0, 0.0 - 1.5}},  // a motion that separates: no adhesion
   };
   for (const auto& c : cases) {
     Numbers tau = {1.0, 2.0};
@@ -543,7 +545,7 @@ TEST(JointForces, AreSpringsSoftLimitsAndMotorsInEveryScalar) {
   }
 }
 
-// --- what is refused
+// --- rejected arguments
 
 TEST(Model, RefusesForcesThatNoJointHas) {
   const double nan = std::numeric_limits<double>::quiet_NaN();

@@ -1,5 +1,5 @@
-// Constraints and the dynamics under them, by independent routes: differences of residuals, Eigen's
-// dense solution of Gauss' principle, joints against their equivalents.
+// Constraints and constrained dynamics, by independent routes: difference quotients of residuals,
+// Eigen's dense solution of Gauss' principle, joints against their equivalents.
 #include "vphysics/multibody/constraint.h"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ ConstraintSet must_fit(const Model& model, std::vector<ConstraintPtr> constraint
   return made ? std::move(*made) : ConstraintSet();
 }
 
-// The first coordinate of the first joint of one degree.
+// The first coordinate of the first joint with one degree of freedom.
 CoupledCoordinate simple_coordinate(const Model& model, double factor) {
   for (int link = 0; link < model.links(); ++link) {
     if (coordinates_of(model.link(link).joint) == 1) return {link, 0, factor};
@@ -33,7 +33,7 @@ CoupledCoordinate simple_coordinate(const Model& model, double factor) {
   return {-1, 0, factor};
 }
 
-// Every kind, between links on branches, on one path, and of the world.
+// Every kind of constraint, between links on different branches, on one path, and to the world.
 std::vector<ConstraintPtr> every_kind(Random& random, const Model& model) {
   const auto place = [&](int link) { return Attachment{link, random.pose(0.5)}; };
   const int last = model.links() - 1;
@@ -65,8 +65,8 @@ Numbers rate_at(const Model& model, ConstrainedData& data, const Numbers& q, con
   return out;
 }
 
-// Central differences at two steps, extrapolated: (4 D(h/2) - D(h)) / 3, so that what is left is of
-// the fourth order. Measured: 3e-10 of the largest.
+// Central differences at two steps with Richardson extrapolation, (4 D(h/2) - D(h)) / 3: the error
+// is of fourth order. Measured: 3e-10 of the largest.
 template <class F>
 Numbers slope(const F& f) {
   const auto difference = [&](double h) {
@@ -91,7 +91,7 @@ TEST(Constraint, HasTheRatesOfItsResidual) {
     ConstrainedData data(model, must_fit(model, every_kind(random, model)));
     const State s = random_state(random, model);
     const Numbers phi = residual_at(model, data, s.q);
-    if (largest_of(phi) > 8.0) continue;  // near the half turn that the rows exclude
+    if (largest_of(phi) > 8.0) continue;  // near the half revolution that the rows exclude
     const Numbers rate =
         slope([&](double h) { return residual_at(model, data, moved(model, s.q, s.v, h)); });
     const Numbers expected = rate_at(model, data, s.q, s.v);
@@ -108,8 +108,8 @@ TEST(Constraint, HasTheRatesOfItsResidual) {
   EXPECT_LT(worst_b, 1e-7);
 }
 
-// Gauss: of all a with J a + b = 0 the one that is nearest to the free one in the measure M. By
-// singular values: a = a_0 + Z z, Z the null space of J.
+// Gauss' principle: of all a with J a + b = 0, the one closest to the free acceleration in the
+// metric M. By singular values: a = a_0 + Z z, Z the null space of J.
 Vector gauss(const Matrix& M, const Matrix& J, const Vector& b, const Vector& a_free) {
   Eigen::JacobiSVD<Matrix> svd(J, Eigen::ComputeFullU | Eigen::ComputeFullV);
   svd.setThreshold(1e-10);
@@ -120,7 +120,8 @@ Vector gauss(const Matrix& M, const Matrix& J, const Vector& b, const Vector& a_
   return a0 + Z * N.ldlt().solve(Z.transpose() * M * (a_free - a0));
 }
 
-// Loops that are closed where they are, twice over, so that half of the rows are redundant.
+// Loops that are closed in the current configuration, each twice, so that half of the rows are
+// redundant.
 TEST(ConstrainedDynamics, ObeysGaussPrincipleWithRedundantRows) {
   Random random(82);
   double worst = 0.0;
@@ -159,7 +160,8 @@ TEST(ConstrainedDynamics, ObeysGaussPrincipleWithRedundantRows) {
     const double scale = 1 + expected.cwiseAbs().maxCoeff();
     worst = std::max(worst, (got - expected).cwiseAbs().maxCoeff() / scale);
     EXPECT_LE(data.rank(), 8);
-    // The multipliers are the forces that do it.
+    // The multipliers are the constraint forces: applied as loads, they give the same
+    // accelerations.
     const Vector lambda = Eigen::Map<const Vector>(data.multipliers().data(), m);
     Numbers with(v.size());
     Eigen::Map<Vector>(with.data(), n) =
@@ -171,7 +173,7 @@ TEST(ConstrainedDynamics, ObeysGaussPrincipleWithRedundantRows) {
   EXPECT_LT(worst, 1e-9);
 }
 
-// A screw is a nut that slides and turns, with one coupled to the other.
+// A helical joint equals a cylindrical joint with a coupling between rotation and translation.
 TEST(Coupling, OfACylindricalJointIsAHelicalOne) {
   Random random(83);
   const Vec3 axis = random.direction();
@@ -202,7 +204,7 @@ TEST(Coupling, OfACylindricalJointIsAHelicalOne) {
   }
 }
 
-// A tree that a weld makes of a chain: the link that hangs on a free joint, welded, is as if fixed.
+// A weld closes a chain to a tree: a welded link with a free joint moves as a fixed one.
 TEST(Closure, AWeldedLinkIsAFixedOne) {
   Random random(84);
   const Inertia first = random_body(random), second = random_body(random);
@@ -227,7 +229,7 @@ TEST(Closure, AWeldedLinkIsAFixedOne) {
     const auto steps = close_loops(loose, data, p, {.held = held});
     ASSERT_TRUE(steps) << steps.error().message;
     EXPECT_EQ(p[0], q[0]);
-    // The welded body's velocity: that of the point of the first where it is.
+    // The velocity of the welded body: that of the first body's point at its place.
     const se3 V = InvAd(place, v[0] * se3{{0, 1, 0}, {}});
     const double parts[] = {V.w.x, V.w.y, V.w.z, V.v.x, V.v.y, V.v.z};
     std::copy(parts, parts + 6, w.begin() + 1);
@@ -237,7 +239,7 @@ TEST(Closure, AWeldedLinkIsAFixedOne) {
   }
 }
 
-// --- a constraint of one's own: the bead's z and x obey z = x^2
+// --- a user-defined constraint: the bead's z and x obey z = x^2
 
 class ParabolicWire final : public Constraint {
  public:
@@ -258,7 +260,7 @@ class ParabolicWire final : public Constraint {
   int link_;
 };
 
-// Lagrange: (1 + 4 x^2) x'' + 4 x x'^2 + 2 g x = 0.
+// Lagrange's equation: (1 + 4 x^2) x'' + 4 x x'^2 + 2 g x = 0.
 TEST(Constraint, OfOnesOwnIsABeadOnAWire) {
   ModelBuilder builder;
   must_build(builder.add({"bead", kWorld, FreeJoint{}, {}, Inertia(0.3, Vec3{1e-3, 1e-3, 1e-3})}));
@@ -281,7 +283,7 @@ TEST(Constraint, OfOnesOwnIsABeadOnAWire) {
   }
 }
 
-// --- what is refused
+// --- rejected arguments
 
 TEST(ConstraintSet, RefusesWhatDoesNotFit) {
   Random random(86);
@@ -309,7 +311,7 @@ TEST(ConstraintSet, RefusesWhatDoesNotFit) {
   EXPECT_FALSE(refused(close_ball({0, {}}, {1, {}})));
 }
 
-// Two gears that want different things of the same joint.
+// Two gears that prescribe different positions for the same joint.
 TEST(ConstrainedDynamics, SaysThatConstraintsContradictEachOther) {
   ModelBuilder builder;
   must_build(builder.add({.joint = RevoluteJoint{}, .inertia = Inertia(1.0, Vec3{1, 1, 1})}));
@@ -324,14 +326,14 @@ TEST(ConstrainedDynamics, SaysThatConstraintsContradictEachOther) {
   ASSERT_FALSE(assembled);
   EXPECT_EQ(assembled.error().code, Errc::singular);
   EXPECT_TRUE(std::isfinite(q[0]));
-  // The same twice is no contradiction.
+  // The same constraint twice is redundant, not contradictory.
   ConstrainedData twice(model, must_fit(model, {wants(0.1), wants(0.1)}));
   EXPECT_TRUE(close_loops(model, twice, q));
   EXPECT_NEAR(q[0], 0.1, 1e-12);
   EXPECT_TRUE(constrained_forward_dynamics(model, twice, q, v, tau, {}, 10.0, a));
 }
 
-// A bar of no direction, two links too far apart, an inertia that is none.
+// A bar of zero length, two links too far apart, and a singular inertia.
 TEST(ConstrainedDynamics, GivesAnErrorAndNoNaN) {
   ModelBuilder builder;
   const Inertia body(1.0, Vec3{1, 1, 1});
@@ -340,10 +342,10 @@ TEST(ConstrainedDynamics, GivesAnErrorAndNoNaN) {
   const Model model = must_build(builder.build());
   Numbers q(2);
   ConstrainedData far(model, must_fit(model, {keep_distance({0, {}}, {1, {}}, 1.0)}));
-  EXPECT_FALSE(close_loops(model, far, q));  // 2 m apart whatever they do
+  EXPECT_FALSE(close_loops(model, far, q));  // 2 m apart in every configuration
   const SE3 beside(Vec3{0, 2, 0});
   ConstrainedData none(model, must_fit(model, {keep_distance({0, beside}, {1, {}}, 1.0)}));
-  EXPECT_FALSE(close_loops(model, none, q));  // d = 0: it could go either way
+  EXPECT_FALSE(close_loops(model, none, q));  // d = 0: the direction is undefined
   EXPECT_TRUE(std::isfinite(q[0]) && std::isfinite(q[1]));
   q[1] = 0.01;
   EXPECT_TRUE(close_loops(model, none, q));

@@ -1,4 +1,4 @@
-// Contact points with their impulses: what a foot or a gripper feels.
+// Contact points with their impulses: what a foot or a gripper measures.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -51,7 +51,8 @@ BodyId add_crate(World& world, Kind kind, const Vec3& at, const Material& m) {
   return world.link_body(id, 0);
 }
 
-// A crate at rest that is pushed: the ground gives its weight and the push, at the height of both.
+// A crate at rest under a horizontal force. The ground's impulses equal its weight and that force,
+// with the moment of both.
 TEST(ContactsOf, CarryTheWeightAndHoldThePush) {
   const Material m{0.5, 0.0, 0.0};
   for (const Kind kind : {Kind::body, Kind::swept, Kind::link}) {
@@ -96,7 +97,7 @@ TEST(ContactsOf, AStackAddUpFromBodyToBody) {
   }
 }
 
-// A crate on a plate that hangs on a joint, whose drive feels both.
+// A crate on a plate that is a link; the joint's drive carries both.
 TEST(ContactsOf, ABodyOnALink) {
   for (const double rate : kRates) {
     World world;
@@ -120,7 +121,8 @@ TEST(ContactsOf, ABodyOnALink) {
   }
 }
 
-// Impulses of a whole bounce are the change of momentum, and what gravity took meanwhile.
+// The impulses of a complete bounce sum to the change of momentum plus the impulse of gravity
+// meanwhile.
 TEST(ContactsOf, ABounceGiveItsChangeOfMomentum) {
   for (const bool continuous : {false, true}) {
     for (const double rate : kRates) {

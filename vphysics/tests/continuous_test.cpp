@@ -1,4 +1,4 @@
-// Continuous bodies that are no spheres: fast and spinning, against what stands and what flies.
+// Continuous bodies other than spheres: fast and spinning, against resting and moving bodies.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,8 +29,8 @@ double kinetic_energy(const World& world, BodyId body, const Inertia& inertia) {
   return 0.5 * (V * (inertia * V));
 }
 
-// Rods of 0.4 m that are as thin as 1 cm, at 25 m/s and 150 rad/s, and a wall of 2 mm: a step of
-// 1 ms takes them 25 mm, their tips 40 mm.
+// Rods of 0.4 m length and 1 cm thickness, at 25 m/s and 150 rad/s, and a wall of 2 mm. In a step
+// of 1 ms they move 25 mm, their tips 40 mm.
 TEST(Continuous, SpinningRodsNeverPassAThinWall) {
   Random random(801);
   const Shape rods[] = {Capsule{0.005, 0.195}, Box{{0.2, 0.005, 0.01}}, Cylinder{0.005, 0.2}};
@@ -67,7 +67,7 @@ TEST(Continuous, SpinningRodsNeverPassAThinWall) {
   EXPECT_LT(most, 1.05);
 }
 
-// Plates of 2 mm that fly at one another at 25 m/s each, turning: one is continuous.
+// Plates of 2 mm, spinning, fly at one another at 25 m/s each. At least one of them is continuous.
 TEST(Continuous, PlatesThatFlyAtOneAnotherMeet) {
   Random random(802);
   int rotated_back = 0;
@@ -101,7 +101,7 @@ TEST(Continuous, PlatesThatFlyAtOneAnotherMeet) {
   EXPECT_EQ(rotated_back, 40);
 }
 
-// What comes to rest stays, as deep as the slop allows.
+// Bodies that come to rest stay at rest, at most as deep as the slop.
 TEST(Continuous, BodiesOfAnyShapeComeToRest) {
   for (const Shape& shape :
        {Shape{Box{{0.05, 0.04, 0.03}}}, Shape{Cylinder{0.04, 0.03}}, Shape{Cone{0.04, 0.03}}}) {
@@ -126,8 +126,8 @@ TEST(Continuous, BodiesOfAnyShapeComeToRest) {
   }
 }
 
-// Two sticks of 1 cm fly at one another head on, each turning at 150 rad/s: whatever their
-// attitudes, each holds its middle, so that they have met before their middles would.
+// Two sticks of 1 cm thickness fly at one another head on, each spinning at 150 rad/s. In any
+// orientation a stick contains its centre, so they collide before their centres would.
 TEST(Continuous, SpinningSticksNeverPassOneAnother) {
   Random random(803);
   constexpr double kThick = 0.005, kSpeed = 25.0, kStart = 0.31;
@@ -138,7 +138,7 @@ TEST(Continuous, SpinningSticksNeverPassOneAnother) {
       Part part;
       part.shape = i % 2 ? Shape{Box{{0.2, kThick, kThick}}} : Shape{Capsule{kThick, 0.195}};
       part.material = {0.3, random.uniform(0.0, 0.8)};
-      part.continuous = side < 0.0 || i % 3 != 0;  // one is enough
+      part.continuous = side < 0.0 || i % 3 != 0;  // one continuous body of the pair is enough
       part.pose = SE3(random.rotation(), {kStart * side, 0, 0});
       part.velocity = {part.pose.unrotate(150.0 * random.direction()),
                        part.pose.unrotate({-kSpeed * side, 0, 0})};
@@ -155,7 +155,7 @@ TEST(Continuous, SpinningSticksNeverPassOneAnother) {
       nearest = std::min(nearest, norm(world.pose(right).position() - world.pose(left).position()));
     }
     ASSERT_GE(met, 0.0) << i;
-    ASSERT_LE(met, (kStart - kThick) / kSpeed) << i;  // surfaces of the middles
+    ASSERT_LE(met, (kStart - kThick) / kSpeed) << i;  // their inscribed spheres touch
     latest = std::max(latest, met);
   }
   std::printf("the latest hit after %.2f ms, middles as near as %.2f mm\n", 1e3 * latest,
@@ -163,7 +163,7 @@ TEST(Continuous, SpinningSticksNeverPassOneAnother) {
   EXPECT_GE(nearest, 2.0 * kThick - 3e-4);
 }
 
-// The first hit of what tumbles, found at 4 ms, is where steps of 20 us have it.
+// The first hit of tumbling bodies, found in steps of 4 ms, matches that of steps of 20 us.
 TEST(Continuous, HitsWhenSmallStepsSayThatItDoes) {
   Random random(804);
   double most = 0.0;
@@ -192,10 +192,10 @@ TEST(Continuous, HitsWhenSmallStepsSayThatItDoes) {
     most = std::max(most, std::fabs(coarse - fine));
   }
   std::printf("times of hits differ by at most %.1f us\n", 1e6 * most);
-  EXPECT_LT(most, 50e-6);  // 20 us here, of 4000
+  EXPECT_LT(most, 50e-6);  // measured 20 us, of 4000
 }
 
-// A box at 100 m/s goes 1.7 m in a step of 60 Hz; the wall has 1 mm.
+// A box at 100 m/s moves 1.7 m in a step of 60 Hz. The wall is 1 mm thick.
 TEST(Continuous, AThinWallStopsABoxOf100MetresASecondAt60Hertz) {
   Random random(805);
   const Box wall{{0.0005, 5.0, 5.0}};
@@ -216,15 +216,15 @@ TEST(Continuous, AThinWallStopsABoxOf100MetresASecondAt60Hertz) {
       ASSERT_LT(world.pose(box).position().x, 0.0) << i;
       ASSERT_GT(separation(part.shape, world.pose(box), wall, SE3{}), -1e-3) << i;
     }
-    // A hit of one corner without bounce may leave the middle going on, as slow as the corner
-    // turns.
+    // After a hit of one corner without bounce, the centre may move on, as slowly as the corner
+    // rotates.
     const se3 V = world.velocity(box);
     EXPECT_LT(world.pose(box).rotate(V.v).x, 1e-3 + 0.15 * norm(V.w)) << i;
   }
 }
 
-// Two like boxes, elastic, head on within a step: they exchange their velocities at the instant
-// they meet, and no time is lost: each is where the other would be.
+// Two equal elastic boxes collide head on within a step. They exchange velocities at the time of
+// impact, and no time is lost: each ends where the other would have been.
 TEST(Continuous, ElasticBoxesGoOnAsIfTheyHadPassed) {
   for (const double dt : {1.0 / 60.0, 0.001}) {
     World world({.gravity = {}});
@@ -241,7 +241,8 @@ TEST(Continuous, ElasticBoxesGoOnAsIfTheyHadPassed) {
     const int steps = static_cast<int>(std::lround(0.1 / dt));
     for (int k = 0; k < steps; ++k) must(world.step(dt));
     const double t = steps * dt;
-    // Faces meet, not middles: each is a box's width behind the one it changes with.
+    // Faces collide, not centres: each is one box width behind the box it exchanged velocities
+    // with.
     EXPECT_NEAR(world.pose(left).position().x, 1.0 - 20.0 * t - 0.1, 2e-4) << dt;
     EXPECT_NEAR(world.pose(right).position().x, -1.0 + 40.0 * t + 0.1, 2e-4) << dt;
     EXPECT_NEAR(world.velocity(left).v.x, -20.0, 1e-9);
@@ -256,7 +257,7 @@ Shape hammer() {
   return Compound::of(parts).value();
 }
 
-// Hammers at 25 m/s and 150 rad/s in a closed room of thin walls, one of them a mesh: none leaves.
+// Hammers at 25 m/s and 150 rad/s in a closed room of thin walls, one of them a mesh: none escapes.
 TEST(Continuous, ThrownCompoundsStayInARoomOfThinWalls) {
   Random random(806);
   int hits = 0;
@@ -303,7 +304,7 @@ TEST(Continuous, ThrownCompoundsStayInARoomOfThinWalls) {
   EXPECT_LT(held, 0.024);
 }
 
-// A box slides over a mesh without friction: inner edges neither brake nor lift nor hold it.
+// A box slides over a mesh without friction: internal edges neither slow nor lift nor stop it.
 TEST(Continuous, InnerEdgesOfAMeshDoNotBrakeABoxThatSlides) {
   Random random(810);
   World world;
@@ -358,14 +359,16 @@ TEST(Continuous, PaddlesAndMenTurnBoxesBack) {
       const StepStatus status = must(world.step(0.001));
       ASSERT_FALSE(status.non_finite);
       met = !world.contact_events().empty();
-      // The axis is within the man and the blade at every angle, and the box is larger than it.
+      // The axis is inside the man and the blade at every angle, and the box is larger than the
+      // axis.
       ASSERT_TRUE(met || world.pose(box).position().x < 0.0) << i;
     }
     ASSERT_TRUE(met) << i;
   }
 }
 
-// Boxes among boxes, compounds and spheres: what is restored at every step goes on as it was.
+// Boxes among boxes, compounds and spheres: a world restored at every step continues with the same
+// bits.
 TEST(Continuous, RestoredStepsGiveTheSameBits) {
   World world, other;
   for (World* w : {&world, &other}) {

@@ -1,4 +1,4 @@
-// Hulls of points of every kind against what holds for any convex hull, and their masses against
+// Hulls of every kind of point set against the properties of any convex hull; their masses against
 // closed forms and against each other.
 #include "vphysics/convex_hull.h"
 
@@ -18,8 +18,8 @@ namespace {
 
 using Points = std::vector<Vec3>;
 
-// Closed, convex, ordered, and a hull of these points: no point is outside by more than allowed,
-// and every corner is one of them.
+// The hull is closed, convex and ordered. No point is outside by more than `allowed`, and every
+// vertex is one of the points.
 void expect_hull_of(const Points& points, const ConvexHull& hull, double allowed) {
   const auto vertices = hull.vertices();
   std::map<std::pair<int, int>, int> edges;
@@ -33,7 +33,7 @@ void expect_hull_of(const Points& points, const ConvexHull& hull, double allowed
       const Vec3 &a = vertices[static_cast<std::size_t>(from)],
                  &b = vertices[static_cast<std::size_t>(to)],
                  &c = vertices[face.vertices[(i + 2) % n]];
-      // The corner turns left around the outward normal.
+      // The edges turn left around the outward normal.
       ASSERT_GT(dot(face.normal, cross(b - a, c - b)), -allowed * norm(c - a));
       ASSERT_LE(face.offset - dot(face.normal, a), allowed + 1e-12);
     }
@@ -47,7 +47,7 @@ void expect_hull_of(const Points& points, const ConvexHull& hull, double allowed
     ++degree[static_cast<std::size_t>(edge.first)];
   }
   for (const int d : degree) ASSERT_GE(d, 3);
-  ASSERT_EQ(vertices.size() + hull.faces().size(), edges.size() / 2 + 2);  // Euler
+  ASSERT_EQ(vertices.size() + hull.faces().size(), edges.size() / 2 + 2);  // Euler's formula
   for (const Vec3& v : vertices)
     ASSERT_NE(std::find(points.begin(), points.end(), v), points.end());
   ASSERT_GT(hull.volume(), 0.0);
@@ -68,7 +68,7 @@ TEST(ConvexHull, OfABoxWithPointsEverywhereHasItsCornersAndSixFaces) {
     if (i % 4 > 0) p[static_cast<int>(random.word() % 3)] = i % 2 ? 1.0 : -1.0;  // on a face
     if (i % 4 > 1) p[static_cast<int>(random.word() % 3)] = i % 3 ? 1.0 : -1.0;  // on an edge
     points.push_back({p.x * half.x, p.y * half.y, p.z * half.z});
-    points.push_back(points[random.word() % points.size()]);  // twice
+    points.push_back(points[random.word() % points.size()]);  // a duplicate
   }
   const ConvexHull hull = hull_of(points);
   expect_hull_of(points, hull, 1e-12);
@@ -85,7 +85,7 @@ TEST(ConvexHull, OfABoxWithPointsEverywhereHasItsCornersAndSixFaces) {
   EXPECT_LT(norm(ours.first_moment()), 1e-12 * box.mass());
 }
 
-// One cloud of each kind that gives hull builders trouble.
+// One cloud of each kind that is difficult for hull builders.
 Points cloud(Random& random, int kind, int n) {
   Points points;
   for (int i = 0; i < n; ++i) {
@@ -97,7 +97,7 @@ Points cloud(Random& random, int kind, int n) {
       case 1:  // a sphere's surface
         p = random.direction();
         break;
-      case 2: {  // a lattice: coplanar and collinear wherever one looks
+      case 2: {  // a lattice, full of coplanar and collinear points
         const double x = lattice(), y = lattice(), z = lattice();
         p = {x, y, z};
         break;
@@ -111,7 +111,7 @@ Points cloud(Random& random, int kind, int n) {
       case 5:  // two parallel discs: many points on one circle
         p = {std::cos(2 * kPi * i / n), std::sin(2 * kPi * i / n), i % 2 ? 0.5 : -0.5};
         break;
-      case 6:  // clusters so tight that only rounding tells the points apart
+      case 6:  // clusters so tight that points differ only by rounding
         p = Vec3{p.x > 0 ? 1.0 : 0.0, p.y > 0 ? 1.0 : 0.0, p.z > 0 ? 1.0 : 0.0} +
             1e-15 * random.in_cube(1.0);
         break;
@@ -136,7 +136,7 @@ TEST(ConvexHull, OfAnyCloudHoldsAllOfItsPoints) {
       const SE3 T = random.pose(i % 3 == 2 ? 1e6 * size : size);
       for (Vec3& p : points) p = T * (size * p);
       const ConvexHull hull = hull_of(points, options);
-      // What is left out sticks out by at most the tolerance, share of an extent of up to 2
+      // Points left out are outside by at most the tolerance, a fraction of an extent of up to 2
       // sqrt(3).
       SCOPED_TRACE(testing::Message() << "kind " << kind << ", cloud " << i);
       const double allowed = 2e-5 * 3.5 * size;
@@ -165,7 +165,7 @@ TEST(ConvexHull, OfNearlyFlatSidesHasFlatSides) {
   }
 }
 
-// A prism of 60 sides: its caps are one face each, though made of 58 triangles.
+// A prism of 60 sides: each cap is one face, though made of 58 triangles.
 TEST(ConvexHull, JoinsManyTrianglesIntoOneFace) {
   Points points;
   for (int i = 0; i < 60; ++i) {
@@ -215,8 +215,9 @@ TEST(ConvexHull, KeepsTheCornersThatStickOutFarthest) {
     for (const ConvexHull::Face& face : hull.faces()) {
       outside = std::max(outside, farthest(points, face.normal) - face.offset);
     }
-    // Of n points spread evenly over a sphere each has a cap of 4 pi / n; a hexagonal net leaves
-    // 1 - cos of 1.1 times its radius below the sphere: 2.4 / n. Measured: 3.4 / n to 4.9 / n.
+    // Of n points spread evenly over a sphere, each has a cap of area 4 pi / n. Between the points
+    // of a hexagonal net, the hull is below the sphere by 1 - cos of 1.1 times the cap's radius:
+    // 2.4 / n. Measured: 3.4 / n to 4.9 / n.
     EXPECT_LT(outside, 6.0 / limit);
     EXPECT_LT(outside, before);
     before = outside;
@@ -224,7 +225,7 @@ TEST(ConvexHull, KeepsTheCornersThatStickOutFarthest) {
   }
 }
 
-// What a plane cuts a box into has the box's mass, first moment and inertia together.
+// The two halves of a cut box together have the box's mass, first moment and inertia.
 TEST(ConvexHull, MassesOfTwoHalvesAddUpToTheWhole) {
   Random random(56);
   const Points corners = box_corners({0.4, 0.7, 0.3});
@@ -252,7 +253,7 @@ TEST(ConvexHull, MassesOfTwoHalvesAddUpToTheWhole) {
       HullOptions exact;
       exact.tolerance = 0.0;
       const auto hull = ConvexHull::of(side, exact);
-      if (!hull) continue;  // a corner cut off thinner than can be kept
+      if (!hull) continue;  // a corner that is cut off is too thin for a hull
       sum = sum + hull->inertia(3.0);
     }
     const Inertia whole = solid_inertia(Box{{0.4, 0.7, 0.3}}, 3.0).InvXform(T);
@@ -313,9 +314,8 @@ TEST(ConvexHull, RefusesWhatHasNoVolume) {
 }
 
 // --- solid_inertia and scaled
-// ---------------------------------------------------------------------
 
-// A prism and a pyramid of n sides inscribed in cylinder and cone.
+// A prism or a pyramid of n sides, inscribed in a cylinder or a cone.
 ConvexHull inscribed(bool cone, int sides) {
   Points points;
   if (cone) points.push_back({0, 0, 0.7});
@@ -343,8 +343,8 @@ TEST(SolidInertia, OfCylinderAndConeIsTheLimitOfTheirHulls) {
     };
     const auto coarse = errors(32), fine = errors(64);
     for (std::size_t i = 0; i < coarse.size(); ++i) {
-      if (i == 4 && !cone) continue;  // no first moment
-      // The areas converge with the square of the number of sides.
+      if (i == 4 && !cone) continue;  // its first moment is zero
+      // The error falls with the square of the number of sides.
       EXPECT_NEAR(coarse[i] / fine[i], 4.0, 0.03) << cone << i;
       EXPECT_LT(fine[i], 0.004 * exact.mass());
       EXPECT_GT(fine[i], 0.0);

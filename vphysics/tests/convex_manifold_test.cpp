@@ -1,5 +1,6 @@
 // Manifolds of every pair of convex shapes: against the distance (proven in closest_points_test),
-// against each other, and what stands and rolls. PAIRS says how many of each are tried.
+// against each other, and for shapes that stand or roll. PAIRS is the number of samples for each
+// pair.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -65,7 +66,7 @@ TEST_P(EveryPairsManifold, TouchesAsDeepAsItIs) {
     const Solid a = random_solid(random, ka), b = random_solid(random, kb);
     const SE3 Ta = random.pose(0.4);
     SE3 Tb = random.pose(1.0);
-    // As they are, nearly touching, and touching to a tenth of a millimetre.
+    // As sampled, nearly touching, and touching to a tenth of a millimetre.
     const ClosestPoints before = closest(a, Ta, b, Tb);
     const double wanted = i % 3 == 0   ? before.distance
                           : i % 3 == 1 ? random.uniform(-0.01, 0.02)
@@ -76,8 +77,8 @@ TEST_P(EveryPairsManifold, TouchesAsDeepAsItIs) {
     const Manifold m = manifold_of(a, Ta, b, Tb, margin);
     const double size =
         collide::CorePair(a.geometry, b.geometry, collide::relative_pose(Ta, Tb)).size;
-    // A face may be told that is 5% and 1e-5 of the size behind; twice, where it is taken for good
-    // enough before the best is known.
+    // The manifold may use a face that is worse by 5% and 1e-5 of the size. This may happen twice,
+    // where a face is accepted before the best is known.
     const double behind = 0.1 * std::fabs(c.distance) + 2e-5 * size;
     if (m.count == 0) {
       ASSERT_GT(c.distance, margin - behind) << i;
@@ -93,9 +94,9 @@ TEST_P(EveryPairsManifold, TouchesAsDeepAsItIs) {
       const auto& p = m.points[k];
       ASSERT_LE(p.separation, margin);
       names.insert(p.feature);
-      if (c.distance < -0.02) continue;  // deep inside, the way to the surface may be another
-      // Midway between the surfaces along the normal. Measured: 1.4e-2 of the size where the corner
-      // of a rim's polygon stands for the rim.
+      if (c.distance < -0.02) continue;  // deep: other directions may be shorter
+      // Each point is midway between the surfaces along the normal. Measured: 1.4e-2 of the size,
+      // where the corner of a rim's polygon stands for the rim.
       for (const bool of_a : {true, false}) {
         const Geometry& g = of_a ? a.geometry : b.geometry;
         const double d = signed_distance(g, inverse_times(of_a ? Ta : Tb, p.position)).distance;
@@ -105,7 +106,7 @@ TEST_P(EveryPairsManifold, TouchesAsDeepAsItIs) {
         ASSERT_GT(d, -0.5 * std::fabs(p.separation) - (round ? 0.05 : 3e-6) * size) << i;
       }
     }
-    ASSERT_EQ(static_cast<int>(names.size()), m.count) << i;  // each its own
+    ASSERT_EQ(static_cast<int>(names.size()), m.count) << i;  // unique ids
   }
   EXPECT_GT(touching, PAIRS / 4);
 }
@@ -123,7 +124,7 @@ TEST_P(EveryPairsManifold, IsTheSameSwappedAndFarFromTheOrigin) {
     ASSERT_EQ(m.count > 0, s.count > 0);
     ASSERT_EQ(m.count > 0, f.count > 0);
     if (m.count == 0) continue;
-    // Between faces that do equally well the first shape's is taken.
+    // Between equally good faces, the first shape's is taken.
     const double apart = 0.1 * std::fabs(deepest(m)) + 4e-5 * 4.0;
     ASSERT_NEAR(deepest(m), deepest(s), apart) << i;
     ASSERT_NEAR(deepest(m), deepest(f), apart) << i;
@@ -138,7 +139,8 @@ TEST_P(EveryPairsManifold, IsTheSameSwappedAndFarFromTheOrigin) {
   }
 }
 
-// Extreme proportions, deep and far, one cache used for pair after pair, or full of anything.
+// Extreme proportions, deep and far; one cache used for pair after pair, or filled with arbitrary
+// bytes.
 TEST_P(EveryPairsManifold, GivesNumbersWhateverComes) {
   Random random(73);
   const auto [ka, kb] = GetParam();
@@ -193,7 +195,7 @@ TEST_P(EveryPairsManifold, GivesNumbersWhateverComes) {
 
 INSTANTIATE_TEST_SUITE_P(Convex, EveryPairsManifold, ::testing::ValuesIn(all_pairs()));
 
-// --- boxes and hulls -----------------------------------------------------------------------------
+// --- boxes and hulls
 
 TEST(Polytope, ABoxIsNumberedAsTheHullOfItsCorners) {
   const Solid box(Box{{0.5, 0.7, 0.9}});
@@ -214,7 +216,7 @@ TEST(Polytope, ABoxIsNumberedAsTheHullOfItsCorners) {
   }
 }
 
-// Given as hulls, boxes have the manifolds of boxes: one of them (a box comes first), or both.
+// Boxes given as hulls have the manifolds of boxes: one of the two (a box comes first), or both.
 TEST(Manifold, OfABoxGivenAsAHullIsThatOfTheBox) {
   Random random(74);
   double worst = 0.0;
@@ -248,7 +250,8 @@ TEST(Manifold, OfABoxGivenAsAHullIsThatOfTheBox) {
   EXPECT_LT(worst, 1e-9);  // measured 3e-12
 }
 
-// A box turned on another: the widest four of the eight corners that they have in common.
+// A box rotated on another: of the eight corners of the overlap, the four that span the largest
+// area.
 TEST(Manifold, KeepsTheWidestFourPoints) {
   const Solid box(Box{{0.5, 0.5, 0.5}});
   for (int i = 1; i < 90; ++i) {
@@ -258,15 +261,15 @@ TEST(Manifold, KeepsTheWidestFourPoints) {
     const Vec3 across = m.points[2].position - m.points[0].position,
                other = m.points[3].position - m.points[1].position;
     const double area = 0.5 * norm(cross(across, other));
-    // The eight corners lie where lines at a distance of 1/2 cross at 45 degrees at most: the
-    // squares that they make have at least that of side 1 / (1 + sin) ... 1.
+    // The eight corners are where lines at a distance of 1/2 cross at 45 degrees at most. The
+    // squares that they form have at least the area of a square of side 1 / (1 + sin) ... 1.
     const double turn = i <= 45 ? i * kPi / 180 : kPi / 2 - i * kPi / 180;
     const double corner = 0.5 / std::cos(0.5 * std::min(turn, kPi / 2 - turn));
     ASSERT_GT(area, 2.0 * corner * corner - 1e-3) << i;
   }
 }
 
-// Rounding and the slightest motion change no names.
+// Rounding and very small motions do not change feature ids.
 TEST(Manifold, OfWhatRestsKeepsItsNames) {
   Random random(75);
   const Mat3 on_side = Exp(Vec3{kPi / 2, 0, 0}).matrix(), yaw = Exp(Vec3{0, 0, 0.4}).matrix();
@@ -313,7 +316,7 @@ TEST(Manifold, OfWhatRestsKeepsItsNames) {
   }
 }
 
-// What tips on its rim stands on the lowest point of the rim, not on a polygon's corner.
+// A tilted disc touches at the lowest point of its rim, not at a vertex of a polygon.
 TEST(Manifold, OfATiltedDiscHasTheLowestPointOfItsRim) {
   Random random(76);
   const Solid ground(Box{{4, 4, 0.5}}), plane(HalfSpace{});
@@ -328,14 +331,14 @@ TEST(Manifold, OfATiltedDiscHasTheLowestPointOfItsRim) {
       const Manifold on_box =
           manifold_of(ground, SE3{}, disc, SE3(R, {0, 0, 0.5 - low - 1e-4}), 1e-3);
       const Manifold on_plane = manifold_of(plane, SE3{}, disc, SE3(R, {0, 0, -low - 1e-4}), 1e-3);
-      // Along the disc's own normal, if that is chosen, it is a little less.
+      // Along the disc's own normal, if that is chosen, the depth is slightly smaller.
       ASSERT_NEAR(deepest(on_box), -1e-4, 1e-5) << tilt;
       ASSERT_NEAR(deepest(on_plane), -1e-4, 1e-6) << tilt;
     }
   }
 }
 
-// The patch of a cylinder that hangs over a table's edge ends at the edge.
+// The contact patch of a cylinder that overhangs a table's edge ends at the edge.
 TEST(Manifold, OfACylinderOverAnEdgeEndsThere) {
   const Solid table(Box{{1, 1, 0.5}}), cylinder(Cylinder{0.5, 0.5});
   for (double x = 0.6; x < 1.4; x += 0.05) {

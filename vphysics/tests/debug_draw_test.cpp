@@ -26,7 +26,7 @@ struct Point {
   bool operator==(const Point&) const = default;
 };
 
-// Keeps what it is told.
+// Records what is drawn.
 struct Kept : DebugDraw {
   std::vector<Line> lines;
   std::vector<Point> points;
@@ -101,7 +101,7 @@ ConvexHull octahedron() {
 struct Known {
   const char* name;
   Shape shape;
-  Vec3 low, high;  // of the shape in its own frame
+  Vec3 low, high;  // of the shape's AABB in its own frame
 };
 std::vector<Known> known_shapes() {
   const std::vector<CompoundPart> parts{{Sphere{0.2}, SE3(Vec3{0.5, 0, 0})},
@@ -117,11 +117,12 @@ std::vector<Known> known_shapes() {
   };
 }
 
-// A wire reaches as far as its shape does on every side, and no line of it leaves the shape: its
-// ends lie on the surface, which a ray from outside, through them to the middle, meets there.
+// A wireframe extends as far as its shape on every side, and no line of it leaves the shape. The
+// ends of its lines are on the surface: a ray from outside, through an end towards the centre, hits
+// the surface there.
 TEST(DebugDraw, WiresLieOnTheSurfaceAndReachAsFarAsTheShape) {
   for (const Known& known : known_shapes()) {
-    if (std::holds_alternative<Compound>(known.shape)) continue;  // below
+    if (std::holds_alternative<Compound>(known.shape)) continue;  // see below
     World world;
     add_fixed(world, known.shape, {});
     const Kept kept = drawn(world, {});
@@ -190,7 +191,7 @@ TEST(DebugDraw, SurfacesAreTheirTrianglesWithoutHoles) {
   EXPECT_EQ(e.high, (Vec3{11, 2, 3}));
 
   const std::vector<double> heights{0, 1, 2, 3, 4, 5, 6, 7, 8};
-  const std::vector<std::uint8_t> holes{0, 0, 0, 1};  // beyond the middle
+  const std::vector<std::uint8_t> holes{0, 0, 0, 1};  // beyond the centre
   HeightGrid grid;
   grid.columns = grid.rows = 3;
   grid.heights = heights;
@@ -229,8 +230,8 @@ TEST(DebugDraw, ABoxAtRestHasFourContactsThatCarryItsWeight) {
   }
 }
 
-// Contacts are computed anew only when bodies move against each other; their points go with them
-// all the same.
+// Contacts are recomputed only when bodies move relative to each other. Their points move with the
+// bodies all the same.
 TEST(DebugDraw, ContactPointsGoWithBodiesThatTravelTogether) {
   World world;
   BodyDesc desc;
@@ -257,7 +258,7 @@ TEST(DebugDraw, ContactPointsGoWithBodiesThatTravelTogether) {
     }
   }
   EXPECT_GT(world.pose(box).position().x, 0.69);
-  EXPECT_LT(farthest, 1e-3);  // 1e-6; were they where they were found, 0.063
+  EXPECT_LT(farthest, 1e-3);  // measured 1e-6; 0.063 if points stayed where they were found
 }
 
 TEST(DebugDraw, FrictionLeansAgainstTheSlope) {
@@ -279,7 +280,7 @@ TEST(DebugDraw, FrictionLeansAgainstTheSlope) {
   EXPECT_NEAR(sum.x, 0.0, 0.1);
 }
 
-// A ball that rolls over the links of an articulation is solved elsewhere.
+// Another solver handles a ball that rolls over the links of an articulation.
 TEST(DebugDraw, AContinuousBallAtRestShowsItsOneContact) {
   World world;
   add_ground(world, {.friction = 0.5});
@@ -321,7 +322,7 @@ TEST(DebugDraw, FramesCentresAndBoundsAreTheBodies) {
   const auto centres = kept.points_of(DebugCategory::centre);
   ASSERT_EQ(centres.size(), 1u);
   EXPECT_NEAR(norm(centres[0] - pose * Vec3{0, 0, -0.2}), 0.0, 1e-12);
-  // The bounds hold the wire, which is as wide as the cone.
+  // The AABB encloses the wireframe, which is as wide as the cone.
   const Extent bounds = extent_of(kept.of(DebugCategory::bounds));
   const Extent wire = extent_of(drawn(world, {}).lines);
   for (int i = 0; i < 3; ++i) {

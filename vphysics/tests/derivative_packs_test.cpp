@@ -1,5 +1,6 @@
-// Derivatives of packs of states: of each lane those of its state alone, and by another route the
-// solution of M da = -dtau with the derivatives of inverse dynamics.
+// Derivatives of packs of states: each lane has the derivatives of its own state. An independent
+// route for forward dynamics: the solution of M da = -dtau with the derivatives of inverse
+// dynamics.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -19,7 +20,7 @@ struct Derivatives {
   Numbers a, q, v, force;
 };
 
-// As many states as lanes, with loads of their own, and what the calls make of them.
+// One state for each lane, with loads of its own, and the results of the calls.
 template <class B, int N>
 class Pack {
  public:
@@ -62,7 +63,7 @@ class Pack {
                                              {out.q, out.v, out.force});
     });
   }
-  // Inverse dynamics is asked at the accelerations of the last call.
+  // Makes the accelerations of the last call the argument of inverse dynamics.
   void take_accelerations() { a_ = out_.a; }
   Derivatives lane(int lane) const {
     const auto numbers = [&](const std::vector<P>& packs) {
@@ -139,7 +140,8 @@ double difference_of(const Derivatives& x, const Derivatives& y) {
   return std::max({relative(x.q, y.q), relative(x.v, y.v), relative(x.force, y.force)});
 }
 
-// Floating robots: two free roots, each with every kind of joint on it, their links' numbers mixed.
+// Floating robots: two free roots, each with every kind of joint on it, their link indices
+// interleaved.
 Model floating_trees(Random& random) {
   ModelBuilder builder;
   for (int i = 0; i < 16; ++i) {
@@ -215,8 +217,8 @@ TEST(PackDerivatives, AreThoseOfEachState) {
 #endif
 }
 
-// tau_q + M a_q = 0, tau_v + M a_v = 0, M a_tau = 1: what forward dynamics has from the articulated
-// inertias against the composite ones.
+// tau_q + M a_q = 0, tau_v + M a_v = 0, M a_tau = 1: forward dynamics by articulated inertias
+// against composite inertias.
 TEST(PackDerivatives, OfForwardDynamicsSolveThoseOfInverseDynamics) {
   Random random(305);
   double worst = 0.0;
@@ -273,8 +275,8 @@ TEST(PackDerivatives, ReproducibleOnesHaveTheSameBitsInEveryLane) {
   }
 }
 
-// FNV-1a over the bits. The constant is the same for every compiler, level and machine: a change of
-// it is a change of results.
+// FNV-1a over the bits. The constant is the same for every compiler, optimisation level and
+// machine. A change of it is a change of results.
 TEST(Derivatives, ReproducibleOnesHaveGoldenBits) {
   Random random(310);
   std::uint64_t hash = 14695981039346656037u;
@@ -312,9 +314,9 @@ TEST(PackDerivatives, OfOneLaneDoNotKnowOfAnother) {
   EXPECT_NE(pack.lane(3).v, before.v);
 }
 
-// --- what is refused
+// --- rejected arguments
 
-// A mass that slides along an arm: it resists the arm's rotation but at the hinge.
+// A mass that slides along an arm: it resists the arm's rotation except at the hinge.
 TEST(PackDerivatives, AreRefusedWhereOneLaneMovesNoInertia) {
   ModelBuilder builder;
   must_build(builder.add({.name = "arm", .joint = RevoluteJoint{{0, 0, 1}}}));

@@ -42,7 +42,7 @@ Forward forward_slopes(const Model& model, const State& s, const Loads& loads) {
   return out;
 }
 
-// The slopes of f along each unit vector of the velocities' length, by a central difference.
+// The derivatives of f along each unit vector of the velocity space, by central differences.
 Numbers difference_quotient(std::size_t n, double h,
                             const std::function<Numbers(const Numbers&)>& f) {
   Numbers out(n * n);
@@ -63,7 +63,7 @@ State moved(const Model& model, const State& s, const Numbers& q, const Numbers&
   return out;
 }
 
-// Of one matrix at two step sizes: the error falls to a quarter, unless it is rounding already.
+// Checks one matrix at two step sizes: the error falls to a quarter, unless rounding dominates.
 struct Order {
   int rounds = 0, checked = 0;
   double worst = 0.0;
@@ -112,7 +112,7 @@ TEST(InverseDerivatives, AreTheSlopesOfInverseDynamicsOnTreesOfEveryJoint) {
   std::printf("by q: %.1e, order seen in %d of %d; by v: %.1e; by a: %.1e\n", by_q.worst,
               by_q.checked, by_q.rounds, by_v.worst, by_a);
   EXPECT_EQ(by_q.checked, by_q.rounds);
-  EXPECT_LT(by_v.worst, 1e-9);  // a quadratic function: nothing but rounding
+  EXPECT_LT(by_v.worst, 1e-9);  // f is quadratic, so only rounding remains
   EXPECT_LT(by_a, 1e-13);
 }
 
@@ -155,17 +155,17 @@ TEST(ForwardDerivatives, AreTheSlopesOfForwardDynamicsOnTreesOfEveryJoint) {
   EXPECT_EQ(off, 0.0);
 }
 
-// --- dual numbers through the recursion in the links' own frames
+// --- dual numbers through the recursion in the links' frames
 
 using D = DualT<double>;
 
-// One joint's motion: where it is, S v, S a and (dS/dt) v, in the link's frame; and S itself.
+// One joint's motion in the link's frame: its pose, S v, S a and (dS/dt) v; and S itself.
 struct Motion {
   SE3T<D> X;
   std::vector<se3T<D>> S;
   se3T<D> rate;
 };
-// A chain of screws after each other, by what each adds to the ones before.
+// A product of screws. Each adds its motion to that of the screws before it.
 Motion chain(const std::vector<se3>& screws, const D* q, const D* v) {
   Motion m;
   se3T<D> V, A;
@@ -179,13 +179,13 @@ Motion chain(const std::vector<se3>& screws, const D* q, const D* v) {
     A = Ad(Inv(step), A) + ad(V, v[k] * s);
     V = V + v[k] * s;
   }
-  m.rate = A;  // the acceleration relative to the joint's frame at no own accelerations
+  m.rate = A;  // relative acceleration at zero joint accelerations
   return m;
 }
 Vec3 unit(const Vec3& a) {
   return (1 / norm(a)) * a;
 }
-// delta: a step of the tangent space on top of q, of slope alone.
+// delta: a tangent step from q, which has a derivative part only.
 Motion motion_of(const Joint& joint, const double* q, const D* delta, const D* v) {
   const auto simple = [&](const std::vector<se3>& screws) {
     std::array<D, 3> at;
@@ -230,7 +230,7 @@ Motion motion_of(const Joint& joint, const double* q, const D* delta, const D* v
   return m;
 }
 
-// tau with its slope along (delta, dv), one direction.
+// tau with its derivative along (delta, dv), one direction.
 std::vector<D> newton_euler(const Model& model, const State& s, const Loads& loads,
                             const std::vector<D>& delta, const std::vector<D>& v) {
   const auto links = static_cast<std::size_t>(model.links());
@@ -319,7 +319,7 @@ TEST(InverseDerivatives, AreThoseOfDualNumbersInTheLinksFrames) {
   EXPECT_LT(value, 1e-13);
 }
 
-// --- what is known of them otherwise
+// --- identities
 
 TEST(ForwardDerivatives, InvertThoseOfInverseDynamics) {
   Random random(104);
@@ -353,8 +353,8 @@ TEST(ForwardDerivatives, InvertThoseOfInverseDynamics) {
 }
 
 TEST(InverseDerivatives, OfADoublePendulumAreThoseInClosedForm) {
-  // Point masses m1, m2 on massless rods l1, l2, angles absolute minus absolute: theta2 is
-  // relative.
+  // Point masses m1, m2 on massless rods l1, l2. theta2 is relative: the difference of the absolute
+  // angles.
   const double m1 = 1.3, m2 = 0.7, l1 = 0.8, l2 = 1.1, g = 9.81;
   ModelBuilder builder;
   const auto point = [](double m, double l) {
@@ -383,7 +383,7 @@ TEST(InverseDerivatives, OfADoublePendulumAreThoseInClosedForm) {
   }
 }
 
-// Two trees that stand apart do not know of each other, and their numbers may be mixed.
+// Two separate trees do not affect each other, and their indices may be interleaved.
 TEST(ForwardDerivatives, OfTwoTreesMixedAreThoseOfEach) {
   Random random(105);
   ModelBuilder mixed, alone[2];
@@ -460,7 +460,7 @@ TEST(ForwardDerivatives, OfFloatsAreThoseOfDoubles) {
   EXPECT_LT(worst, 1e-4);
 }
 
-// What a call leaves in the memory is no part of the next one's answer, not even what is no number.
+// Values that a call leaves in the memory do not affect the next call, not even NaN.
 TEST(ForwardDerivatives, DependOnNothingButTheirArguments) {
   Random random(108);
   const Model model = tree_with_screws(random, 12);
@@ -488,7 +488,7 @@ TEST(ForwardDerivatives, DependOnNothingButTheirArguments) {
   EXPECT_EQ(out.tau, fresh.tau);
 }
 
-// --- what is refused
+// --- errors
 
 TEST(ForwardDerivatives, SayWhereAJointMovesNoInertiaHere) {
   ModelBuilder builder;

@@ -1,5 +1,5 @@
-// Every begin is followed by one end, whoever is moved, destroyed or restored in between; and what
-// sensors on continuous bodies see.
+// Each begin event is followed by one end event, also when bodies are moved, destroyed or restored
+// in between. Events of sensors on continuous bodies.
 #include <gtest/gtest.h>
 
 #include <vector>
@@ -25,7 +25,7 @@ BodyId fixed_body(World& world, const Vec3& at = {}) {
   desc.T_world_body = SE3(at);
   return must(world.create_body(desc));
 }
-// What sensors told over the steps.
+// The sensor events of the given number of steps.
 std::vector<K> sensor_events(World& world, int steps) {
   std::vector<K> out;
   for (int i = 0; i < steps; ++i) {
@@ -44,7 +44,7 @@ TEST(Sensor, OfAnyShapeOnAContinuousBodySeesFixedAndDynamicBodies) {
   for (const Shape& shape : kSensors) {
     for (const bool fixed : {true, false}) {
       World world({.gravity = {}});
-      const Vec3 at{0.3, 0.055, 0};  // the sensor reaches it, the ball does not
+      const Vec3 at{0.3, 0.055, 0};  // within the sensor, beyond the ball
       if (fixed) {
         add_fixed(world, Sphere{0.02}, {}, SE3(at));
       } else {
@@ -56,7 +56,7 @@ TEST(Sensor, OfAnyShapeOnAContinuousBodySeesFixedAndDynamicBodies) {
   }
 }
 
-// The sensors meet the other's ball only; sensors do not see sensors. In both orders of creation.
+// Each sensor detects the other body's ball, but no sensor. Both orders of creation.
 TEST(Sensor, OfAnyShapeOnAContinuousBodySeesAnotherContinuousBody) {
   for (const Shape& shape : kSensors) {
     for (const bool sensor_first : {true, false}) {
@@ -70,7 +70,7 @@ TEST(Sensor, OfAnyShapeOnAContinuousBodySeesAnotherContinuousBody) {
   }
 }
 
-// 30 mm a step through a sensor of 2 mm that the slower of the two carries.
+// A ball moves 30 mm a step through a sensor of 2 mm on the slower of the two bodies.
 TEST(Sensor, OnAContinuousBodyMissesNoFastBall) {
   for (const bool sensor_first : {true, false}) {
     World world({.gravity = {}});
@@ -108,7 +108,7 @@ TEST(Events, EndAtTheStepAfterABodyIsDestroyed) {
     Touching t = make_touching();
     must(t.world.destroy_body(t.box));
     if (both) must(t.world.destroy_body(t.ground));
-    add_dynamic(t.world, {.pose = SE3(Vec3{0, 0, 9})});  // takes a free slot
+    add_dynamic(t.world, {.pose = SE3(Vec3{0, 0, 9})});  // reuses a free slot
     must(t.world.step(0.001));
     ASSERT_EQ(t.world.contact_events().size(), 1u);
     const ContactEvent e = t.world.contact_events()[0];
@@ -142,7 +142,7 @@ TEST(Events, OfTheDestroyedThatTouchedNothingAreNone) {
   EXPECT_TRUE(t.world.contact_events().empty());
 }
 
-// Between the call and the step that reports it, a snapshot carries the end.
+// The end event is part of a snapshot taken between the call and the step that reports it.
 TEST(Events, OfADestroyedBodySurviveASnapshot) {
   Touching t = make_touching();
   must(t.world.destroy_body(t.box));

@@ -1,4 +1,4 @@
-// Forces and torques of the user: loads over a step, on bodies, links and joints.
+// User forces and torques: constant loads over a step, on bodies, links and joints.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 constexpr double kG = 9.81;
 constexpr double kRates[] = {60.0, 240.0, 1000.0};
 
-// --- a crate on a floor that is pushed
+// --- a crate on a floor, under a horizontal force
 
 enum class Kind { body, swept, link, on_link };
 constexpr Kind kKinds[] = {Kind::body, Kind::swept, Kind::link, Kind::on_link};
@@ -33,7 +33,7 @@ void make(Crate& c, Kind kind) {
   const Inertia inertia = solid_inertia(kCrate, kMass / (8 * kHalf * kHalf * kHalf));
   const SE3 at(Vec3{0, 0, kHalf});
   if (kind == Kind::on_link) {
-    // A floor that hangs on a stiff joint, so that the crate lies on a link.
+    // The floor is a link on a stiff joint.
     LinkSpec link;
     link.joint = PrismaticJoint{{0, 0, 1}};
     link.T_parent_joint = SE3(Vec3{0, 0, -0.5});
@@ -95,7 +95,8 @@ TEST(Force, MovesACrateFromTheLimitOfFrictionOn) {
   }
 }
 
-// The lowest of four, between which friction holds: the ground carries all of them.
+// A force acts on the lowest of four crates. Friction between them is high, so the ground's
+// friction acts on the weight of all four.
 TEST(Force, MovesTheLowestOfAStackWithAllThatItCarries) {
   for (const double rate : kRates) {
     for (const double share : {0.99, 1.01}) {
@@ -128,8 +129,8 @@ TEST(Force, MovesTheLowestOfAStackWithAllThatItCarries) {
   }
 }
 
-// Nothing but the force that friction does not hold is felt: a crate lifted by 0.9 of its weight
-// slides at 0.1 of the limit.
+// Only the force beyond the friction limit accelerates: a crate lifted by 0.9 of its weight slides
+// at 0.1 of the limit.
 TEST(Force, ThatLiftsTakesFrictionAway) {
   for (const double rate : kRates) {
     for (const double share : {0.97, 1.03}) {
@@ -162,7 +163,7 @@ TEST(Force, IsFeltAsALoadAndMakesNoHits) {
   }
 }
 
-// --- bodies that nothing touches
+// --- bodies without contacts
 
 Vec3 rotation_bound(const Mat3& R) {
   return Log(to_quaternion(R));
@@ -210,8 +211,8 @@ TEST(Force, GivesTheClosedFormToTheOrderOfTheStep) {
   }
 }
 
-// A torque changes the angular momentum of a body that tumbles by itself times the time, to
-// rounding, and a wrench with no power leaves the energy.
+// A torque changes the angular momentum of a tumbling body by torque times time, to rounding. A
+// wrench without power leaves its energy.
 TEST(Torque, AddsToTheAngularMomentumOfATumblingBody) {
   for (const bool continuous : {false, true}) {
     Free f;
@@ -230,7 +231,7 @@ TEST(Torque, AddsToTheAngularMomentumOfATumblingBody) {
   }
 }
 
-// The path of a tumbling body with a torque converges.
+// The rotation of a tumbling body under a torque converges with the first order of the step.
 TEST(Torque, TurnsATumblingBodyToTheOrderOfTheStep) {
   for (const bool continuous : {false, true}) {
     const auto after = [&](int steps) {
@@ -257,7 +258,7 @@ TEST(Force, ActsAtItsPointAndAddsUp) {
   }
   must(one.world.apply_force(one.body, {0, 0, 3}, {1, 2, 0}));
   must(one.world.apply_force(one.body, {1, 0, 0}, {0, 0, 0}));
-  // At the centre of mass, (0.2, 0, 0): the force, and moments about it.
+  // The same wrench at the centre of mass, (0.2, 0, 0): the force, and the moment about it.
   must(other.world.apply_force(other.body, {1, 0, 3}));
   must(other.world.apply_torque(other.body, cross(Vec3{0.8, 2, 0}, Vec3{0, 0, 3})));
   for (Free* f : {&one, &other}) must(f->world.step(0.01));
@@ -297,7 +298,7 @@ TEST(Force, WakesWhatSleeps) {
 
 // --- articulations
 
-// What a step gives against the accelerations of forward dynamics.
+// The error of a step's velocity change against the accelerations of forward dynamics.
 double error_of_accelerations(const Model& model, Random& random, double dt) {
   World world;
   const auto id = must(world.create_articulation({model}));
@@ -362,7 +363,7 @@ TEST(Force, OnLinksAndJointsIsThatOfForwardDynamics) {
   }
 }
 
-// To rounding, as the tree's own motion keeps it: forces of its joints among its links add nothing.
+// The momentum is exact to rounding. Joint forces between the links add nothing to it.
 TEST(Force, AddsToTheMomentumOfAFloatingTree) {
   World world(WorldDesc{.gravity = {}});
   std::vector<LinkSpec> links = hanging_chain(4, RevoluteJoint{{0, 1, 0}});
@@ -388,7 +389,8 @@ TEST(Force, AddsToTheMomentumOfAFloatingTree) {
     const dse3 P = momentum_now();
     linear += 0.005 * force;
     worst = std::max(worst, norm(P.f - linear));
-    // The tree goes on by P dt / m while it has the new momentum: about its centre nothing is lost.
+    // The tree moves by P dt / m with its new momentum, so its angular momentum about the centre of
+    // mass has no error.
     const auto about_centre = [&](const dse3& F, const Vec3& c) { return F.m - cross(c, F.f); };
     const Vec3 c = centre_of_mass<double>(model, data);
     const double mass = 2.0;
@@ -400,7 +402,7 @@ TEST(Force, AddsToTheMomentumOfAFloatingTree) {
   EXPECT_LT(worst, 1e-13);
 }
 
-// Also of rods that are too far from anything to be looked at.
+// Also for remote rods, too far from any body for contacts.
 TEST(Force, OfAJointMovesARod) {
   World world(WorldDesc{.gravity = {}});
   add_ground(world, {});
@@ -415,7 +417,7 @@ TEST(Force, OfAJointMovesARod) {
   EXPECT_NEAR(world.joint_velocity(rod.articulation, 0, 1), 0.003 / 0.0015 * 0.1, 1e-12);
 }
 
-// A joint that a force drives against a crate pushes with it, no less and no more.
+// A link driven by a joint force transmits exactly that force to a crate.
 TEST(Force, OfAJointIsFeltByWhatItsLinkPushes) {
   for (const double rate : kRates) {
     for (const double share : {0.98, 1.02}) {
@@ -471,7 +473,7 @@ TEST(Force, IsPartOfTheState) {
   must(a.restore(bytes));
   must(a.step(0.01));
   EXPECT_NE(a.state_hash(), b.state_hash());
-  // Every word changed is refused, or is a load that a body can bear.
+  // Each damaged value is rejected.
   for (std::size_t k = bytes.size() - 400; k + 8 < bytes.size(); k += 8) {
     std::vector<std::byte> damaged = bytes;
     damaged[k + 6] ^= std::byte{0xff};

@@ -1,4 +1,4 @@
-// Bodies that nothing touches keep angular momentum and energy, at every step and of every shape.
+// Bodies without contacts conserve angular momentum and energy, at every step and with every shape.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ Spin spin_of(const World& world, BodyId body) {
 }
 
 struct Worst {
-  double momentum = 0.0, energy = 0.0;  // relative to the start's
+  double momentum = 0.0, energy = 0.0;  // relative to the initial values
 };
 Worst worst_of(World& world, BodyId body, double dt, double time) {
   const Spin start = spin_of(world, body);
@@ -47,7 +47,7 @@ struct Case {
 const Case kSlender[] = {{{150, 1, 20}, 0.001},  {{50, 1, 20}, 0.001},   {{20, 1, 20}, 1.0 / 240},
                          {{20, 0, 5}, 1.0 / 60}, {{10, 0, 1}, 1.0 / 60}, {{150, 1, 20}, 1.0 / 30}};
 
-// With something else far away: all that is continuous has a stage of its own.
+// Another body far away. With a continuous body, a step runs the impact stage.
 enum class Other { none, ordinary, continuous, bouncing };
 void add_other(World& world, Other other) {
   if (other == Other::none) return;
@@ -107,7 +107,8 @@ TEST(FreeBody, OfEveryShapeKeepsMomentumAndEnergyAtEveryStep) {
   std::printf("momentum %.1e, energy %.1e\n", most_momentum, most_energy);
 }
 
-// Lanes hold it, since at its speed it might meet what is near, but nothing touches it.
+// The body has a contact slot, since its speed might take it to the other body, but it has no
+// contact.
 TEST(FreeBody, NearAnotherKeepsMomentumAndEnergy) {
   World world({.gravity = {}});
   add_fixed(world, Box{{1, 1, 0.1}}, {}, SE3(Vec3{0, 0, -0.28}));
@@ -125,8 +126,7 @@ TEST(FreeBody, NearAnotherKeepsMomentumAndEnergy) {
   EXPECT_GT(held, 100u);
 }
 
-// In closed form: a symmetric body turns about L at |L| / I1 and about its axis at w3 (1 - I3 /
-// I1).
+// Closed form: a symmetric body rotates about L at |L| / I1 and about its axis at w3 (1 - I3 / I1).
 TEST(FreeBody, OfSymmetricShapeFollowsTheClosedForm) {
   const Inertia J = solid_inertia(kRod, 1000);
   const Sym3 I = J.central();
@@ -145,13 +145,13 @@ TEST(FreeBody, OfSymmetricShapeFollowsTheClosedForm) {
     std::printf("off by %.1e at %.4f s\n", error, dt);
     EXPECT_LT(error, 0.02);
     if (last > 0.0) {
-      EXPECT_NEAR(last / error, 4.0, 0.3);  // of second order
+      EXPECT_NEAR(last / error, 4.0, 0.3);  // second order
     }
     last = error;
   }
 }
 
-// About a principal axis the angle is that of the rate, at every step.
+// About a principal axis the angle is rate times time, at every step.
 TEST(FreeBody, AboutAPrincipalAxisTurnsByTheAngle) {
   for (const double dt : {1.0 / 30, 0.001}) {
     World world({.gravity = {}});
@@ -172,14 +172,14 @@ TEST(FreeBody, ComesToTheSameEndAtAConstantRate) {
     const Mat3 a = from_quaternion(turn.q), b = Exp(mean_rotation(turn)).matrix();
     ASSERT_LT(norm(a.cx - b.cx) + norm(a.cy - b.cy), 1e-9) << i;
   }
-  // Whole turns are told.
+  // Angles beyond a full revolution are returned in full.
   for (const double rate : {1.0, 100.0, 200.0, -200.0, 500.0, -1000.0}) {
     const FreeRotation turn = free_rotation(I, inverse(I), {0, 0, rate}, 1.0 / 30);
     EXPECT_NEAR(mean_rotation(turn).z, rate / 30, 1e-9);
   }
 }
 
-// Without friction or bounce, falling about on the ground, energy only goes.
+// Bodies that tumble on the ground without friction or restitution never gain energy.
 TEST(FreeBody, SlenderOnesThatTouchTheGroundGainNoEnergy) {
   const Vec3 gravity{0, 0, -9.81};
   double most = 0.0;

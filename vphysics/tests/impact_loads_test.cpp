@@ -31,7 +31,8 @@ Vec3 velocity_of(const World& world, BodyId body) {
   return world.pose(body).rotate(world.velocity(body).v);
 }
 
-// m (v_after - v_before) = J - m g dt over the step of the hit, in whichever sub-step it falls.
+// m (v_after - v_before) = J - m g dt over the step of the hit, in whichever sub-step the hit
+// occurs.
 TEST(ImpactLoads, WithoutRestitutionIsToldWhole) {
   for (const double rate : kRates) {
     for (int phase = 0; phase < 10; ++phase) {
@@ -58,8 +59,8 @@ TEST(ImpactLoads, WithoutRestitutionIsToldWhole) {
   }
 }
 
-// A box that touches a wall, and another that flies at it: the blow reaches the wall in the
-// sub-step in which it falls. It would go in by 6 mm at 60 Hz if it came one sub-step later.
+// One box touches a wall, and another flies at it. The impact reaches the wall in the sub-step of
+// the hit. One sub-step later, the box would penetrate by 6 mm at 60 Hz.
 TEST(ImpactLoads, RunsThroughAnUnloadedContactInItsOwnSubStep) {
   for (const double gap : {0.0, 0.001}) {
     World world({.gravity = {}});
@@ -87,8 +88,8 @@ TEST(ImpactLoads, RunsThroughAnUnloadedContactInItsOwnSubStep) {
   }
 }
 
-// Impulses that steps begin with are of the length of those before. Longer steps let a stack sink
-// deeper, by 18 mm at 0.1 s; what must not happen is that it is thrown when they become shorter.
+// The warm-start impulses of a step come from the step before, which had another length. Longer
+// steps let a stack sink deeper, by 18 mm at 0.1 s. Shorter steps after them must not throw it up.
 TEST(Stack, StandsWhileTheStepsChange) {
   const std::pair<double, double> kPairs[] = {{1.0 / 30, 1.0 / 240}, {1.0 / 60, 1e-3},
                                               {0.1, 0.01},           {0.1, 1e-3},
@@ -122,10 +123,10 @@ TEST(Stack, IsNotThrownByOneLongStep) {
     must(world.step(1e-3));
     for (const BodyId box : tower) fastest = std::max(fastest, norm(velocity_of(world, box)));
   }
-  EXPECT_LT(fastest, 0.4);  // 1.8 if the impulses and the push stayed as they were
+  EXPECT_LT(fastest, 0.4);  // 1.8 with unscaled impulses and bias velocity
 }
 
-// A lift of 5 m/s, at 1 kHz: 400 m up it carries its tower as it did at the foot.
+// A lift at 5 m/s, in steps of 1 ms: 400 m up, its tower rests on it as it did at the start.
 TEST(Stack, OnAKinematicLiftRidesAsWellAfterHundredsOfMetres) {
   World world;
   add_kinematic(world, Box{{5, 5, 0.5}}, {{}, {0, 0, 5}}, kDull, SE3(Vec3{0, 0, -0.5}));
@@ -143,7 +144,8 @@ TEST(Stack, OnAKinematicLiftRidesAsWellAfterHundredsOfMetres) {
   EXPECT_LT(fastest, 2e-3);
 }
 
-// A box at rest on a turntable goes along chords, outwards by w^2 r dt / 2: friction knows speeds.
+// A box at rest on a turntable moves along chords, outwards by w^2 r dt / 2 a step, because
+// friction acts on velocities.
 TEST(Stack, OnATurntableCreepsNoFasterThanChordsDo) {
   constexpr double kRate = 1.5, kRadius = 1.0;
   for (const double rate : kRates) {
@@ -166,7 +168,7 @@ TEST(Stack, OnATurntableCreepsNoFasterThanChordsDo) {
   }
 }
 
-// v' = -c v, w' = -d w: of a body that slides on a plane without friction as of one that flies.
+// v' = -c v, w' = -d w, for a body that slides on a plane without friction as for a flying one.
 TEST(Damping, ActsOnWhatTouches) {
   for (const double rate : kRates) {
     World world;

@@ -1,4 +1,4 @@
-// Impacts of continuous bodies concern what they touch, and nothing else.
+// Impacts of continuous bodies affect the bodies in contact, and no others.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ BodyId add_swept(World& world, const Shape& shape, const Vec3& at, const Vec3& v
   return add_dynamic(world, part);
 }
 
-// A ball and boxes that tumble, in flight.
+// A ball and tumbling boxes, in flight.
 std::vector<BodyId> add_scene_to_look_at(World& world) {
   const Box box{{0.04, 0.03, 0.02}};
   return {add_swept(world, Sphere{kRadius}, {0, 0, kRadius}, {0.3, 0, 2}, {1, 2, 3}),
@@ -35,7 +35,7 @@ std::vector<BodyId> add_scene_to_look_at(World& world) {
 TEST(Impacts, LeaveNoTraceInWhatMeetsNothing) {
   World alone, beside;
   const auto expected = add_scene_to_look_at(alone), bodies = add_scene_to_look_at(beside);
-  // Two walls, between which balls fly to and fro and meet several times a step.
+  // Two walls. Balls fly between them and collide several times a step.
   Random random(1201);
   for (const double y : {-0.1, 0.1}) {
     add_fixed(beside, Box{{1.0, 0.02, 1.0}}, kElastic, SE3(Vec3{10.0, y, 0}));
@@ -56,11 +56,12 @@ TEST(Impacts, LeaveNoTraceInWhatMeetsNothing) {
       ASSERT_EQ(T.rotation() * Vec3(1, 2, 3), there.rotation() * Vec3(1, 2, 3));
     }
   }
-  EXPECT_GT(impacts, 500u);  // 597
+  EXPECT_GT(impacts, 500u);  // measured 597
 }
 
-// One hits the next, that the next, all within a step: each goes on at the speed of the first from
-// where it stood, and the last is as far as the first would be.
+// The first ball hits the second, that hits the third, and so on, all within a step. Each moves on
+// with the first ball's velocity from its own position, and the last gets as far as the first would
+// have.
 TEST(Impacts, RunThroughARowWithinAStep) {
   World world({.gravity = {}});
   constexpr int kBalls = 8;
@@ -70,7 +71,7 @@ TEST(Impacts, RunThroughARowWithinAStep) {
     balls.push_back(add_swept(world, Sphere{kRadius}, {i * (2 * kRadius + kGap), 0, 0},
                               i == 0 ? Vec3{kSpeed, 0, 0} : Vec3{}));
   }
-  // One flies along the row, and passes one ball after the other.
+  // One ball flies past the row without touching it.
   const BodyId beside = add_swept(world, Sphere{kRadius}, {0, 0.0402, 0}, {15.0, 0, 0});
   must(world.step(kStep));
   EXPECT_EQ(world.counters().impacts, static_cast<std::uint32_t>(kBalls - 1));
@@ -168,7 +169,8 @@ TEST(Impacts, GoOnAsBeforeFromASnapshot) {
   }
 }
 
-// While others meet: when it flies through, and where.
+// A sensor event has the time and point at which a body enters it, although other bodies collide in
+// the same step.
 TEST(Impacts, LeaveASensorItsTime) {
   World world({.gravity = {}});
   ColliderDesc gate;

@@ -1,4 +1,4 @@
-// The square root of a tree's inverse mass matrix, beside the model's own passes.
+// The square root of a tree's inverse mass matrix, against the model's own passes.
 #include "multibody/impulse_factor.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace vp::test {
 namespace {
 
 constexpr int kTrees = 40;
-constexpr int kKinds = 9;  // of joints: all but users'
+constexpr int kKinds = 9;  // of joints: all but user-defined ones
 
 double largest(const std::vector<double>& x) {
   double most = 0.0;
@@ -44,7 +44,7 @@ struct Case {
   bool fine = false;
 };
 
-// At no acceleration inverse dynamics gives the same forces, and those of the damping besides.
+// At zero acceleration, inverse dynamics gives the bias forces, which here also include damping.
 TEST(ImpulseFactor, BiasIsWhatInverseDynamicsSaysOfNoAcceleration) {
   Random random(41);
   for (int k = 0; k < kTrees; ++k) {
@@ -70,13 +70,14 @@ TEST(ImpulseFactor, BiasIsWhatInverseDynamicsSaysOfNoAcceleration) {
   }
 }
 
-// With loads on links, and solved for accelerations: what forward dynamics says.
+// With loads on links: the solved accelerations equal those of forward dynamics.
 TEST(ImpulseFactor, AccelerationsAreThoseOfForwardDynamics) {
   Random random(42);
   for (int k = 0; k < kTrees; ++k) {
     Case c(random, 1 + k % 20);
     const Vec3 gravity{0.0, 0.0, -9.81};
-    // Loads in the links' frames, as forward_dynamics() takes them, and the same in the world's.
+    // Loads in the links' frames, as forward_dynamics() takes them, and the same loads in the world
+    // frame.
     std::vector<dse3> loads(static_cast<std::size_t>(c.model.links()));
     std::vector<double> force = c.state.tau, bias(c.size()), expected(c.size());
     for (int link = 0; link < c.model.links(); ++link) {
@@ -125,7 +126,7 @@ TEST(ImpulseFactor, ThreeRowsAtOnceAreThoseOfOneEach) {
   }
 }
 
-// Every free root is somewhere else, and everything has other velocities.
+// Every free root has moved, and all velocities have changed.
 TEST(ImpulseFactor, KinematicsOfMovedRootsAreThoseOfForwardKinematics) {
   Random random(44);
   int moved = 0;

@@ -1,4 +1,5 @@
-// Responses to impulses against dense matrices: J from differences of poses, M inverted by Eigen.
+// Responses to impulses against dense matrices: J by difference quotients of poses, M inverted by
+// Eigen.
 #include "vphysics/multibody/impulse.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +14,8 @@ namespace {
 using Matrix = Eigen::MatrixXd;
 using Numbers = std::vector<double>;
 
-// The Jacobian of a link in its own frame: the link's velocity for each unit velocity.
+// The Jacobian of a link in its own frame: its columns are the link's velocity for each unit
+// velocity.
 Matrix link_jacobian(const Model& model, const Numbers& q, int link) {
   Data data(model);
   Matrix J(6, model.velocities());
@@ -44,7 +46,7 @@ Matrix dense(const Response& response) {
   return L;
 }
 
-// Every pair of links, those with a common ancestor, on one path, and of different roots.
+// Every pair of links: with a common ancestor, on one path, and of different roots.
 TEST(InverseInertia, IsThatOfTheDenseMatrices) {
   Random random(71);
   double worst = 0.0;
@@ -94,8 +96,8 @@ TEST(ImpulseResponse, IsThatOfTheDenseMatrices) {
   }
 }
 
-// The factors of forward dynamics serve as well, and a body that is fixed to the world is heavy
-// beyond measure.
+// The factors of forward dynamics serve as well. A body fixed to the world has zero inverse
+// inertia.
 TEST(InverseInertia, OfABodyAloneIsItsInverse) {
   ModelBuilder builder;
   must_build(builder.add({"ground"}));
@@ -116,7 +118,7 @@ TEST(InverseInertia, OfABodyAloneIsItsInverse) {
   EXPECT_EQ(dense(inverse_inertia<double>(model, data, inertias, 0, 0)).norm(), 0.0);
 }
 
-// In T, of which `number` takes one lane.
+// In the scalar T. `number` gives the value of one lane.
 template <class T, class Number>
 void holds_in(double bound, const Number& number) {
   Random random(74);

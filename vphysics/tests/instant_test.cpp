@@ -1,5 +1,5 @@
-// What the solve of an instant leaves, held against the laws of contact themselves: complementarity
-// of speed and impulse along the normal, and Coulomb's disc.
+// Results of the contact solver at one time of impact, against the contact laws: complementarity of
+// normal velocity and impulse, and Coulomb's disc.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -59,8 +59,8 @@ struct Instant {
   }
 };
 
-// A wall of balls: the upper ones lie in the gaps of the lower ones, on the ground, all at once hit
-// from everywhere.
+// A wall of balls on the ground, each in the gap between two balls of the row below. All are hit
+// from all sides at once.
 Instant wall(std::uint64_t seed, int lowest, double most_friction) {
   Random random(seed);
   Instant instant;
@@ -90,7 +90,7 @@ Instant wall(std::uint64_t seed, int lowest, double most_friction) {
   return instant;
 }
 
-// How far it is from that, at worst: in speeds, and in impulses of bodies of about 1 kg.
+// Largest violation of the contact laws: in velocities, and in impulses of bodies of about 1 kg.
 double worst_error(const Instant& instant) {
   double worst = 0.0;
   for (const ContactConstraint& c : instant.contacts) {
@@ -103,15 +103,15 @@ double worst_error(const Instant& instant) {
     worst = std::max({worst, -p.normal_impulse, -normal, friction - most});
     if (p.normal_impulse > 0.0) worst = std::max(worst, normal);
     if (friction < most - 1e-5) worst = std::max(worst, sliding);
-    // It slides against the friction.
+    // Friction opposes sliding.
     const double power = slip[0] * t[0] + slip[1] * t[1];
     worst = std::max(worst, std::fabs(power + sliding * friction));
   }
   return worst;
 }
 
-// Rounds of Coulomb's friction need not end anywhere, and Newton's steps are taken back where they
-// do not help: of these walls, hit from everywhere at once, one in fifty is not settled.
+// Iterations with Coulomb friction need not converge, and Newton steps that do not reduce the error
+// are undone. Of these walls, one in fifty does not converge.
 TEST(Instant, SmallWallsObeyTheLawsOfContact) {
   int astray = 0;
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
@@ -125,7 +125,7 @@ TEST(Instant, SmallWallsObeyTheLawsOfContact) {
   EXPECT_LE(astray, 4);
 }
 
-// More rows than have a matrix: only as near as the rounds come.
+// Too many rows for a dense matrix: the result is as accurate as the iterations make it.
 TEST(Instant, LargeWallsAreStoppedToo) {
   Instant instant = wall(7, 10, 0.5);
   ASSERT_GT(3 * instant.contacts.size(), kMaxDenseRows);
@@ -141,8 +141,8 @@ TEST(Instant, LargeWallsAreStoppedToo) {
   EXPECT_LT(closing(), 0.1 * before);
 }
 
-// A ball of 24 g between a plate of a tonne that comes down and the ground: its load goes to and
-// fro thousands of times before rounds alone are done.
+// A ball of 24 g between the ground and a plate of a tonne that moves down. Iterations alone would
+// pass the load back and forth thousands of times.
 TEST(Instant, ALightBallBetweenHeavyPlatesStops) {
   Instant instant;
   const std::uint32_t ground = instant.add_body(0.0, {}, {}, {});
@@ -156,7 +156,7 @@ TEST(Instant, ALightBallBetweenHeavyPlatesStops) {
   EXPECT_NEAR(instant.contacts[0].points[0].normal_impulse, 1000.024, 1e-3);
 }
 
-// What nothing joins has no influence, not even on the last bit.
+// Islands do not affect one another, not even in the last bit.
 TEST(Instant, IslandsDoNotFeelOneAnother) {
   Instant alone = wall(3, 3, 0.5), both = wall(3, 3, 0.5);
   const auto count = static_cast<std::uint32_t>(both.bodies.size());

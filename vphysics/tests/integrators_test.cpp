@@ -1,5 +1,5 @@
-// Integration on the group: orders of convergence on trees of every joint, closed-form motions,
-// what is refused.
+// Integration on the Lie group: orders of convergence on trees with every joint, closed-form
+// motions, and rejected arguments.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -28,7 +28,7 @@ Expected<void> variational(const Model& model, IntegratorData& data, Numbers& q,
   if (!rounds) return tl::make_unexpected(rounds.error());
   return {};
 }
-// One step of the pair, whatever its error.
+// One step of the embedded pair, whatever its error.
 Expected<void> pair_once(const Model& model, IntegratorData& data, Numbers& q, Numbers& v,
                          const StepT<double>& step) {
   AdaptiveReport report;
@@ -37,7 +37,7 @@ Expected<void> pair_once(const Model& model, IntegratorData& data, Numbers& q, N
   EXPECT_EQ(report.taken, done ? 1 : 0);
   return done;
 }
-// As exactly as double allows.
+// Integrates as accurately as double precision allows.
 AdaptiveReport exactly(const Model& model, Numbers& q, Numbers& v, const StepT<double>& step,
                        double tolerance = 1e-13) {
   IntegratorData data(model);
@@ -61,7 +61,7 @@ void run(const Stepper& stepper, const Model& model, Numbers& q, Numbers& v, Ste
   }
 }
 
-// Forces that depend on all they may: coordinates, velocities, time.
+// Forces that depend on coordinates, velocities and time.
 void some_forces(std::span<const double> q, std::span<const double> v, double t,
                  std::span<double> tau) {
   for (std::size_t i = 0; i < tau.size(); ++i) {
@@ -74,13 +74,13 @@ void some_forces(std::span<const double> q, std::span<const double> v, double t,
 struct Case {
   const char* name;
   Stepper stepper;
-  int steps;  // of the coarser run; the finer has twice as many
+  int steps;  // of the coarse run; the fine run has twice as many
   double duration;
   double order;  // of the error at the end
 };
 
-// Every joint in one tree, with dampers, armatures, gravity, an external load and forces that vary.
-// The pair is made to take a step of the length it is given.
+// Every joint in one tree, with damping, armature, gravity, an external load and varying forces.
+// The embedded pair takes steps of a fixed length.
 TEST(Integrators, ConvergeWithTheirOrderOnTreesOfEveryJoint) {
   const Case cases[] = {{"semi-implicit Euler", euler, 1600, 0.4, 1},
                         {"Runge-Kutta-Munthe-Kaas 4", rk4, 80, 0.4, 4},
@@ -89,7 +89,7 @@ TEST(Integrators, ConvergeWithTheirOrderOnTreesOfEveryJoint) {
   const auto forces = some_forces;
   Random random(71);
   for (int round = 0; round < 3; ++round) {
-    // Ten joints, every kind, the user's too, and ten more.
+    // Ten joints, one of every kind including a user-defined one, and ten more.
     ModelBuilder builder;
     for (int i = 0; i < 20; ++i) {
       LinkSpec link{.parent = static_cast<int>(random.word() % static_cast<unsigned>(i + 1)) - 1,
@@ -123,7 +123,7 @@ TEST(Integrators, ConvergeWithTheirOrderOnTreesOfEveryJoint) {
   }
 }
 
-// The error follows the tolerance, and the steps its fifth root.
+// The error follows the tolerance, and the step size its fifth root.
 TEST(Adaptive, TakesStepsAsTheFifthRootOfTheTolerance) {
   Random random(72);
   const Model model = random_tree(random, 8, 9);
@@ -183,8 +183,9 @@ struct Method {
   double bound;  // with steps of 1 ms
 };
 
-// theta'' = -(m g l / I) sin theta from rest at theta0: period 2 pi / (omega agm(1,
-// cos(theta0/2))). Measured: pair 3e-13, RK4 8e-13, variational 3e-6.
+// theta'' = -(m g l / I) sin theta from rest at theta0: the period is
+//   2 pi / (omega agm(1, cos(theta0/2))).
+// Measured: pair 3e-13, RK4 8e-13, variational 3e-6.
 TEST(ClosedForm, PendulumIsBackAfterItsPeriod) {
   const double m = 1.3, l = 0.7, g = 9.81, I = m * l * l + 0.02, start = 2.8;
   const Model model = one_body(RevoluteJoint{{0, -1, 0}},
@@ -222,7 +223,7 @@ TEST(ClosedForm, FreeSymmetricBodyPrecessesAndNutates) {
     exactly(model, q, v, step);
     return Expected<void>{};
   };
-  // A free joint's spin moves on while it turns.
+  // With a free joint, the body also translates while it rotates.
   for (const bool free : {false, true}) {
     const Joint joint = free ? Joint(FreeJoint{}) : Joint(BallJoint{});
     const Model model = one_body(joint, Inertia(2.0, Vec3{I1, I1, I3}));
@@ -270,7 +271,7 @@ TEST(ClosedForm, HeavyTopPrecessesSteadily) {
 
 // Euler's equations for I1 < I2 < I3 and L^2 > 2 E I2 (Landau, Lifshitz, Mechanics, section 37):
 //   w1 = a1 cn u, w2 = a2 sn u, w3 = a3 dn u, u = t sqrt((I3 - I2)(L^2 - 2 E I1) / (I1 I2 I3))
-// Started almost about the middle axis, the body flips over every half period of 2 K.
+// Started almost about the intermediate axis, the body flips after every half period 2 K.
 TEST(ClosedForm, AsymmetricBodyFlipsAsJacobiSays) {
   const double I[3] = {0.2, 0.35, 0.5};
   const Model model = one_body(FreeJoint{}, Inertia(1.0, Vec3{I[0], I[1], I[2]}));
@@ -296,10 +297,10 @@ TEST(ClosedForm, AsymmetricBodyFlipsAsJacobiSays) {
     }
   }
   std::printf("worst %.1e\n", worst);
-  EXPECT_LT(worst, 1e-8);  // the pole multiplies what rounding has left, by 300 a flip
+  EXPECT_LT(worst, 1e-8);  // instability multiplies rounding errors by 300 a flip
 }
 
-// --- one source for all scalars
+// --- the same code for every scalar
 
 template <class T, int N>
 void lanes_agree(double bound) {
@@ -388,7 +389,7 @@ TEST(Integrators, KeepQuaternionsOfUnitLength) {
   }
 }
 
-// --- what is refused
+// --- rejected arguments
 
 TEST(Integrators, RefuseStepsThatAreNone) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
@@ -444,7 +445,7 @@ TEST(Integrators, PassOnThatAJointMovesNoInertiaAndLeaveTheState) {
   EXPECT_EQ(v, Numbers{1.0});
 }
 
-// A force that grows without bound towards t = 1 cannot be followed over it.
+// A force that diverges towards t = 1 cannot be integrated past it.
 TEST(Adaptive, SaysWhereItsStepFallsBelowTheMinimum) {
   const Model model = one_body(RevoluteJoint{}, Inertia(1.0, Vec3{1, 1, 1}));
   IntegratorData data(model);

@@ -1,4 +1,4 @@
-// Jacobians against the velocities and poses of links, and their rates against their slopes.
+// Jacobians against velocities and poses of links; their rates against difference quotients.
 #include "vphysics/multibody/jacobians.h"
 
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ double difference(const std::vector<Column>& A, const std::vector<Column>& B) {
   return worst;
 }
 
-// What the two calls have in common.
+// The calls under test, for a link.
 struct OfLink {
   using Column = se3;
   int link;
@@ -65,7 +65,7 @@ struct OfPoint {
   }
 };
 
-// The velocities that the frames define, from where the link is and how it moves.
+// The velocity in a frame as the frame's definition gives it, from the link's pose and motion.
 se3 expected(const SE3& T, const se3& V, Frame frame) {
   if (frame == Frame::link) return V;
   const se3 there{T.rotate(V.w), T.rotate(V.v)};
@@ -99,7 +99,7 @@ TEST(Jacobian, TimesTheVelocitiesIsTheLinksVelocity) {
   }
 }
 
-// Each column alone, against the pose itself: the difference quotient's error falls with the square
+// Each column against the pose itself: the error of the difference quotient falls with the square
 // of the step.
 TEST(Jacobian, ColumnsAreTheSlopesOfThePose) {
   Random random(82);
@@ -177,7 +177,7 @@ void check_rates(unsigned seed) {
   }
   std::printf("off the slope: %.1e, drift off J' v: %.1e\n", worst_rate, worst_drift);
   EXPECT_LT(worst_drift, 1e-13);
-  EXPECT_GT(checked, 20);  // of 45; some last links hang on two joints only
+  EXPECT_GT(checked, 20);  // of 45; some last links have only two joints to the root
 }
 
 TEST(JacobianRate, IsTheSlopeOfTheJacobianOfALink) {
@@ -230,7 +230,7 @@ TEST(Jacobian, OfALinkThatIsFixedToTheWorldIsZero) {
   EXPECT_EQ(link_drift<double>(model, data, s.q, s.v, 2, Frame::world), se3{});
 }
 
-// Forces at a point, carried to the joints by its Jacobian, do what external loads do.
+// Forces at a point, mapped to the joints by the transposed Jacobian, act as external loads do.
 TEST(Jacobian, TransposedCarriesAForceToTheJoints) {
   Random random(87);
   for (int round = 0; round < 20; ++round) {

@@ -1,4 +1,4 @@
-// Joints as part of a world: ids, refusals, who meets whom, snapshots.
+// Joints as part of a world: ids, rejected arguments, collision filtering, snapshots.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -137,7 +137,7 @@ TEST(SetDrive, RefusesWhatTheJointHoldsOrDoesNotHave) {
   EXPECT_TRUE(p.world.set_drive(cone, {}));
 }
 
-// Two boxes in one place, joined or not.
+// Two boxes that overlap, joined or not.
 TEST(Joint, TheTwoMeetOnlyIfTheyAreAskedTo) {
   for (const bool collide : {false, true}) {
     World world(weightless());
@@ -165,14 +165,14 @@ TEST(Joint, TheTwoMeetOnlyIfTheyAreAskedTo) {
     must(world.set_pose(b, world.pose(a) * SE3(Vec3{0.15, 0, 0})));
     must(world.step(0.001));
     EXPECT_FALSE(world.contact_events().empty());
-    must(world.create_joint(a, b, desc));  // those that touch let go
+    must(world.create_joint(a, b, desc));  // the joint ends their contact
     must(world.step(0.001));
     ASSERT_EQ(world.contact_events().size(), 1u);
     EXPECT_EQ(world.contact_events()[0].kind, ContactEvent::Kind::end);
   }
 }
 
-// A bit of everything: a chain on a driven hinge, a gear, a spring, a cone, limits.
+// One joint of several kinds: a chain on a driven hinge, a gear, a spring, a cone, limits.
 struct Machine {
   World world;
   JointId motor, cone;

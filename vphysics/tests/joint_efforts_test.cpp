@@ -1,4 +1,4 @@
-// Efforts along joints, reactions where bodies lie on links, strike them or are restored, and
+// Efforts along joints; reactions with bodies that rest on links, hit them or are restored;
 // accelerations of points.
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 namespace vp::test {
 namespace {
 
-// What a drive is told it does: its law, with the velocity that it leaves.
+// The drive's effort is its force law at the end-of-step velocity.
 TEST(JointEffort, IsWhatTheDriveIsTold) {
   World world;
   auto links = hanging_chain(1, RevoluteJoint{{0, 1, 0}});
@@ -28,17 +28,17 @@ TEST(JointEffort, IsWhatTheDriveIsTold) {
     const double w = world.joint_velocity(id, 0, 0);
     const double told = 30.0 * (0.8 - q - dt * w) + 0.5 * (0.1 - w) + 0.25;
     EXPECT_NEAR(world.joint_effort(id, 0, 0), told, 1e-9);
-    // The rotor takes its part of it.
+    // The rotor's armature takes its part of the torque.
     const JointForce joint = world.joint_reaction(id, 0);
     EXPECT_NEAR(joint.torque.y + 0.02 * (w - v) / dt, told, 1e-9);
   }
-  must(world.set_drive(id, 0, 0, {0.8, 1e3, 0.0, 0.5, 3.0}));  // as much as it can
+  must(world.set_drive(id, 0, 0, {0.8, 1e3, 0.0, 0.5, 3.0}));  // at its maximum force
   step(world, dt);
   EXPECT_NEAR(world.joint_effort(id, 0, 0), 3.0, 1e-12);
 }
 
-// Motors, springs, friction, damping and stops of a tree in motion: the efforts are those of
-// inverse dynamics, and what reactions have along the joints' axes, to the order of dt.
+// Motors, springs, friction, damping and stops of a moving tree: the efforts equal those of inverse
+// dynamics, and the components of the reactions along the joints' axes, to first order in dt.
 TEST(JointEffort, IsThatOfInverseDynamicsAndOfTheReaction) {
   double before_dynamics = 0.0, before_axis = 0.0;
   for (const double dt : {1e-3, 5e-4, 2.5e-4}) {
@@ -87,8 +87,8 @@ TEST(JointEffort, IsThatOfInverseDynamicsAndOfTheReaction) {
   }
 }
 
-// In sub-steps, without friction, whose impulses contacts_of() has in full: a box falls on a plate
-// that springs hold, and slides off.
+// In sub-steps, without friction, so that contacts_of() has the full impulses: a box falls on a
+// plate on springs and slides off.
 TEST(JointReaction, HasTheLoadOfABodyOnALink) {
   LinkSpec plate;
   plate.joint = PrismaticJoint{{0, 0, 1}};
@@ -116,7 +116,7 @@ TEST(JointReaction, HasTheLoadOfABodyOnALink) {
       const Balance balance = balance_of(world, id, before, {{1, 2, 3}}, 0.001);
       worst = std::max(worst, balance.off / balance.size);
       contact = std::max(contact, balance.contact);
-      // What acts along the joint is what the reaction has along it: the plate does not turn.
+      // The effort equals the reaction's component along the joint: the plate does not rotate.
       const double effort = world.joint_effort(id, 0, 0);
       EXPECT_NEAR(effort, world.joint_reaction(id, 0).force.z, 1e-7 * balance.size) << i << v;
     }
@@ -127,13 +127,13 @@ TEST(JointReaction, HasTheLoadOfABodyOnALink) {
     EXPECT_GT(contact, 2000.0);
     EXPECT_LT(worst, 1e-6);
     EXPECT_NEAR((joint.force.z + 3.0) / (mass * kG), 1.0, 1e-5);
-    // The moment of a box beside the middle.
+    // The moment of a box beside the centre.
     const double arm = world.pose(box).position().x;
     EXPECT_NEAR(joint.torque.y, -arm * kG * world.inertia(box).mass(), 1e-3);
   }
 }
 
-// A ball that bounces off a locked plate in the middle of a step, and one that a rod's foot hits.
+// A ball bounces off a locked plate in the middle of a step; a rod's foot hits another ball.
 TEST(JointReaction, HasImpactsWithinTheStep) {
   LinkSpec plate;
   plate.joint = PrismaticJoint{{1, 0, 0}};
@@ -159,7 +159,7 @@ TEST(JointReaction, HasImpactsWithinTheStep) {
   EXPECT_GT(hardest, 100.0);
 }
 
-// Rods of a table, of which those that nothing is near are not looked at.
+// Rods of a table; those far from every body are remote and are not processed.
 TEST(JointReaction, OfRodsThatNothingIsNear) {
   World world;
   const Rod rod = add_rod(world, 0.1, 0.08, 3, 0.2, {0.4, 0.3, 0.0});
@@ -169,7 +169,7 @@ TEST(JointReaction, OfRodsThatNothingIsNear) {
   for (int i = 0; i < 300; ++i) {
     const std::vector<Momentum> before = momenta(world, rod.articulation);
     step(world, 0.001);
-    const JointForce joint = world.joint_reaction(rod.articulation, 0);  // before it is looked at
+    const JointForce joint = world.joint_reaction(rod.articulation, 0);  // while it is remote
     EXPECT_NEAR(joint.force.y, world.joint_effort(rod.articulation, 0, 0), 1e-9);
     EXPECT_NEAR(joint.torque.y, world.joint_effort(rod.articulation, 0, 1), 1e-9);
     const Balance balance = balance_of(world, rod.articulation, before, {{}}, 0.001);
@@ -177,7 +177,7 @@ TEST(JointReaction, OfRodsThatNothingIsNear) {
   }
 }
 
-// Joints of several degrees of freedom, and the user's forces along them.
+// Joints with several degrees of freedom, and user forces along them.
 TEST(JointReaction, OfAFreeRootIsWhatActsAlongIt) {
   World world;
   const Walker walker = add_walker(world, {0, 0, 5.0}, kRough);
@@ -209,10 +209,11 @@ TEST(JointReaction, OfABallHasNoTorqueThroughIt) {
     }
     before = worst;
   }
-  EXPECT_LT(before, 3e-3);  // measured 1.8e-3, of 0.5 N m by its weight
+  EXPECT_LT(before, 3e-3);  // measured 1.8e-3, of 0.5 N m of weight
 }
 
-// The last step stays what it was, whatever is set afterwards; but no snapshot has it.
+// Reactions of the last step stay until the next step, whatever is set afterwards. A snapshot does
+// not include them.
 TEST(JointReaction, StaysUntilTheNextStepAndIsZeroAfterRestore) {
   World world;
   const auto id =
@@ -245,7 +246,7 @@ TEST(JointReaction, StaysUntilTheNextStepAndIsZeroAfterRestore) {
     EXPECT_EQ(other.joint_reaction(id, 1).torque, expected.torque);
     EXPECT_EQ(other.joint_effort(id, 0, 0), same.joint_effort(id, 0, 0));
   }
-  // Asking changes nothing.
+  // Queries change no state.
   World asked, not_asked;
   for (World* w : {&asked, &not_asked}) {
     (void)w->create_articulation({model_of(hanging_chain(2, RevoluteJoint{{0, 1, 0}}))});
@@ -258,7 +259,7 @@ TEST(JointReaction, StaysUntilTheNextStepAndIsZeroAfterRestore) {
   EXPECT_EQ(asked.state_hash(), not_asked.state_hash());
 }
 
-// A caller's mistake asserts; a handler that goes on gets zero.
+// An invalid argument asserts. If the handler continues, the result is zero.
 TEST(JointReaction, OfNoSuchLinkIsZero) {
   static int assertions = 0;
   assertions = 0;
@@ -282,8 +283,8 @@ TEST(JointReaction, OfNoSuchLinkIsZero) {
 #endif
 }
 
-// An accelerometer: at rest it reads the weight, in free fall nothing, on a wheel what pulls
-// inward.
+// An accelerometer: at rest it reads the weight, in free fall zero, on a wheel the centripetal
+// acceleration.
 TEST(AccelerationAt, IsTheChangeOfVelocityOfThePoint) {
   World world;
   const Walker walker = add_walker(world, {0, 0, 5.0}, kRough);

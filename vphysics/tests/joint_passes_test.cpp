@@ -1,5 +1,5 @@
-// The passes over joints give the same bits however many lanes they take at a time, and turn and
-// measure angles as the functions of the standard library do.
+// The passes over joints give the same bits with every number of lanes. Their rotations and angles
+// match the functions of the standard library.
 #include "solve/joint_passes.h"
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ Vec3 random_axis(vp::test::Random& random) {
   return (1.0 / std::max(0.1, norm(u))) * u;
 }
 
-// Pairs of bodies, each joined by one lane of blocks of one form.
+// Pairs of bodies, each joined in one lane of blocks of one form.
 template <class B>
 struct Pairs {
   std::vector<BodyRow> rows{2 * kHanging + 1};
@@ -66,7 +66,7 @@ struct Pairs {
     }
     for (std::uint32_t pair = 0; pair < kHanging; ++pair) fill(pair, random);
   }
-  // Any numbers: what they are does not matter, but that those of all laws are at work.
+  // Arbitrary values, chosen so that all force laws act.
   void fill(std::uint32_t pair, vp::test::Random& random) {
     B& block = blocks[pair / kLanes];
     const int lane = static_cast<int>(pair % kLanes);
@@ -149,7 +149,7 @@ struct Pairs {
   }
 };
 
-// Empty lanes have no say: passes write into those beside others.
+// Compares the used lanes. Passes may write into empty lanes, so those are not compared.
 template <class B>
 bool same_lanes(const std::vector<B>& some, const std::vector<B>& others) {
   for (std::size_t k = 0; k < some.size(); ++k) {

@@ -1,4 +1,4 @@
-// The balance of momentum of links, from what a world shows of them.
+// The momentum balance of links, from public queries of a world.
 #pragma once
 
 #include <algorithm>
@@ -44,8 +44,8 @@ inline Vec3 contact_impulse(const World& world, BodyId body) {
   return sum;
 }
 
-// How far mass times acceleration of each link is from gravity, contacts, forces of the user and
-// what joints do to it; against the largest of these.
+// Residual of Newton's second law over all links: mass times acceleration minus the sum of gravity,
+// contact, user and joint forces. `size` is the largest of these forces.
 struct Balance {
   double off = 0.0, size = 0.0, contact = 0.0;
 };

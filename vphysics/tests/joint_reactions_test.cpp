@@ -1,5 +1,5 @@
-// What the joints of articulations did in a step, against statics, closed forms, and the balance of
-// momentum of each link, from what the world shows of it.
+// Joint reactions of articulations in a step, against statics, closed forms, and the momentum
+// balance of each link from public queries.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,10 +12,10 @@
 namespace vp::test {
 namespace {
 
-// Every kind of joint, locked: each carries the weight of what hangs on it, and its moment. The
-// solver ends when nothing is faster than a limit, so that they are not quite still: how their
-// momenta change is part of it. Along the joints the locks have, besides, what the velocities would
-// do that gravity gives before they are solved: the square of dt.
+// Every kind of joint, locked: each carries the weight and moment of the links beyond it. The
+// solver stops when all velocities are below a limit, so the links are not completely still, and
+// the balance includes their change of momentum. Along the joints, the locks also act against the
+// velocities that gravity gives before the solve: an error of dt squared.
 TEST(JointReaction, OfWhatStandsIsStatics) {
   double before = 0.0;
   for (const double dt : {1e-3, 5e-4}) {
@@ -69,7 +69,7 @@ TEST(JointReaction, OfWhatStandsIsStatics) {
     }
     std::printf("locked trees at %.0e s: %.1e N or N m off statics; %.1e along joints\n", dt, worst,
                 along);
-    EXPECT_LT(worst, 1e-7);  // measured 2.4e-8, of forces of 100 N; they move by so much
+    EXPECT_LT(worst, 1e-7);  // measured 2.4e-8, of forces of 100 N: the residual motion
     EXPECT_LT(along, 1e-3);  // measured 2.4e-4, 6.1e-5
     if (before > 0.0) {
       EXPECT_GT(before / along, 3.5);
@@ -91,7 +91,7 @@ TEST(JointReaction, OfAHangingPendulumIsItsWeight) {
   }
 }
 
-// An arm that drives hold out: two bars, the weights at their middles.
+// An arm of two bars, supported by drives. The weights act at the bars' centres.
 TEST(JointReaction, OfAnArmThatDrivesHoldIsStatics) {
   World world;
   auto links = hanging_chain(2, RevoluteJoint{{0, 1, 0}});
@@ -101,7 +101,8 @@ TEST(JointReaction, OfAnArmThatDrivesHoldIsStatics) {
   step(world, 0.002, 5000);
   const double weight = 0.5 * kG, a = world.joint_position(id, 0, 0),
                b = a + world.joint_position(id, 1, 0), half = 0.1;
-  // Horizontally, from each joint: of a bar at an angle a from -z about y, -sin a of its length.
+  // Horizontal distances from each joint. A bar at an angle a from -z about y extends by -sin a of
+  // its length.
   const double at_elbow = -half * std::sin(b), elbow = -2 * half * std::sin(a);
   const double at_shoulder = -half * std::sin(a) + elbow + at_elbow;
   const double torque[] = {-weight * at_shoulder, -weight * at_elbow};
@@ -109,12 +110,13 @@ TEST(JointReaction, OfAnArmThatDrivesHoldIsStatics) {
     const JointForce joint = world.joint_reaction(id, l);
     EXPECT_LT(norm(joint.force - Vec3{0, 0, weight * (2 - l)}), 1e-9);
     EXPECT_LT(norm(joint.torque - Vec3{0, torque[l], 0}), 1e-9);
-    EXPECT_NEAR(world.joint_effort(id, l, 0), torque[l], 5e-5);  // the square of dt: 1.1e-5
+    EXPECT_NEAR(world.joint_effort(id, l, 0), torque[l], 5e-5);  // error of dt squared: 1.1e-5
     EXPECT_GT(std::fabs(torque[l]), 0.3);
   }
 }
 
-// A bar that swings, against its equation integrated in small steps: the error goes with dt.
+// A swinging bar, against its equation of motion integrated in small steps: the error is of first
+// order in dt.
 TEST(JointReaction, OfASwingingPendulumIsCentripetalForceAndWeight) {
   constexpr double kLength = 0.2, kMass = 0.5, kStart = 1.2, kTime = 0.8;
   const Inertia J = bar(kMass, kLength);
@@ -132,7 +134,7 @@ TEST(JointReaction, OfASwingingPendulumIsCentripetalForceAndWeight) {
     for (int i = 0; i < count; ++i) {
       step(world, dt);
       constexpr int kFine = 40;
-      for (int k = 0; k < kFine; ++k) {  // leapfrog: its middle is that of the step
+      for (int k = 0; k < kFine; ++k) {  // leapfrog: its midpoint is that of the step
         const double h = dt / kFine;
         speed += 0.5 * h * pull(angle);
         angle += h * speed;
@@ -145,7 +147,7 @@ TEST(JointReaction, OfASwingingPendulumIsCentripetalForceAndWeight) {
         const Vec3 expected = kMass * (a - kGravity);
         worst = std::max(worst, norm(world.joint_reaction(id, 0).force - expected));
       }
-      EXPECT_LT(norm(world.joint_reaction(id, 0).torque), 1e-9);  // nothing turns it
+      EXPECT_LT(norm(world.joint_reaction(id, 0).torque), 1e-9);  // no torque at the pivot
     }
     std::printf("pendulum at %.1e s: force off by %.2e N, %.2f times less\n", dt, worst,
                 before / worst);
@@ -156,7 +158,7 @@ TEST(JointReaction, OfASwingingPendulumIsCentripetalForceAndWeight) {
   }
 }
 
-// Impulses on feet, drives, gravity: what hips carry is the trunk's weight.
+// Foot contacts, drives, gravity: the hips carry the trunk's weight.
 TEST(JointReaction, OfAStandingWalkerIsTheWeightOfWhatIsAbove) {
   World world;
   add_ground(world, kRough);
@@ -172,12 +174,12 @@ TEST(JointReaction, OfAStandingWalkerIsTheWeightOfWhatIsAbove) {
   std::printf("hips carry %.6f N of %.6f N\n", hips.z, trunk);
   EXPECT_LT(norm(hips - Vec3{0, 0, trunk}), 1e-6 * trunk);  // measured 6.4e-8
   EXPECT_LT(norm(knees - Vec3{0, 0, trunk + thighs}), 1e-6 * trunk);
-  EXPECT_EQ(norm(world.joint_reaction(walker.id, 0).force), 0.0);  // it floats
+  EXPECT_EQ(norm(world.joint_reaction(walker.id, 0).force), 0.0);  // a floating root
   EXPECT_EQ(norm(world.joint_reaction(walker.id, 0).torque), 0.0);
 }
 
-// A tree of any joints with motors, stops, springs, friction, damping, and spheres that fall on the
-// ground and bounce.
+// A tree of any joints with motors, stops, springs, friction and damping, and with spheres that
+// fall on the ground and bounce.
 ArticulationId add_rough_tree(World& world, Random& random, bool floating, const Material& m) {
   const Model loose = random_tree(random, 10);
   std::vector<LinkSpec> links;
@@ -246,7 +248,8 @@ TEST(JointReaction, BalancesTheMomentumOfEachLink) {
   }
 }
 
-// Angular momentum of each link about its centre of mass, of swinging trees: to the order of dt.
+// Angular momentum balance of each link about its centre of mass, for swinging trees: to first
+// order in dt.
 TEST(JointReaction, BalancesAngularMomentumToTheOrderOfTheStep) {
   double before = 0.0;
   for (const double dt : {2e-3, 1e-3, 5e-4}) {
@@ -290,8 +293,8 @@ TEST(JointReaction, BalancesAngularMomentumToTheOrderOfTheStep) {
   }
 }
 
-// A tree that tumbles in flight, whatever its joints do: the sum of what they do to its trunk and
-// its momentum is nothing but gravity, about any point.
+// A tumbling tree in flight, with any joints: the sum of the joint forces on its trunk and its
+// change of momentum equals gravity, about any point.
 TEST(JointReaction, OfATumblingTreeLeavesNothingToItsRoot) {
   World world;
   const Walker walker = add_walker(world, {1e3, -2e3, 5.0}, kRough);

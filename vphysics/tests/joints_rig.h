@@ -1,4 +1,4 @@
-// Small worlds of joints.
+// Small worlds with joints.
 #pragma once
 
 #include "rig.h"
@@ -11,7 +11,7 @@ inline BodyId add_anchor(World& world, const SE3& pose = {}) {
   desc.T_world_body = pose;
   return must(world.create_body(desc));
 }
-// Without a collider.
+// A body without a collider.
 inline BodyId add_mass(World& world, const Inertia& inertia, const SE3& pose, const se3& V = {}) {
   BodyDesc desc;
   desc.T_world_body = pose;
@@ -19,7 +19,7 @@ inline BodyId add_mass(World& world, const Inertia& inertia, const SE3& pose, co
   desc.inertia = inertia;
   return must(world.create_body(desc));
 }
-// Joined where the frame is in the world.
+// Describes a joint whose frames on both bodies coincide with T_world_joint at the current poses.
 inline JointDesc joint_at(const World& world, BodyId a, BodyId b, const JointKind& kind,
                           const SE3& T_world_joint) {
   JointDesc desc;
@@ -32,7 +32,7 @@ inline JointId join(World& world, BodyId a, BodyId b, const JointKind& kind,
                     const SE3& T_world_joint) {
   return must(world.create_joint(a, b, joint_at(world, a, b, kind, T_world_joint)));
 }
-// z along the world's y.
+// Rotation whose z axis is the world's y axis.
 inline const Mat3 kAlongY{{1, 0, 0}, {0, 0, -1}, {0, 1, 0}};
 
 inline WorldDesc weightless() {

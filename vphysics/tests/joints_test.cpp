@@ -10,10 +10,9 @@ namespace {
 
 constexpr double kG = 9.81;
 
-// --- what holds
-// -----------------------------------------------------------------------------------
+// --- constraints
 
-// The first passage through the bottom, a quarter of the period; by elliptic integral as the
+// The first passage through the bottom takes a quarter of the period, an elliptic integral by the
 // arithmetic-geometric mean.
 TEST(BallSocket, APendulumHasThePeriodOfItsAmplitude) {
   constexpr double kLength = 0.7, kAmplitude = 1.2, kRadius = 0.1;
@@ -29,7 +28,7 @@ TEST(BallSocket, APendulumHasThePeriodOfItsAmplitude) {
     b = std::sqrt(a * b);
     a = mean;
   }
-  // A physical pendulum: its inertia about the pivot.
+  // A physical pendulum, with its inertia about the pivot.
   const double period = 2 * kPi / a * std::sqrt((own + m * kLength * kLength) / (m * kG * kLength));
   double time = 0.0, last = start.x, crossed = 0.0, highest = -1.0;
   int crossings = 0;
@@ -50,7 +49,7 @@ TEST(BallSocket, APendulumHasThePeriodOfItsAmplitude) {
   EXPECT_NEAR(highest, start.z, 5e-3 * kLength);
 }
 
-// The same pendulum as an articulation, whose joint cannot come apart.
+// The same pendulum as an articulation, whose joint has no drift.
 TEST(Hinge, MovesAsARevoluteJointOfAnArticulation) {
   const Inertia bar = solid_inertia(Box{{0.5, 0.05, 0.02}}, 800.0);
   World free, tree;
@@ -89,7 +88,7 @@ TEST(Hinge, TurnsAboutItsAxisAlone) {
   const SE3 T = world.pose(door);
   EXPECT_LT(norm(T * Vec3{-0.4, 0, 0}), 1e-5);
   EXPECT_LT(norm(T.rotation().cz - Vec3{0, 0, 1}), 1e-5);
-  EXPECT_GT(world.joint_coordinate(hinge), 2 * kPi);  // counted on beyond whole turns
+  EXPECT_GT(world.joint_coordinate(hinge), 2 * kPi);  // counts beyond full revolutions
 }
 
 TEST(Slider, SlidesAsOnAnIncline) {
@@ -103,7 +102,7 @@ TEST(Slider, SlidesAsOnAnIncline) {
   const double expected = 0.5 * kG * std::sin(slope);
   EXPECT_NEAR(world.joint_coordinate(slider), expected, 1e-3 * expected);
   EXPECT_LT(norm(world.pose(block).rotation().cx - Vec3{1, 0, 0}), 1e-6);
-  // The guide carries the rest of the weight.
+  // The slider carries the rest of the weight.
   const double m = 700.0 * 0.008;
   EXPECT_NEAR(norm(world.joint_force(slider).force), m * kG * std::cos(slope), 1e-3 * m * kG);
 }
@@ -141,7 +140,7 @@ TEST(Distance, ARodKeepsItsLengthAndARopeOnlyItsMost) {
   }
 }
 
-// A free pair turns about its common centre: nothing outside acts.
+// Without external forces, a free pair rotates about its common centre of mass.
 TEST(Joints, KeepMomentumAndAngularMomentum) {
   const Inertia bar = solid_inertia(Box{{0.3, 0.1, 0.05}}, 900.0);
   const JointKind kinds[] = {BallSocket{},
@@ -197,7 +196,6 @@ TEST(Joints, AHeavyWeightHangsFromALightLink) {
 }
 
 // --- limits, motors, springs
-// ----------------------------------------------------------------------
 
 TEST(Hinge, StopsAtItsLimits) {
   for (const double side : {-1.0, 1.0}) {
@@ -286,7 +284,7 @@ TEST(Spring, SwingsAtItsFrequencyAndDecaysAsItsDamperSays) {
       }
       last = x;
     }
-    const double quarter = (kPi / 2 + std::asin(ratio)) / damped;  // to the first passage
+    const double quarter = (kPi / 2 + std::asin(ratio)) / damped;  // until the first passage
     const double expected = quarter + (2 * periods - 1) * kPi / damped;
     EXPECT_NEAR(crossed, expected, 2e-3 * expected);
     const double half_turns = 2 * periods - 1;
@@ -350,7 +348,7 @@ TEST(Gear, TurnsTheOtherWheelByItsRatio) {
   run(world, 5.0);
   EXPECT_NEAR(world.joint_coordinate(axle_b), -world.joint_coordinate(axle_a) / 3.0, 2e-3);
   EXPECT_NEAR(world.joint_coordinate(mesh), 0.0, 2e-3);
-  // The impulse between the teeth: I_a w_a - p/3 ... both turn as one inertia.
+  // An impulse between the teeth: both bodies rotate as one inertia.
   const double ia = small.central().zz, ib = large.central().zz;
   EXPECT_NEAR(world.velocity(a).w.z, 12.0 * ia / (ia + ib / 9.0), 1e-2);
 }
@@ -373,8 +371,7 @@ TEST(Gear, ARackSlidesAsItsPinionTurns) {
   EXPECT_NEAR(world.velocity(rack).v.x, 0.2, 1e-4);
 }
 
-// --- six degrees of freedom and one's own
-// ---------------------------------------------------------
+// --- six degrees of freedom and user-defined constraints
 
 double distance_between(World& one, BodyId a, World& two, BodyId b) {
   return norm(one.pose(a).position() - two.pose(b).position()) +
@@ -417,7 +414,7 @@ TEST(SixDof, LimitsAndDrivesEachAxis) {
     EXPECT_NEAR(world.joint_coordinate(joint, static_cast<JointAxis>(i)), expected[i], 2e-3) << i;
 }
 
-// A ball and socket written by a user: the two points of the world coincide.
+// A user-defined ball and socket: two points coincide.
 class OwnBall : public PairConstraint {
  public:
   OwnBall(const Vec3& on_a, const Vec3& on_b) : on_a_(on_a), on_b_(on_b) {}
@@ -445,7 +442,7 @@ TEST(UserConstraint, MovesAsTheBuiltInOneItIsEqualTo) {
   for (int i = 0; i < 2; ++i) {
     World& world = *worlds[i];
     const BodyId anchor = add_anchor(world, SE3(Exp(Vec3{0.1, 0.2, 0.3}).matrix(), {0, 0, 1}));
-    // With a centre of mass beside its origin.
+    // With a centre of mass away from its origin.
     const Inertia odd = solid_inertia(Box{{0.2, 0.1, 0.05}}, 1000.0).InvXform(SE3(Vec3{0.1, 0, 0}));
     const BodyId first = add_mass(world, odd, SE3(Vec3{0.3, 0, 1}));
     ends[i] = add_mass(world, odd, SE3(Vec3{0.9, 0, 1}), {{0, 1, 2}, {0, 1, 0}});
@@ -466,7 +463,7 @@ TEST(UserConstraint, MovesAsTheBuiltInOneItIsEqualTo) {
   EXPECT_LT(off, 1e-3);
 }
 
-// The body stays above a plane: a row that only pushes.
+// Keeps a body above a plane: a row with a unilateral impulse.
 class Above : public PairConstraint {
  public:
   int rows() const override { return 1; }
@@ -485,7 +482,7 @@ TEST(UserConstraint, OneSidedRowsPushAndDoNotPull) {
   JointDesc desc;
   desc.kind = UserConstraint{std::make_shared<Above>()};
   const JointId joint = must(world.create_joint(anchor, ball, desc));
-  run(world, 0.3);  // before it arrives
+  run(world, 0.3);  // before it reaches the plane
   EXPECT_NEAR(world.pose(ball).position().z, 0.5 - 0.5 * kG * 0.09, 2e-3);
   EXPECT_EQ(world.joint_force(joint).force.z, 0.0);
   run(world, 1.0);
@@ -496,7 +493,7 @@ TEST(UserConstraint, OneSidedRowsPushAndDoNotPull) {
   EXPECT_NEAR(world.velocity(ball).v.z, 2 - 0.1 * kG, 1e-3);
 }
 
-// Of a hinge and a cone that twists without limits: more than half a turn in each step.
+// A hinge, and a cone joint with unlimited twist: more than half a revolution in each step.
 TEST(Joints, TurnsAreCountedHoweverFastATwistIs) {
   ConeTwist cone;
   for (const JointKind& kind : {JointKind(Hinge{}), JointKind(cone)}) {
@@ -511,7 +508,7 @@ TEST(Joints, TurnsAreCountedHoweverFastATwistIs) {
   }
 }
 
-// So soft that nothing is left of it, and a user's row of next to nothing.
+// A spring so soft that its force vanishes, and a user's row with a minute force.
 TEST(Joints, WhatHoldsNothingLeavesABodyToFall) {
   for (const double frequency : {1e-40, 1e-18, 1e-6}) {
     for (const double damping_ratio : {0.0, 1.0}) {

@@ -1,4 +1,4 @@
-// Things of all sizes behave alike where the world knows how large they are.
+// With a length unit set, bodies of all sizes behave alike.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -28,7 +28,7 @@ struct Tower {
                                           .pose = SE3(Vec3{0, 0, size * (i + 0.5)})}));
     }
   }
-  // Of the uppermost box, downwards and sideways, in sizes.
+  // The displacement of the uppermost box, downwards and sideways, in box sizes.
   double sunk() const {
     const double start = static_cast<double>(boxes.size()) - 0.5;
     return start - world.pose(boxes.back()).position().z / size;
@@ -39,8 +39,8 @@ struct Tower {
   }
 };
 
-// Without a length unit: 1 cm at 60 Hz sinks by 0.25 of a cube, 1 mm falls. Now 0.03, 0.1; 10 um at
-// 1 kHz 0.06.
+// Without a length unit, 1 cm at 60 Hz sinks by 0.25 of a cube, and 1 mm falls. With it: 0.03 and
+// 0.1; 10 um at 1 kHz: 0.06.
 TEST(LengthUnit, TowersOfSmallCubesStand) {
   struct Case {
     double size, rate, sunk;
@@ -57,7 +57,7 @@ TEST(LengthUnit, TowersOfSmallCubesStand) {
   }
 }
 
-// The same at a hundredth of the size and a tenth of the time.
+// The same scene at a hundredth of the size and a tenth of the time.
 TEST(LengthUnit, ScalesWithGravity) {
   Tower large({}, 1.0, 5), small(of_size(0.01), 0.01, 5);
   must(large.world.set_velocity(large.boxes.back(), {{}, {0.8, 0, 0}}));

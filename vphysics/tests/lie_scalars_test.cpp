@@ -1,4 +1,4 @@
-// The Lie groups over their other scalars: dual numbers, packs, float, and the counting scalar.
+// The Lie groups with their other scalars: dual numbers, packs, float, and the counting scalar.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -38,7 +38,7 @@ double largest(const Vec3& a) {
   return std::max({std::fabs(a.x), std::fabs(a.y), std::fabs(a.z)});
 }
 
-// Angles on both sides of every switching point, tiny, and near a half turn.
+// Angles on both sides of every threshold, tiny, and near half a revolution.
 const double kAngles[] = {0.0, 1e-200, 1e-9, 1e-4, 0.31, 0.32, 0.499, 0.501, 1.0, 2.0, 3.0, 3.1415};
 
 // --- dual numbers
@@ -59,7 +59,7 @@ Vec3T<Dual> along(const Vec3& a, const Vec3& d) {
 se3T<Dual> along(const se3& V, const se3& d) {
   return {along(V.w, d.w), along(V.v, d.v)};
 }
-// The velocity, seen from outside, of a pose that moves.
+// The spatial velocity (in the fixed frame) of a moving pose.
 se3 velocity(const SE3T<Dual>& A) {
   const Vec3 x = value(A.rotation().cx), y = value(A.rotation().cy), z = value(A.rotation().cz);
   const Vec3 dx = slope(A.rotation().cx), dy = slope(A.rotation().cy), dz = slope(A.rotation().cz);
@@ -79,7 +79,7 @@ TEST(Dual, KnowsTheSlopesOfArithmetic) {
   EXPECT_NEAR(arc_tangent(x, Dual(2)).derivative[0], 2 / (4 + 0.49), 1e-15);
 }
 
-// Measured: 9e-15 and 1.2e-14 at half a turn.
+// Measured: 9e-15, and 1.2e-14 at half a revolution.
 TEST(Jacobian, IsTheSlopeOfExp) {
   Random random(21);
   for (const double angle : kAngles) {
@@ -155,7 +155,7 @@ void lanes_are_scalars() {
     se3T<T> V[N];
     se3T<P> packed;
     for (int lane = 0; lane < N; ++lane) {
-      // Now and then all on one side of a switching point, mostly on both.
+      // Sometimes all lanes on one side of a threshold, mostly on both.
       const int which = round % 3 == 0 ? round / 3 : round + lane * 5;
       V[lane] = cast<T>(random_twist(random, kAngles[which % 12]));
       for (int i = 0; i < 3; ++i) {
@@ -209,7 +209,7 @@ TEST(Float, SineAndCosineAreWithinTwoUlp) {
 TEST(Float, LogInvertsExp) {
   Random random(26);
   for (const double angle : kAngles) {
-    if (angle > 3.0) continue;  // rounding takes 3.1415 past the half turn
+    if (angle > 3.0) continue;  // rounding takes 3.1415 past half a revolution
     for (int i = 0; i < 100; ++i) {
       const se3T<float> V = cast<float>(random_twist(random, angle)), L = Log(Exp(V));
       for (int k = 0; k < 3; ++k) {

@@ -1,4 +1,4 @@
-// The Lie groups against long double and against their own definitions.
+// The Lie groups against long double and against their definitions.
 #include "vphysics/lie.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ double not_orthonormal(const Mat3& R) {
                    std::fabs(dot(R.cx, R.cy)), largest(cross(R.cx, R.cy) - R.cz)});
 }
 
-// Exp by its power series in long double, scaled down and squared up: an independent route.
+// Exp by its power series in long double, with scaling and squaring: an independent route.
 using LongSE3 = SE3T<long double>;
 LongSE3 exp_by_squaring(const se3& V) {
   constexpr int kHalvings = 12;
@@ -94,8 +94,8 @@ TEST(Scalar, ArcTangentAgreesWithLongDoubleInEveryQuadrant) {
   EXPECT_TRUE(std::isnan(arc_tangent(1.0, kNoNumber)));
 }
 
-// Angles at which a branch or the conditioning changes: both sides of each switching point, tiny
-// angles, near and at a half turn, and beyond.
+// Angles where a branch or the conditioning changes: both sides of each threshold, tiny angles,
+// near and at half a revolution, and beyond.
 const double kAngles[] = {0.0,        1e-300,     1e-160, 1e-12, 1e-8,       1e-4,
                           0.31622776,  // sqrt of kLogSeriesBelow
                           0.31622777,
@@ -103,12 +103,12 @@ const double kAngles[] = {0.0,        1e-300,     1e-160, 1e-12, 1e-8,       1e-
                           0.50000001, 0.78539816, 1.5,    3.0,   kPi - 1e-4, kPi - 1e-8,
                           kPi - 1e-12};
 
-// The coefficients of Exp and Log by their power series in long double: fewer than 40 terms reach
-// its last bit up to half a turn, where the largest term is 12 and cancels 4 bits.
+// The coefficients of Exp and Log by their power series in long double. Fewer than 40 terms reach
+// its last bit up to half a revolution, where the largest term is 12 and cancels 4 bits.
 struct LongCoefficients {
   explicit LongCoefficients(long double t) {
     long double power = 1.0L, factorial = 1.0L;  // t^k, (2k)!
-    long double numerator = 0.0L, slope = 0.0L;  // (2 B - A) / t = 2 B D, and its slope
+    long double numerator = 0.0L, slope = 0.0L;  // (2 B - A) / t = 2 B D, and its derivative
     for (int k = 0; k < 40; ++k) {
       const long double odd = factorial * (2 * k + 1), even = odd * (2 * k + 2),
                         next = even * (2 * k + 3), sign = k % 2 == 0 ? 1.0L : -1.0L;
@@ -128,9 +128,9 @@ struct LongCoefficients {
   long double A = 0, B = 0, C = 0, D = 0, B1 = 0, C1 = 0, D1 = 0;
 };
 
-// What a coefficient is multiplied by where it is used: t^(n/2) for a term of n factors w.
-// Measured: A 2.0e-16, B t^(1/2) 3.1e-16, C t 2.1e-16, D t 3.3e-16, B' t 1.6e-16, C'
-// t^(3/2) 4.8e-16, D' t^(3/2) 6.7e-16.
+// Each error is weighted by the factor that the coefficient has where it is used: t^(n/2) for a
+// term with n factors w. Measured: A 2.0e-16, B t^(1/2) 3.1e-16, C t 2.1e-16, D t 3.3e-16, B' t
+// 1.6e-16, C' t^(3/2) 4.8e-16, D' t^(3/2) 6.7e-16.
 TEST(Coefficients, HoldOnBothSidesOfTheirSwitchingPoints) {
   double worst[7] = {};
   const double switching[] = {detail::kExpSeriesBelow, detail::kLogSeriesBelow};
@@ -184,7 +184,8 @@ TEST(Log, InvertsExpAtEveryBranch) {
     for (int i = 0; i < 500; ++i) {
       const se3 V{angle * random.direction(), random.in_cube(2.0)};
       const se3 L = Log(Exp(V));
-      // Rounding of a rotation matrix moves its angle by about 1e-16 over the sine of its half.
+      // Rounding of a rotation matrix changes its angle by about 1e-16 over the sine of half the
+      // angle.
       ASSERT_LT(largest(L.w - V.w), 2e-15) << angle;
       ASSERT_LT(largest(L.v - V.v), 1e-14) << angle;
     }
@@ -254,7 +255,7 @@ concept Subtractable = requires(A a, B b) {
   a - b;
 };
 
-// Section 4.3: no operator that the group does not have, no sum of a velocity and a force.
+// Section 4.3: the types have only their group's operators; a velocity and a force have no sum.
 TEST(Types, HaveNoOperatorThatTheirGroupHasNot) {
   static_assert(!Addable<SE3, SE3> && !Subtractable<SE3, SE3> && !Addable<SO3, SO3> &&
                 !Subtractable<SO3, SO3> && !Addable<SE3, se3> && !Addable<se3, dse3> &&
@@ -273,7 +274,7 @@ TEST(Interpolate, TurnsAndMovesAtAConstantRateFromOneToTheOther) {
     ASSERT_LT(difference(interpolate(A, B, 1.0), B), 1e-14);
     const SE3 quarter = interpolate(A, B, 0.25), half = interpolate(A, B, 0.5);
     ASSERT_LT(difference(interpolate(A, half, 0.5), quarter), 1e-14);
-    // The same screw wherever it is seen from.
+    // The same screw motion in any frame.
     const SE3 C = random.pose(1);
     ASSERT_LT(difference(interpolate(C * A, C * B, 0.25), C * quarter), 2e-14);
     ASSERT_LT(difference(interpolate(B, A, 0.75), quarter), 5e-14);
@@ -318,7 +319,7 @@ TEST(Ad, LittleAdIsItsDerivative) {
       const se3 slope = (0.5 / e) * (Ad(Exp(e * V), W) - Ad(Exp(-e * V), W));
       error[k] = std::max(largest(slope.w - ad(V, W).w), largest(slope.v - ad(V, W).v));
     }
-    // Central differences: half the step, a quarter of the error.
+    // Central differences: half the step gives a quarter of the error.
     ASSERT_NEAR(error[0] / error[1], 4.0, 0.05);
   }
 }
@@ -336,7 +337,7 @@ TEST(Inertia, OfAMovedFrameHasTheSameEnergy) {
 
 TEST(Inertia, KnowsItsCentreAndCentralPart) {
   const Inertia at_centre(2.0, Vec3{1, 2, 3});
-  const Inertia J = at_centre.Xform(SE3(Vec3{-0.5, 1, 2}));  // seen from a frame moved by that
+  const Inertia J = at_centre.Xform(SE3(Vec3{-0.5, 1, 2}));  // in a frame displaced by that vector
   EXPECT_LT(largest(J.centre_of_mass() - Vec3{0.5, -1, -2}), 1e-15);
   const Sym3 I = J.central();
   EXPECT_NEAR(I.xx, 1.0, 1e-14);

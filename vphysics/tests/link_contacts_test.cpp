@@ -1,4 +1,4 @@
-// Free bodies that lie on links, and links that lie on them.
+// Free bodies that rest on links, and links that rest on free bodies.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,7 +29,7 @@ struct Plate {
   BodyId body;
 };
 const Box kPlate{{0.5, 0.5, 0.05}};
-// A plate on one joint with the world, its top at z = 0.
+// A plate on one joint to the world, with its top at z = 0.
 Plate add_plate(World& world, const Joint& joint, const Material& material,
                 const JointForces& forces = {}) {
   LinkSpec link = link_of(joint, kPlate, 1000.0);
@@ -50,7 +50,7 @@ std::vector<BodyId> add_stack(World& world, int count, double half, const Vec3& 
   return stack;
 }
 
-// Each box stays on the one below as it was put there, while a motor lifts all of them.
+// A motor lifts a stack. Each box stays where it was on the box below.
 TEST(LinkContact, AStackStandsOnALift) {
   for (const double rate : kRates) {
     World world;
@@ -72,7 +72,7 @@ TEST(LinkContact, AStackStandsOnALift) {
   }
 }
 
-// A free link is a box like others: dropped between two, all three lie as three boxes do.
+// A free link behaves as a body: dropped between two boxes, all three rest as three boxes do.
 TEST(LinkContact, AFreeLinkInAStackIsABodyInAStack) {
   const Box box{{0.1, 0.1, 0.1}};
   World bodies, links;
@@ -108,7 +108,7 @@ TEST(LinkContact, AFreeLinkInAStackIsABodyInAStack) {
   EXPECT_LT(apart, 0.002);
 }
 
-// Sliding begins at the angle of friction, and goes at g (sin a - mu cos a).
+// Sliding begins at the friction angle, with the acceleration g (sin a - mu cos a).
 TEST(LinkContact, ABoxSlidesOnATiltedLinkAsItsFrictionSays) {
   const double mu = 0.5, critical = std::atan(mu);
   JointForces locked;
@@ -140,8 +140,8 @@ TEST(LinkContact, ABoxSlidesOnATiltedLinkAsItsFrictionSays) {
   }
 }
 
-// On a belt at u a box comes to u; a ball that rolls without slipping, kicked off at rest, to 2/7
-// u.
+// On a belt at speed u, a box reaches u; a ball that starts at rest and then rolls without slip
+// reaches 2/7 u.
 TEST(LinkContact, ABeltOnALinkCarriesBoxesAndBalls) {
   const double u = 0.7, mu = 0.4;
   World world;
@@ -157,7 +157,7 @@ TEST(LinkContact, ABeltOnALinkCarriesBoxesAndBalls) {
       world, {.shape = Box{{0.05, 0.05, 0.02}}, .material = m, .pose = SE3(Vec3{-0.4, 0.2, 0.02})});
   const BodyId ball = add_ball(world, {-0.4, -0.2, kBallRadius}, {}, m);
   const auto speed = [&](BodyId body) { return world.pose(body).rotate(world.velocity(body).v).x; };
-  for (int i = 0; i < 30; ++i) must(world.step(0.001));  // the plate has settled on its drive
+  for (int i = 0; i < 30; ++i) must(world.step(0.001));  // the plate settles on its drive
   const double before = speed(box);
   for (int i = 0; i < 50; ++i) must(world.step(0.001));
   EXPECT_NEAR(speed(box) - before, mu * 9.81 * 0.05, 0.01 * mu * 9.81 * 0.05);
@@ -171,7 +171,7 @@ struct Momenta {
   dse3 all;
   double energy;
 };
-// Of a tree and of bodies, about the world's origin.
+// Momenta of a tree and of bodies, about the world's origin.
 Momenta momenta_of(const World& world, ArticulationId id, const std::vector<BodyId>& bodies,
                    const Inertia& J) {
   const Model& model = *world.model(id);
@@ -189,7 +189,7 @@ Momenta momenta_of(const World& world, ArticulationId id, const std::vector<Body
   return sum;
 }
 
-// Boxes thrown at a walker that floats: what they lose it gains, and nothing gains energy.
+// Boxes are thrown at a floating walker: total momentum is conserved, and energy does not grow.
 TEST(LinkContact, OfThrownBoxesKeepsTheMomentumOfAll) {
   const Box shape{{0.05, 0.05, 0.05}};
   World world({.gravity = {}});
@@ -220,12 +220,12 @@ TEST(LinkContact, OfThrownBoxesKeepsTheMomentumOfAll) {
               hits, linear, norm(before.all.f), angular, norm(before.all.m), gained, before.energy);
   EXPECT_GT(hits, 2);
   EXPECT_LT(energy, 0.9 * before.energy);
-  EXPECT_LT(linear, 1e-5 * norm(before.all.f));  // bodies are single precision in sub-steps
+  EXPECT_LT(linear, 1e-5 * norm(before.all.f));  // sub-steps solve bodies in single precision
   EXPECT_LT(angular, 1e-3 * norm(before.all.m));
   EXPECT_LT(gained, 1e-3 * before.energy);
 }
 
-// Four pillars of three boxes bear a walker with 30 kg on its back.
+// Four pillars of three boxes support a walker with 30 kg on its back.
 TEST(LinkContact, AWalkerStandsOnPillarsUnderALoad) {
   for (const double rate : kRates) {
     World world;
@@ -255,11 +255,12 @@ TEST(LinkContact, AWalkerStandsOnPillarsUnderALoad) {
     }
     std::printf("%g Hz: %.2g m in 0.6 s; the load at %.4f\n", rate, drift, converged.back().z);
     EXPECT_LT(drift, 0.002) << rate;
-    EXPECT_NEAR(converged.back().z, trunk + 0.18, 0.03) << rate;  // its legs give way
+    EXPECT_NEAR(converged.back().z, trunk + 0.18, 0.03) << rate;  // its legs yield
   }
 }
 
-// Swept and lain on at once: balls shot at a plate 4 mm thick that bears a stack come back.
+// A plate of 4 mm thickness supports a stack while continuous balls are shot at it: no ball passes
+// it.
 TEST(LinkContact, NoBallPassesALinkUnderALoad) {
   const Box sheet{{0.5, 0.5, 0.002}};
   World world;
@@ -287,12 +288,12 @@ TEST(LinkContact, NoBallPassesALinkUnderALoad) {
       highest = std::max(highest, world.pose(ball).position().z - world.pose(plate).position().z);
     }
   }
-  EXPECT_GT(highest, -0.03);  // they do reach it
+  EXPECT_GT(highest, -0.03);  // the balls reach it
   EXPECT_LT(highest, 0.0);
 }
 
-// The base cannot move, so that what lies on it joins nothing; the arm's joint is solved all the
-// same.
+// The base is fixed, so the box on it does not couple to the tree. The arm's joint is solved all
+// the same.
 TEST(LinkContact, AMotorGoesOnWhileABoxLiesOnItsFixedBase) {
   World world;
   LinkSpec base = link_of(FixedJoint{}, kPlate, 1000.0);
@@ -309,8 +310,8 @@ TEST(LinkContact, AMotorGoesOnWhileABoxLiesOnItsFixedBase) {
   EXPECT_NEAR(world.joint_position(id, 1, 0), 0.5, 1e-3);
 }
 
-// Legs that press against one another's ground: a spider of stiff motors stands, however few rounds
-// the solver has.
+// Legs that push against one another through the ground: a spider with stiff motors stands with any
+// number of solver iterations.
 TEST(LinkContact, AWalkerThatIsDroppedStandsWithFewRounds) {
   for (const int iterations : {1, 2, 3, 6, 12}) {
     SCOPED_TRACE(iterations);
@@ -324,13 +325,13 @@ TEST(LinkContact, AWalkerThatIsDroppedStandsWithFewRounds) {
       for (const double v : world.velocities(walker.id)) last = std::max(last, std::fabs(v));
       fastest = std::max(fastest, last);
     }
-    EXPECT_LT(fastest, 40.0);  // a foot of 0.5 m that is stopped from a fall of 0.1 m: 10 rad/s
+    EXPECT_LT(fastest, 40.0);  // a foot on 0.5 m, stopped after a fall of 0.1 m: 10 rad/s
     EXPECT_LT(last, 1e-3);
   }
 }
 
-// A trunk of two hundred kilograms on eight legs with feet, at 300 g a leg, which stand by the
-// stops of their joints.
+// A trunk of two hundred kilograms on eight legs with feet, of 300 g each. The stops of the joints
+// support it.
 ArticulationId add_heavy_trunk(World& world) {
   const Box trunk{{0.2, 0.2, 0.1}}, foot{{0.06, 0.06, 0.02}};
   const Capsule shin{0.03, 0.1};
@@ -375,7 +376,7 @@ double fastest_joint(const World& world, ArticulationId id) {
   return most;
 }
 
-// Few rounds do not settle it in a step; they do over several.
+// Few iterations do not converge within a step, but they do over several steps.
 TEST(LinkContact, StopsCarryAHeavyTrunkWithFewRounds) {
   for (const int iterations : {1, 3, 12}) {
     for (const double rate : {1000.0, 240.0}) {
@@ -389,7 +390,7 @@ TEST(LinkContact, StopsCarryAHeavyTrunkWithFewRounds) {
   }
 }
 
-// What carries it for half a millisecond carries it for 17 by thirty times the impulse.
+// The impulse that supports the trunk for 17 ms is about thirty times that for half a millisecond.
 TEST(LinkContact, StepsThatChangeInLengthDoNotJerkWhatStands) {
   World world;
   add_ground(world, kRough);
@@ -404,8 +405,8 @@ TEST(LinkContact, StepsThatChangeInLengthDoNotJerkWhatStands) {
   EXPECT_LT(fastest, 0.005);
 }
 
-// What moves the walls is stronger than anything: their contacts contradict one another, more so in
-// each step. The walker is crushed, not thrown out.
+// Nothing can stop the moving walls, so their contacts contradict one another, more in each step.
+// The walker is squeezed, but not thrown out.
 TEST(LinkContact, AWalkerBetweenWallsThatCloseIsNotThrownOut) {
   const Box wall{{0.1, 2.0, 1.0}};
   for (const double rate : kRates) {
@@ -428,7 +429,7 @@ TEST(LinkContact, AWalkerBetweenWallsThatCloseIsNotThrownOut) {
       EXPECT_TRUE(status.position_error);
     }
     std::printf("%g Hz: at most %.3g m/s\n", rate, fastest);
-    EXPECT_LT(fastest, 300.0);  // of a foot; the joints' stiff motors have a part in it
+    EXPECT_LT(fastest, 300.0);  // of a foot; the joints' stiff motors contribute
   }
 }
 

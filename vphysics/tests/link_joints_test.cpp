@@ -1,4 +1,4 @@
-// Joints whose ends are links or continuous bodies: beside the same between free bodies, against
+// Joints between links or continuous bodies: against the same joints between free bodies, against
 // closed forms, and where they close loops of one tree.
 #include <gtest/gtest.h>
 
@@ -35,7 +35,7 @@ Plate add_hinged_plate(World& world) {
 
 enum class Ends : std::uint8_t { bodies, links, a_link, continuous };
 
-// A box that is a body or the one link of a tree that floats.
+// A box as a body, or as the only link of a floating tree.
 BodyId add_box(World& world, const Inertia& inertia, const SE3& pose, const se3& V, Ends ends,
                bool second) {
   const bool is_link = ends == Ends::links || (ends == Ends::a_link && second);
@@ -125,8 +125,9 @@ struct Pair {
   }
 };
 
-// Free bodies are held in lanes, in single precision, by sub-steps; links and continuous bodies in
-// rows of an instant. Both come to where a hundredfold shorter step takes them, ever nearer.
+// Joints of free bodies are solved in SIMD lanes, in single precision, in sub-steps. Joints of
+// links and continuous bodies are rows of the solver of the impact stage. Both converge to the
+// result of steps a hundred times shorter.
 TEST(LinkJoint, EveryKindMovesAsItDoesBetweenBodies) {
   for (const Kind& kind : kinds()) {
     Pair fine(kind, Ends::bodies);
@@ -144,19 +145,19 @@ TEST(LinkJoint, EveryKindMovesAsItDoesBetweenBodies) {
   }
 }
 
-// --- loops of one tree ---------------------------------------------------------------------------
+// --- loops of one tree
 
-// A four-bar linkage in the plane of x and z, all turning about y: crank, coupler, rocker; ground
-// from (0, 0) to (d, 0). Its loop is closed by a joint of the world.
+// A four-bar linkage in the xz plane with rotations about y: crank, coupler, rocker; ground from
+// (0, 0) to (d, 0). A joint of the world closes its loop.
 struct FourBar {
   static constexpr double kCrank = 0.3, kCoupler = 0.8, kRocker = 0.6, kGround = 0.7;
-  static constexpr double kAngle = 1.2;  // of the crank at first, from the ground
+  static constexpr double kAngle = 1.2;  // initial crank angle from the ground
   static Inertia bar_along_x(double mass, double length) {
     const double across = mass * length * length / 12.0;
     return Inertia(mass, Vec3{0.1 * across, across, across}).InvXform(SE3(Vec3{length / 2, 0, 0}));
   }
   static Model model() {
-    const RevoluteJoint about_y{{0, -1, 0}};  // counts from x to z
+    const RevoluteJoint about_y{{0, -1, 0}};  // positive from x to z
     const auto link = [&](int parent, double at, double mass, double length) {
       LinkSpec spec;
       spec.parent = parent;
@@ -171,7 +172,7 @@ struct FourBar {
   static std::vector<double> start() {
     const double x = kCrank * std::cos(kAngle), z = kCrank * std::sin(kAngle);
     const double dx = kGround - x, dz = -z, d = std::hypot(dx, dz);
-    // Circles about both ends meet above.
+    // The upper intersection of circles about both ends.
     const double along = (d * d + kCoupler * kCoupler - kRocker * kRocker) / (2 * d);
     const double across = std::sqrt(kCoupler * kCoupler - along * along);
     const double ex = x + (along * dx - across * dz) / d, ez = z + (along * dz + across * dx) / d;
@@ -195,7 +196,7 @@ struct FourBar {
   double gap() const { return norm(end_of(1, kCoupler) - end_of(2, kRocker)); }
 };
 
-// Where the crank is after a second, by the dynamics of a tree with constraints.
+// The crank's angle after a second, by the constrained dynamics of a tree.
 double swung(double dt) {
   const Model model = FourBar::model();
   ConstrainedData data(
@@ -211,7 +212,7 @@ double swung(double dt) {
   return q[0];
 }
 
-// As well as steps of that dynamics, which are of the first order.
+// As accurate as a step of that dynamics, which is of first order.
 TEST(LinkJoint, AFourBarSwingsAsItsEquationsOfMotionSay) {
   const double expected = swung(2e-5), theirs = std::fabs(swung(1e-3) - expected);
   for (const JointKind& kind : {JointKind{Hinge{}}, JointKind{BallSocket{}}}) {
@@ -234,7 +235,7 @@ TEST(LinkJoint, AFourBarSwingsAsItsEquationsOfMotionSay) {
   }
 }
 
-// An impact is felt by the whole loop at once.
+// An impact acts on the entire loop at once.
 TEST(LinkJoint, ALoopStaysClosedWhenItIsStruck) {
   FourBar f(Hinge{});
   ColliderDesc rod = collider_of(Capsule{0.02, 0.5 * FourBar::kRocker}, {0.0, 0.5, 0.0});
@@ -263,10 +264,10 @@ TEST(LinkJoint, ALoopStaysClosedWhenItIsStruck) {
   EXPECT_GT(f.world.velocity(body).v.x, -15.0);
   std::printf("open by %.2g m, apart at %.2g m/s\n", gap, speed);
   EXPECT_LT(gap, 1e-3);
-  EXPECT_LT(speed, 0.4);  // turns of a step, 0.02, of 10 m/s: 0.21
+  EXPECT_LT(speed, 0.4);  // 0.02 rad a step times 10 m/s; 0.21
 }
 
-// What swings on a joint that is solved at instants loses nothing: the chord, not the tangent.
+// Bodies that swing on a row joint lose no speed: they move along the chord, not the tangent.
 TEST(LinkJoint, AHammerKeepsItsSpeed) {
   for (const Ends ends : {Ends::links, Ends::continuous}) {
     for (const double rate : {1000.0, 240.0}) {
@@ -284,8 +285,8 @@ TEST(LinkJoint, AHammerKeepsItsSpeed) {
   }
 }
 
-// A hanging chain that is pulled where it cannot go, by joints of one row too: they open, and
-// nothing flies about.
+// A hanging chain is pulled beyond its length, also by joints of one row. The joints open, and no
+// link is thrown.
 TEST(LinkJoint, AStretchedChainIsNotThrownAbout) {
   SixDof along_z;
   along_z.axes[2].motion = AxisMotion::locked;
@@ -311,12 +312,12 @@ TEST(LinkJoint, AStretchedChainIsNotThrownAbout) {
         for (const double v : world.velocities(chain)) fastest = std::max(fastest, std::fabs(v));
       }
       std::printf("pulled by kind %zu at %g Hz: %.3g rad/s\n", kind.index(), rate, fastest);
-      EXPECT_LT(fastest, 500.0);  // before 1e6
+      EXPECT_LT(fastest, 500.0);  // 1e6 before the fix
     }
   }
 }
 
-// Bounds of a user's row are those of its force: nothing is moved beyond them.
+// The bounds of a user's row limit its force: a larger load moves the body.
 TEST(LinkJoint, ABoundedRowLetsGo) {
   class Weak : public Level {
    public:
@@ -334,7 +335,8 @@ TEST(LinkJoint, ABoundedRowLetsGo) {
   }
 }
 
-// An impact within a step has no time for a force: over the step the row gives its bound once.
+// An impact takes no time, so the row's force bound gives no impulse there. Over a step the row
+// applies its bound only once.
 TEST(LinkJoint, ABoundedRowGivesNoMoreInStepsWithImpacts) {
   class Weak : public Level {
    public:
@@ -357,7 +359,7 @@ TEST(LinkJoint, ABoundedRowGivesNoMoreInStepsWithImpacts) {
   EXPECT_GT(impacts, 5u);
 }
 
-// A coordinate between narrow limits, which a step would pass by far.
+// A coordinate between narrow limits, with a velocity that would pass both within a step.
 TEST(LinkJoint, BothLimitsStopWhatIsFast) {
   for (const Ends ends : {Ends::links, Ends::continuous}) {
     World world(weightless());
@@ -374,9 +376,9 @@ TEST(LinkJoint, BothLimitsStopWhatIsFast) {
   }
 }
 
-// --- links and free bodies -----------------------------------------------------------------------
+// --- links and free bodies
 
-// An arm of two links whose hand a box is welded to, held by motors.
+// An arm of two links, held by motors, with a box welded to its hand.
 struct Gripper {
   static constexpr double kMass = 3.0, kArm = 0.5;
   World world;
@@ -425,7 +427,7 @@ TEST(LinkJoint, LetGoABoxFallsAsAFreeOne) {
   EXPECT_NEAR(g.world.pose(g.box).position().z, z - 0.5 * kG * 0.04, 2e-3);
 }
 
-// What a crate that is welded to the hand adds is felt by every joint of the arm.
+// The weight of a crate that is welded to the hand acts on every joint of the arm.
 TEST(LinkJoint, ReactionsOfAnArmCarryWhatItsHandHolds) {
   Gripper g;
   run(g.world, 3.0);
@@ -433,7 +435,7 @@ TEST(LinkJoint, ReactionsOfAnArmCarryWhatItsHandHolds) {
     const double arm = 2 - link, load = Gripper::kMass;
     const JointForce reaction = g.world.joint_reaction(g.arm, link);
     EXPECT_NEAR(reaction.force.z, (arm + load) * kG, 1e-3);
-    // About y, of weights on the x side: bars of half a metre and the crate's centre.
+    // Moments about y of weights on the x side: bars of half a metre and the crate's centre.
     const double x = g.world.pose(g.world.link_body(g.arm, link)).position().x;
     double moment = load * (g.world.pose(g.box).position().x - x);
     for (int i = link; i < 2; ++i) {
@@ -443,7 +445,7 @@ TEST(LinkJoint, ReactionsOfAnArmCarryWhatItsHandHolds) {
   }
 }
 
-// Two trees and a free body that only joints hold together: nothing outside pushes them.
+// Two trees and a free body, connected by joints only, without external forces.
 TEST(LinkJoint, KeepMomentumAndAngularMomentum) {
   World world(weightless());
   const Inertia inertia = solid_inertia(Box{{0.2, 0.1, 0.05}}, 1000.0);
@@ -489,7 +491,7 @@ TEST(LinkJoint, JoinedOnesDoNotMeetUnlessAsked) {
   }
 }
 
-// --- state and calls -----------------------------------------------------------------------------
+// --- state and calls
 
 TEST(LinkJoint, ARestoredWorldGoesOnToTheSameBits) {
   FourBar one(Hinge{});
@@ -506,7 +508,7 @@ TEST(LinkJoint, ARestoredWorldGoesOnToTheSameBits) {
   }
 }
 
-// What is joined stays of one way of being solved.
+// A change of motion type is rejected if the joint could not be solved afterwards.
 TEST(LinkJoint, AChangeOfMotionIsRefusedWhereTheJointWouldBe) {
   for (const bool continuous : {false, true}) {
     World world;
@@ -525,7 +527,7 @@ TEST(LinkJoint, AChangeOfMotionIsRefusedWhereTheJointWouldBe) {
     join(world, like, moves, Weld{}, SE3{});
     must(world.set_motion(like, Motion::dynamic));
     run(world, 0.05);
-    EXPECT_LT(norm(world.pose(moves).position()), 1e-3);  // led holds it
+    EXPECT_LT(norm(world.pose(moves).position()), 1e-3);  // supported by `led`
   }
 }
 
@@ -560,7 +562,7 @@ TEST(LinkJoint, ARecordingGoesToTheSameHashes) {
   EXPECT_EQ(replay->world().state_hash(), world.state_hash());
 }
 
-// Welds that cannot both hold: bounded, and the status says so.
+// Welds that contradict each other: motions stay bounded, and the status reports it.
 TEST(LinkJoint, ContradictionsStayBoundedAndAreTold) {
   for (const Ends ends : {Ends::links, Ends::a_link, Ends::continuous}) {
     World world;
@@ -570,7 +572,7 @@ TEST(LinkJoint, ContradictionsStayBoundedAndAreTold) {
     const BodyId b = add_box(world, inertia, SE3(Vec3{0.6, 0, 0}), {}, ends, true);
     join(world, anchor, a, Weld{}, SE3{});
     join(world, a, b, Weld{}, SE3(Vec3{0.4, 0, 0}));
-    JointDesc wrong;  // half a metre off
+    JointDesc wrong;  // offset by half a metre
     wrong.kind = BallSocket{};
     wrong.T_b_joint = SE3(Vec3{-0.1, 0, 0});
     must(world.create_joint(anchor, b, wrong));

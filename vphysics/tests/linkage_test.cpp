@@ -1,4 +1,4 @@
-// Closed mechanisms against what the books have in closed form: the planar four-bar linkage and the
+// Closed mechanisms against closed forms from textbooks: the planar four-bar linkage and the
 // Stewart platform.
 #include <gtest/gtest.h>
 
@@ -25,12 +25,12 @@ ConstrainedData closed_model(const Model& model, std::vector<ConstraintPtr> cons
 struct FourBar {
   double a, b, c, d;
   double mass[3] = {0.7, 1.1, 0.9};    // crank, coupler, rocker
-  double place[3] = {0.4, 0.6, 0.45};  // of their centres, in shares of their lengths
+  double place[3] = {0.4, 0.6, 0.45};  // of their centres, as fractions of their lengths
   double about_centre[3] = {0.01, 0.03, 0.02};
   SE3 T_world_plane{};
 };
 
-// In the plane's x and y. Angles: the crank's and the rocker's from the ground, the coupler's from
+// In the xy plane. The crank's and the rocker's angles are from the ground, the coupler's is from
 // the crank.
 Model four_bar_model(const FourBar& f) {
   ModelBuilder builder;
@@ -45,14 +45,14 @@ Model four_bar_model(const FourBar& f) {
   must_build(builder.add({"rocker", kWorld, RevoluteJoint{}, far, body(2)}));
   return must_build(builder.build());
 }
-// Principal moments that no flat bar has would be refused; Iyy = Izz above is a thin bar's.
+// Iyy = Izz above is that of a thin bar. Principal moments that no flat bar has would be rejected.
 
 std::vector<ConstraintPtr> four_bar_loop(const FourBar& f) {
   return {close_hinge({1, SE3(Vec3{f.b, 0, 0})}, {2, SE3(Vec3{f.c, 0, 0})})};
 }
 
-// Freudenstein: K1 cos(t4) - K2 cos(t2) + K3 = cos(t2 - t4), solved by the half angle; open
-// circuit.
+// Freudenstein's equation: K1 cos(t4) - K2 cos(t2) + K3 = cos(t2 - t4), solved with the half-angle
+// substitution for the open circuit.
 struct Angles {
   double crank, coupler, rocker;  // from the ground
 };
@@ -80,7 +80,7 @@ TEST(FourBar, StandsWhereFreudensteinSays) {
   } cases[] = {
       {SE3{}, 2e-12},
       {random.pose(3), 2e-12},
-      {SE3(random.rotation(), {1e6, -1e6, 1e6}), 1e-9}};  // where a double has steps of 1e-10
+      {SE3(random.rotation(), {1e6, -1e6, 1e6}), 1e-9}};  // where doubles have a spacing of 1e-10
   for (const auto& [plane, bound] : cases) {
     FourBar f = kCrankRocker;
     f.T_world_plane = plane;
@@ -92,7 +92,7 @@ TEST(FourBar, StandsWhereFreudensteinSays) {
       Numbers q = {t2, turned_to(expected.coupler - t2) + 0.3, expected.rocker - 0.2};
       const auto steps = close_loops(model, data, q, {.held = held});
       ASSERT_TRUE(steps) << steps.error().message;
-      EXPECT_LE(*steps, 6);  // Newton's
+      EXPECT_LE(*steps, 6);  // of Newton's method
       EXPECT_EQ(q[0], t2);
       EXPECT_NEAR(turned_to(q[1] - (expected.coupler - t2)), 0.0, bound);
       EXPECT_NEAR(turned_to(q[2] - expected.rocker), 0.0, bound);
@@ -115,12 +115,12 @@ TEST(FourBar, MovesAsTheVelocityLoopSays) {
                 1e-11);
     EXPECT_NEAR(w4, f.a * w2 / f.c * std::sin(t2 - at.coupler) / std::sin(at.rocker - at.coupler),
                 1e-11);
-    EXPECT_EQ(data.rank(), 2);  // of the hinge's five rows
+    EXPECT_EQ(data.rank(), 2);  // independent rows, of the hinge's five
   }
 }
 
-// The linkage as a system of one degree: T = I(t) t'^2 / 2, U(t), from the closed-form rates of
-// coupler and rocker, in dual numbers so that I' and U' come with them.
+// The linkage as a system with one degree of freedom: T = I(t) t'^2 / 2, U(t), from the closed-form
+// rates of coupler and rocker. Dual numbers give I' and U'.
 //   I t'' + I' t'^2 / 2 + U' = tau
 struct OneDegree {
   Dual I, U;
@@ -134,7 +134,7 @@ OneDegree lagrange(const FourBar& f, double angle, double gravity) {
   Dual c2(std::cos(angle)), s2(std::sin(angle));
   c2.derivative[0] = -s2.value;
   s2.derivative[0] = c2.value;
-  // The far end of the coupler: where circles about A and the ground's end meet, above.
+  // The far end of the coupler: the upper intersection of circles about A and the ground's end.
   const Dual ax = Dual(f.a) * c2, ay = Dual(f.a) * s2;
   const Dual dx = Dual(f.d) - ax, dy = -ay, D2 = dx * dx + dy * dy;
   const Dual along = (D2 + Dual(f.b * f.b - f.c * f.c)) / (Dual(2.0) * D2);
@@ -185,7 +185,7 @@ TEST(FourBar, AcceleratesAsItsLagrangeEquationSays) {
   EXPECT_LT(worst, 1e-11);
 }
 
-// Runge-Kutta of the fourth order, and back onto the constraints after each step.
+// Fourth-order Runge-Kutta, with a projection onto the constraints after each step.
 void rk4_step(const Model& model, ConstrainedData& data, const Loads& loads, double h, Numbers& q,
               Numbers& v) {
   const std::size_t n = v.size();
@@ -214,7 +214,7 @@ void rk4_step(const Model& model, ConstrainedData& data, const Loads& loads, dou
 struct Course {
   double drift = 0.0, open = 0.0, turned = 0.0;
 };
-// Under gravity from 1 rad; the energy is that of the closed form.
+// Under gravity from 1 rad. The energy is that of the closed form.
 Course course(int steps, double h) {
   const FourBar& f = kCrankRocker;
   const Model model = four_bar_model(f);
@@ -243,7 +243,7 @@ Course course(int steps, double h) {
   return out;
 }
 
-// The integrator's error of the energy is of the fourth order; the constraints add nothing to it.
+// The integrator's energy error is of fourth order; the constraints add nothing to it.
 TEST(FourBar, KeepsItsEnergyAndStaysClosed) {
   const Course fine = course(10000, 5e-4), coarse = course(5000, 1e-3);
   EXPECT_GT(fine.turned, 20.0);
@@ -252,7 +252,7 @@ TEST(FourBar, KeepsItsEnergyAndStaysClosed) {
   EXPECT_LT(fine.open, 1e-12);
 }
 
-// Without a projection, Baumgarte's fading alone holds the loop.
+// Without projection, Baumgarte stabilisation alone keeps the loop closed.
 TEST(FourBar, BaumgartesRateClosesALoopInMotion) {
   const FourBar& f = kCrankRocker;
   const Model model = four_bar_model(f);
@@ -289,7 +289,7 @@ TEST(FourBar, OfAParallelogramKeepsTheCouplerParallel) {
     ASSERT_TRUE(project_velocities(model, data, q, v));
     EXPECT_NEAR(v[1], -v[0], 1e-9);
     EXPECT_NEAR(v[2], v[0], 1e-9);
-    // The coupler only slides along: I is constant, and its weight does not turn.
+    // The coupler only translates: I is constant, and its weight acts at the crank's end.
     ASSERT_TRUE(constrained_forward_dynamics(model, data, q, v, Numbers(3),
                                              {.gravity = {0, -9.81, 0}}, 0.0, a));
     const double r2 = f.place[0] * f.a, r4 = f.place[2] * f.c;
@@ -297,9 +297,9 @@ TEST(FourBar, OfAParallelogramKeepsTheCouplerParallel) {
                      f.mass[2] * r4 * r4 + f.about_centre[2];
     const double torque =
         -9.81 * std::cos(t2) * (f.mass[0] * r2 + f.mass[1] * f.a + f.mass[2] * r4);
-    EXPECT_NEAR(a[0], torque / I, 1e-8);  // near the folding position J is poor
+    EXPECT_NEAR(a[0], torque / I, 1e-8);  // near the folding position J is ill-conditioned
   }
-  // Where all bars lie in one line it could fold either way: two rows have become one.
+  // Where all bars are collinear, the linkage could fold either way: J loses a row of rank.
   const Numbers flat = {0.0, 0.0, 0.0};
   Numbers v = {1.0, 0.3, -0.2};
   ASSERT_TRUE(project_velocities(model, data, flat, v));
@@ -307,8 +307,8 @@ TEST(FourBar, OfAParallelogramKeepsTheCouplerParallel) {
   for (const double x : v) EXPECT_TRUE(std::isfinite(x));
 }
 
-// --- the Stewart platform: six legs, each a universal joint at the base, a slide, and a ball at
-// the platform
+// --- the Stewart platform: six legs, each with a universal joint at the base, a slider, and a ball
+// joint at the platform
 
 struct Stewart {
   std::array<Vec3, 6> base, top;
@@ -326,10 +326,11 @@ Stewart stewart(double leg_mass) {
   s.leg_mass = leg_mass;
   return s;
 }
-constexpr std::size_t kSlide[6] = {8, 11, 14, 17, 20, 23};  // velocities, after the platform's six
+constexpr std::size_t kSlide[6] = {8, 11, 14, 17, 20, 23};  // indices of velocities
 constexpr std::size_t kSlideQ[6] = {9, 12, 15, 18, 21, 24};
 
-// A leg's body slides along its z; its slide is the distance between its ends.
+// A leg's body slides along its z axis. The slider's coordinate is the distance between the leg's
+// ends.
 Model stewart_model(const Stewart& s) {
   ModelBuilder builder;
   must_build(builder.add({"platform", kWorld, FreeJoint{}, SE3(Vec3{0, 0, 1}), s.platform}));
@@ -348,7 +349,7 @@ std::vector<ConstraintPtr> stewart_loops(const Stewart& s) {
   }
   return out;
 }
-// With the platform at X (in the world), legs roughly upright.
+// Initial coordinates with the platform at X (world frame) and the legs roughly upright.
 Numbers near_stewart(const SE3& X) {
   Numbers q(25);
   const Quaternion turn = to_quaternion(X.rotation());
@@ -374,7 +375,8 @@ TEST(Stewart, HasTheLegsThatInverseKinematicsGives) {
     for (std::size_t i = 0; i < 6; ++i) {
       EXPECT_NEAR(q[kSlideQ[i]], norm(X * s.top[i] - s.base[i]), 3e-12);
     }
-    // And back: with those legs held, from elsewhere, the platform stands there again.
+    // The inverse: with these leg lengths fixed, the platform returns to its pose from a displaced
+    // start.
     Numbers p = q;
     p[0] += 0.05;
     p[2] -= 0.03;
@@ -389,9 +391,9 @@ TEST(Stewart, HasTheLegsThatInverseKinematicsGives) {
   }
 }
 
-// With legs that weigh next to nothing, the forces in the slides are forces on the platform along
-// the legs: J V' - dad_V (J V) = sum of (p x f, f) + weight. What the legs' mass adds falls with
-// it.
+// With nearly massless legs, the slider forces act on the platform along the legs:
+//   J V' - dad_V (J V) = sum of (p x f, f) + weight
+// The error of the legs' mass is proportional to it.
 TEST(Stewart, AcceleratesAsNewtonAndEulerSay) {
   Random random(94);
   const SE3 X(Exp(Vec3{0.1, -0.2, 0.3}).matrix(), {0.05, -0.08, 1.1});
@@ -406,8 +408,8 @@ TEST(Stewart, AcceleratesAsNewtonAndEulerSay) {
     ConstrainedData data = closed_model(model, stewart_loops(s));
     Numbers q = near_stewart(X), v(24), a(24);
     ASSERT_TRUE(close_loops(model, data, q, {.held = kPlatformHeld}));
-    // Slides' rates from the lengths', the legs' turning from the projection: the platform is
-    // heavy.
+    // The slider rates come from the leg lengths, the legs' rotations from the projection. The
+    // platform is heavy, so the projection hardly changes its motion.
     const double parts[] = {V.w.x, V.w.y, V.w.z, V.v.x, V.v.y, V.v.z};
     std::copy(parts, parts + 6, v.begin());
     ASSERT_TRUE(project_velocities(model, data, q, v));

@@ -1,4 +1,4 @@
-// What colliders are given: scales, offsets, and surfaces that bounce, drag and resist, on every
+// Properties of colliders: scales, offsets, restitution, surface velocity and friction, on every
 // kind of ground.
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ constexpr double kEarth = 9.81;
 struct FlatTop {
   const char* name;
   Shape shape;
-  SE3 pose;  // its top is z = 0
+  SE3 pose;  // with its top at z = 0
 };
 std::vector<FlatTop> flat_tops() {
   Random random(91);
@@ -49,8 +49,8 @@ BodyId add_top(World& world, const FlatTop& top, const Material& material,
   return body;
 }
 
-// Each shape twice as large as made, turned upside down in its body's frame and put off its origin:
-// it comes to rest where its lowest point says.
+// Each shape scaled by two, turned upside down in its body's frame and displaced from its origin.
+// It comes to rest at the height of its lowest point.
 TEST(Collider, OfEveryShapeScaledAndOffsetRestsAtItsHeight) {
   std::vector<Vec3> wedge{{-.2, -.2, -.1}, {.2, -.2, -.1}, {-.2, .2, -.1}, {.2, .2, -.1}};
   for (const double x : {-.1, .1}) wedge.push_back({x, 0, 0.1});
@@ -59,7 +59,7 @@ TEST(Collider, OfEveryShapeScaledAndOffsetRestsAtItsHeight) {
   struct Case {
     const char* name;
     Shape shape;
-    double below;  // of its origin's lowest point, upside down, unscaled
+    double below;  // lowest point below the origin, upside down, unscaled
   };
   const Case cases[] = {{"sphere", Sphere{0.1}, 0.1},
                         {"box", Box{{0.2, 0.15, 0.1}}, 0.1},
@@ -88,7 +88,7 @@ TEST(Collider, OfEveryShapeScaledAndOffsetRestsAtItsHeight) {
   }
 }
 
-// The pair's restitution is the larger: a ball let fall by h rises to e^2 h.
+// The pair's restitution is the larger of the two: a ball dropped from h rises to e^2 h.
 TEST(Collider, RestitutionIsThatOfAnyGround) {
   for (const FlatTop& top : flat_tops()) {
     for (const bool continuous : {false, true}) {
@@ -108,7 +108,7 @@ TEST(Collider, RestitutionIsThatOfAnyGround) {
   }
 }
 
-// A belt at 0.6 m/s takes a box along: mu g until it has the belt's speed, then that.
+// A belt at 0.6 m/s accelerates a box with mu g until the box has the belt's velocity.
 TEST(Collider, SurfaceVelocityTakesAlongWhatLiesOnAnyGround) {
   for (const FlatTop& top : flat_tops()) {
     World world;
@@ -124,8 +124,8 @@ TEST(Collider, SurfaceVelocityTakesAlongWhatLiesOnAnyGround) {
   }
 }
 
-// A ball that spins about the normal is slowed by arm * m g, one that rolls by the same moment
-// about its axis of rolling.
+// A moment of arm * m g slows a ball that spins about the normal, and a ball that rolls, about its
+// rolling axis.
 TEST(Collider, SpinningAndRollingFrictionAreLeverArmsOnAnyGround) {
   const double r = 0.1, arm = 0.002;
   for (const FlatTop& top : flat_tops()) {
@@ -140,7 +140,8 @@ TEST(Collider, SpinningAndRollingFrictionAreLeverArmsOnAnyGround) {
           {.shape = Sphere{r}, .material = material, .pose = SE3(Vec3{0, 0.1, r}), .velocity = V});
       for (int i = 0; i < 1000; ++i) must(world.step(0.001));
       const Vec3 w = world.pose(ball).rotate(world.velocity(ball).w);
-      // Rolling, its mass has to be stopped too: the moment of inertia about where it touches.
+      // Rolling friction also stops the ball's translation: the moment of inertia is that about the
+      // contact.
       const double slowing = rolls ? arm * kEarth / (1.4 * r * r) : arm * kEarth / (0.4 * r * r);
       EXPECT_NEAR(10.0 - (rolls ? w.y : w.z), slowing, 0.03 * slowing) << top.name << rolls;
     }
@@ -151,8 +152,9 @@ Vec3 velocity_of(const World& world, BodyId body) {
   return world.pose(body).rotate(world.velocity(body).v);
 }
 
-// A lever arm rho slows what rolls on a radius r by rho g / r / (1 + k^2 / r^2), k the radius of
-// gyration about its axis, whatever its shape and by whichever way it is solved.
+// A rolling friction arm rho slows a body that rolls on a radius r by rho g / r / (1 + k^2 / r^2),
+// with k its radius of gyration about the rolling axis. This holds for every shape and both
+// solvers.
 TEST(Collider, RollingFrictionSlowsAllThatRolls) {
   const double r = 0.5, arm = 0.02, v0 = 2.0;
   const CompoundPart wheels[] = {{Sphere{r}, SE3(Vec3{0, 0, -0.6})},
@@ -160,7 +162,7 @@ TEST(Collider, RollingFrictionSlowsAllThatRolls) {
   const struct {
     const char* name;
     Shape shape;
-    double within;  // of the slowing
+    double within;  // tolerance, as a fraction of the deceleration
   } rollers[] = {{"sphere", Sphere{r}, 0.02},
                  {"capsule", Capsule{r, 0.4}, 0.02},
                  {"cylinder", Cylinder{r, 0.4}, 0.02},
@@ -173,7 +175,7 @@ TEST(Collider, RollingFrictionSlowsAllThatRolls) {
       material.rolling_friction = arm;
       add_ground(world, material);
       Part part{.shape = roller.shape, .material = material, .pose = lying};
-      // In its own frame: along x, about the world's y.
+      // In the body frame: along x, about the world's y.
       part.velocity = {{0, 0, v0 / r}, {v0, 0, 0}};
       part.continuous = continuous;
       const BodyId body = add_dynamic(world, part);

@@ -1,5 +1,5 @@
-// Triangles from files: the same tetrahedron in every format, what the field writes besides, and
-// what is refused.
+// Triangles from files: the same tetrahedron in every format, variants that other programs write,
+// and rejected files.
 #include "vphysics/mesh_file.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,8 @@
 namespace vp::test {
 namespace {
 
-// Corners (0,0,0), (3,0,0), (0,2,0), (0,0,1): a volume of 1, and a face across all three axes.
+// Corners (0,0,0), (3,0,0), (0,2,0), (0,0,1): a volume of 1, and a face that crosses all three
+// axes.
 const Vec3 kCorners[] = {{0, 0, 0}, {3, 0, 0}, {0, 2, 0}, {0, 0, 1}};
 const int kFaces[][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
 
@@ -97,8 +98,9 @@ TEST(MeshFile, EveryFormatGivesTheSameTetrahedron) {
       "COLLADA, polygons");
 }
 
-// A scene's nodes place a geometry: here in centimetres, twice as long in x, turned by a quarter
-// about z, and moved; the first corner off the origin is then at (1, 0.06, 0).
+// The nodes of a scene transform a geometry: here from centimetres, scaled by two in x, rotated by
+// a quarter revolution about z, and translated. The first corner away from the origin is then at
+// (1, 0.06, 0).
 TEST(MeshFile, ColladaIsWhereItsScenePlacesIt) {
   const std::string scene =
       "<library_visual_scenes><visual_scene><node><translate>100 0 0</translate>"
@@ -146,7 +148,7 @@ TEST(MeshFile, AFileThatEndsEarlyIsRefusedOrHasFewerTriangles) {
   for (std::size_t size = 0; size < whole.size(); ++size) {
     EXPECT_FALSE(parse_mesh(whole.substr(0, size), MeshFormat::stl)) << size;
   }
-  // Some programs leave bytes behind the last triangle.
+  // Some programs write extra bytes after the last triangle.
   expect_tetrahedron(parse_mesh(whole + "end", MeshFormat::stl), "bytes at the end");
   for (const std::string& text : {text_stl(), kObj, collada(kTriangles)}) {
     const MeshFormat format = text[0] == 's'   ? MeshFormat::stl
@@ -196,7 +198,7 @@ TEST(MeshFile, LimitsAreKept) {
             Errc::unsupported);
 }
 
-// Each node places the next twice: 2^40 geometries, and ends at once.
+// Each node instances the next twice: 2^40 geometries. The parser rejects it at once.
 TEST(MeshFile, AColladaThatMultipliesItselfEnds) {
   std::string nodes = "<library_nodes>";
   for (int k = 0; k < 40; ++k) {

@@ -1,4 +1,4 @@
-// Motion that is known in closed form.
+// Motion with closed-form solutions.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -34,7 +34,7 @@ TEST(FreeFall, FollowsTheParabola) {
   run(world, 1.0);
   const Vec3 p = world.pose(body).position();
   EXPECT_NEAR(p.x, std::hypot(1, 2) * std::cos(std::atan2(2, 1)), 1e-9);
-  // The velocity is exact; positions lag by half a step of gravity.
+  // The velocity is exact; positions have an error of half a step of gravity.
   EXPECT_NEAR(world_velocity(world, body).z, 3 - kG, 1e-9);
   EXPECT_NEAR(p.z, 3 - 0.5 * kG, 0.51 * kG * kDt);
 }
@@ -52,7 +52,7 @@ TEST(Damping, DecaysAtItsRate) {
   EXPECT_NEAR(world_rate(world, body).z, 3 * std::exp(-2.0), 1e-3);
 }
 
-// Each bounce of a continuous ball loses e^2 of the height, at whatever instant it comes.
+// Each bounce of a continuous ball multiplies the height by e^2, at any instant within a step.
 TEST(Bounce, HeightFallsByTheSquareOfRestitution) {
   for (const double e : {0.3, 0.5, 0.8, 1.0}) {
     World world;
@@ -88,8 +88,8 @@ TEST(Friction, SlowsASlidingBoxByMuG) {
   EXPECT_NEAR(world.pose(box).position().x, 9 / (2 * 0.4 * kG), 0.01);
 }
 
-// On a slope of angle a, a box of friction mu stands for tan a < mu and slides at g (sin a - mu cos
-// a) above.
+// On a slope of angle a, a box with friction mu rests for tan a < mu, and slides with the
+// acceleration g (sin a - mu cos a) above.
 TEST(Friction, HoldsUpToTheFrictionAngle) {
   const double mu = 0.5;
   for (const double slope : {0.45, 0.55}) {
@@ -124,7 +124,7 @@ TEST(Friction, TurnsASlidingBallIntoOneThatRollsAtFiveSevenths) {
   EXPECT_LT(norm(slip), 1e-3);
 }
 
-// A lever arm rho slows a rolling ball by rho g / r / (1 + 2/5).
+// A rolling friction arm rho slows a rolling ball by rho g / r / (1 + 2/5).
 TEST(RollingFriction, BringsABallToRest) {
   World world;
   const double rho = 5e-4;
@@ -161,7 +161,7 @@ TEST(Collision, ElasticSpheresKeepMomentumAndEnergy) {
     const Vec3 after =
         Ja.mass() * world_velocity(world, ia) + Jb.mass() * world_velocity(world, ib);
     ASSERT_GT(norm(world_velocity(world, ib)), 0.001) << "they did not meet";
-    // What is not swept meets in single precision: 2e-6.
+    // Bodies that are not continuous are solved in single precision: 2e-6.
     ASSERT_LT(norm(after - before), (a.continuous ? 1e-9 : 1e-5) * norm(before));
     const double now = kinetic_energy(world, ia, Ja) + kinetic_energy(world, ib, Jb);
     ASSERT_NEAR(now, energy, 1e-6 * energy);
@@ -171,7 +171,7 @@ TEST(Collision, ElasticSpheresKeepMomentumAndEnergy) {
 TEST(Tumbling, ConservesAngularMomentumAndNearlyEnergy) {
   World world({.gravity = {}});
   const Box box{{0.1, 0.2, 0.3}};
-  // About the middle axis, where the motion is unstable: the hardest case.
+  // Rotation about the intermediate axis is unstable: the hardest case.
   const BodyId body =
       add_dynamic(world, {.shape = box, .velocity = {{0.01, 5.0, 0.01}, {0.1, 0, 0}}});
   const Inertia J = solid_inertia(box, 1000);
@@ -186,7 +186,7 @@ TEST(Tumbling, ConservesAngularMomentumAndNearlyEnergy) {
     ASSERT_LT(norm(momentum() - L), 1e-11 * norm(L));
     flipped = std::min(flipped, world.velocity(body).w.y / 5.0);
   }
-  EXPECT_LT(flipped, -0.9);  // it did tumble
+  EXPECT_LT(flipped, -0.9);  // it tumbled
   EXPECT_NEAR(kinetic_energy(world, body, J), energy, 1e-4 * energy);
 }
 
@@ -201,10 +201,10 @@ TEST(Contact, AddsNoEnergyToAPenetratingBody) {
     fastest = std::max(fastest, norm(world_velocity(world, box)));
   }
   EXPECT_GT(world.pose(box).position().z, 0.1 - 2e-4);
-  EXPECT_LT(fastest, 1e-3);  // 4e-4: what the rounds of one step leave of pushing 20 mm out
+  EXPECT_LT(fastest, 1e-3);  // 4e-4: the residual of one step of correcting 20 mm
 }
 
-// At the game's tick; decision 0002 says what longer steps do.
+// At the game's tick; decision 0002 describes longer steps.
 TEST(Stack, OfTenBoxesStandsStill) {
   for (const double dt : {0.001}) {
     World world;
@@ -225,7 +225,7 @@ TEST(Stack, OfTenBoxesStandsStill) {
   }
 }
 
-// Every kind of dynamic shape, dropped on every kind of ground, lies there in the end.
+// Every kind of dynamic shape, dropped on every kind of ground, comes to rest on it.
 TEST(Contact, EveryPairOfShapesCarriesTheOther) {
   const Shape shapes[] = {Sphere{0.1}, Capsule{0.08, 0.1}, Box{{0.1, 0.12, 0.08}}};
   const Shape grounds[] = {HalfSpace{}, Box{{1, 1, 0.1}}, Capsule{0.3, 0.5}, Sphere{0.5}};
@@ -255,7 +255,7 @@ TEST(Contact, EveryPairOfShapesCarriesTheOther) {
   }
 }
 
-// Upright on every flat top: standing still, where they stood.
+// Upright on every flat top: they stay at rest where they stood.
 TEST(Contact, CylinderConeAndHullStandOnEveryFlatTop) {
   const auto hull_of_box = [](const Vec3& half) {
     std::vector<Vec3> corners;

@@ -1,5 +1,5 @@
-// States of trees compared, and their energies and momenta by each link's own, for the tests of the
-// integrators.
+// Distances between states of trees, and energies and momenta summed over links, for the tests of
+// the integrators.
 #pragma once
 
 #include "trees.h"
@@ -38,7 +38,7 @@ inline double size_of(const dse3& F) {
   return std::sqrt(dot(F.m, F.m) + dot(F.f, F.f));
 }
 
-// How far two states are apart, on the group.
+// Distance between two states, measured on the Lie group.
 inline double distance(const Model& model, const Numbers& q0, const Numbers& v0, const Numbers& q1,
                        const Numbers& v1) {
   Numbers delta(v0.size());

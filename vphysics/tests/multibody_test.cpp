@@ -1,5 +1,5 @@
-// Articulated dynamics by independent routes: the paper's recursion as appendix A has it, inverse
-// against forward dynamics, joints against their equivalents, kept momentum.
+// Articulated dynamics by independent routes: the paper's recursion of appendix A, inverse against
+// forward dynamics, joints against their equivalents, conserved momentum.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -27,8 +27,8 @@ Numbers inverse(const Model& model, const State& s, const Numbers& a, const Load
   return tau;
 }
 
-// Appendix A line by line, in the links' own frames, for joints M_i e^(S_i q_i) of one degree; the
-// loads are gravity alone, as an acceleration of the world.
+// Appendix A line by line, in the links' frames, for joints M_i e^(S_i q_i) with one degree of
+// freedom. The only load is gravity, as an acceleration of the world.
 Numbers appendix_a(const Model& model, const State& s, const Vec3& gravity) {
   const auto n = static_cast<std::size_t>(model.links());
   std::vector<SE3> f(n);
@@ -134,7 +134,7 @@ TEST(MassMatrix, HasInverseDynamicsForItsColumns) {
   }
 }
 
-// One link on the joint, and the same on a chain of simpler joints without mass.
+// One link on the joint, and the same link on a chain of simpler joints without mass.
 struct Equivalent {
   const char* name;
   Joint joint;
@@ -184,8 +184,8 @@ TEST(Joint, DoesWhatItsEquivalentDoes) {
   }
 }
 
-// Rates of quaternions are not coordinates' rates: a ball against three axes in one point goes by
-// the angular acceleration, in the link's frame.
+// Rates of quaternions are not rates of coordinates. A ball joint and three axes through one point
+// are compared by the angular acceleration, in the link's frame.
 TEST(Joint, BallDoesWhatThreeAxesInOnePointDo) {
   Random random(45);
   const Inertia body = random_body(random), tip = random_body(random);
@@ -214,7 +214,7 @@ TEST(Joint, BallDoesWhatThreeAxesInOnePointDo) {
     b.v = {w.x, w.y, w.z, s.v[3]};
     b.tau = {0, 0, 0, s.tau[3]};
     const Numbers c = forward(ball, b);
-    // The columns' rates: each turns backwards with the axes after it.
+    // The rates of the columns: each rotates backwards with the axes after it.
     const Vec3 wz = s.v[2] * columns[2], wyz = wz + s.v[1] * columns[1];
     const Vec3 expected = a[0] * columns[0] + a[1] * columns[1] + a[2] * columns[2] +
                           s.v[0] * cross(columns[0], wyz) + s.v[1] * cross(columns[1], wz);
@@ -223,7 +223,7 @@ TEST(Joint, BallDoesWhatThreeAxesInOnePointDo) {
   }
 }
 
-// A free body's Euler equations, and its place in the world far from the origin.
+// A free body follows Euler's equations, also far from the origin.
 TEST(Joint, FreeIsARigidBodyByItself) {
   Random random(46);
   for (const double away : {0.0, 1e3, 1e9}) {
@@ -245,7 +245,8 @@ TEST(Joint, FreeIsARigidBodyByItself) {
   }
 }
 
-// V is the rate of the pose: the velocity of every link against the slope of its pose along v.
+// V is the rate of the pose: each link's velocity against the difference quotient of its pose along
+// v.
 TEST(Kinematics, VelocityIsTheSlopeOfThePose) {
   Random random(47);
   for (int round = 0; round < 20; ++round) {
@@ -335,7 +336,7 @@ TEST(Batch, GivesInEachLaneWhatOneStateGives) {
 #endif
 }
 
-// --- what is refused
+// --- rejected arguments
 
 std::string why(const LinkSpec& link) {
   ModelBuilder builder;
@@ -386,7 +387,7 @@ TEST(Model, RefusesAJointThatMovesNoMass) {
 }
 
 TEST(ForwardDynamics, SaysWhereAJointMovesNoInertiaHere) {
-  // A needle that turns about itself.
+  // A needle that rotates about its own axis.
   ModelBuilder builder;
   must_build(builder.add({.joint = RevoluteJoint{}, .inertia = Inertia(1.0, Vec3{1, 1, 0})}));
   const Model model = must_build(builder.build());
@@ -397,7 +398,8 @@ TEST(ForwardDynamics, SaysWhereAJointMovesNoInertiaHere) {
   EXPECT_EQ(done.error().code, Errc::singular);
 }
 
-// Where rounding leaves something of nothing: half of these have an Omega above zero.
+// A rounding error is not an inertia: half of these trees have an Omega above zero only by
+// rounding.
 TEST(ForwardDynamics, TakesNoRoundingForAnInertia) {
   Random random(175);
   for (int round = 0; round < 100; ++round) {

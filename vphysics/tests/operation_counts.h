@@ -1,5 +1,5 @@
-// The paper's Table 3 and equation (6), counted here: for the test that bounds them and for
-// ./bench operations, which prints them.
+// Operation counts of the paper's Table 3 and of equation (6). A test bounds them; ./bench
+// operations prints them.
 #pragma once
 
 #include <vector>

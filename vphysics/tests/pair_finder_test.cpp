@@ -1,4 +1,4 @@
-// The broad phase against comparing all with all.
+// The broad phase against brute force over all pairs.
 #include "collide/pair_finder.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ Bounds box_at(const Vec3& centre, double half) {
   return {centre - Vec3{half, half, half}, centre + Vec3{half, half, half}};
 }
 
-// A finder and, beside it, what it should know.
+// A finder, and its expected contents.
 struct Rig {
   PairFinder finder;
   std::map<std::uint32_t, ProxyDesc> proxies;
@@ -58,7 +58,7 @@ struct Rig {
            (a.owner != b.owner || a.owner == collide::kNoOwner) && (a.category & b.mask) &&
            (b.category & a.mask) && overlap(finder.enlarged_bounds(i), finder.enlarged_bounds(j));
   }
-  // Updates both and compares.
+  // Updates both and compares them.
   std::vector<ProxyPair> update() {
     std::vector<ProxyPair> found, truth;
     finder.update(found);
@@ -81,7 +81,7 @@ struct Rig {
     EXPECT_EQ(finder.pairs(), pairs.size());
     return found;
   }
-  // As the world does: whoever has moved may have left others.
+  // As the world does: removes pairs that a motion has separated.
   void remove_parted() {
     std::erase_if(pairs, [&](const ProxyPair& p) {
       EXPECT_EQ(finder.should_pair(p.a, p.b), should_pair(p.a, p.b));
@@ -174,12 +174,12 @@ TEST(PairFinder, FindsTheNewPairsOfBruteForceThroughTenThousandOperations) {
   std::size_t found = 0;
   for (int k = 0; k < 10000; ++k) {
     random_operation(rig, random);
-    // Few and many changes between two updates.
+    // Phases with few and with many changes between two updates.
     if (random.word() % (k % 1000 < 500 ? 8 : 60) != 0) continue;
     found += rig.update().size();
     if (random.word() % 2) rig.remove_parted();
   }
-  EXPECT_GT(found, 2500u);  // 3028
+  EXPECT_GT(found, 2500u);  // measured 3028
 }
 
 TEST(PairFinder, DoesNothingWhileBoundsStayInsideTheEnlargedOnes) {
@@ -211,7 +211,7 @@ TEST(PairFinder, LengthensBoundsTheWayTheyWillGo) {
   EXPECT_NEAR(b.upper.z, 1.25, 1e-6);
 }
 
-// What was fast and now rests would else keep far neighbours for ever.
+// Otherwise a fast body that has come to rest would keep distant neighbours for ever.
 TEST(PairFinder, ShrinksBoundsThatHaveBecomeMuchTooLarge) {
   PairFinder finder;
   const std::uint32_t i = finder.add({.bounds = box_at({}, 1.0)});
@@ -324,7 +324,7 @@ TEST(PairFinder, RestoredFindsTheSamePairsInTheSameOrderAndHasTheSameBytes) {
   for (int k = 0; k < 100; ++k) random_operation(rig, random);
   rig.update();
   for (int round = 0; round < 10; ++round) {
-    random_operation(rig, random);  // something is not updated yet
+    random_operation(rig, random);  // some changes are not updated yet
     const std::vector<std::uint64_t> start = words_of(rig.finder);
     const auto run = [&](PairFinder& finder) {
       Random same(100 + static_cast<std::uint64_t>(round));
@@ -357,7 +357,7 @@ TEST(PairFinder, RestoredFindsTheSamePairsInTheSameOrderAndHasTheSameBytes) {
     EXPECT_GT(first.size(), 50u);
     EXPECT_EQ(run(fresh), first);
     EXPECT_EQ(words_of(fresh), words_of(rig.finder));
-    ASSERT_TRUE(restore(rig.finder, start));  // back in place
+    ASSERT_TRUE(restore(rig.finder, start));  // in place
     EXPECT_EQ(run(rig.finder), first);
     ASSERT_TRUE(restore(rig.finder, start));
     for (auto& [i, m] : rig.moved) m = true;
@@ -374,8 +374,8 @@ TEST(PairFinder, RefusesWordsThatAreCutOrOutOfRange) {
   for (std::size_t n = 0; n < good.size(); ++n) {
     EXPECT_FALSE(restore(rig.finder, std::span(good).first(n))) << n;
   }
-  EXPECT_EQ(words_of(rig.finder), good);  // refused, nothing changed
-  // Any word changed at random: refused, or a state that steps on without harm.
+  EXPECT_EQ(words_of(rig.finder), good);  // rejected without changes
+  // A random change of any u64: it is rejected, or gives a state that steps without errors.
   int refused = 0;
   for (int k = 0; k < 3000; ++k) {
     std::vector<std::uint64_t> bad = good;

@@ -1,4 +1,4 @@
-// The solver's passes give the same bits however many lanes they take at a time.
+// The solver's passes give the same bits with every SIMD width.
 #include "solve/passes.h"
 
 #include <gtest/gtest.h>
@@ -31,15 +31,16 @@ std::vector<Instructions> of_this_machine() {
   return all;
 }
 
-// A net of bodies with contacts of which some rest, some gape, some bounce and some are hit.
+// A graph of bodies with contacts: some at rest, some separated, some that bounce, some that are
+// hit.
 struct Net {
   std::vector<BodyRow> rows{kBodies + 1};
   ContactGraph graph;
   std::vector<std::uint32_t> bodies;
   std::vector<VelocityChange> velocity_changes{kBodies};
 
-  double gaping;             // share of the contacts
-  std::vector<float> acted;  // which lanes later rounds have found unsettled
+  double gaping;             // fraction of the contacts that are separated
+  std::vector<float> acted;  // which slots later iterations found not converged
 
   explicit Net(std::uint64_t seed) : gaping(seed % 2 == 0 ? 0.3 : 0.8) {
     vp::test::Random random(seed);
@@ -50,7 +51,7 @@ struct Net {
     for (std::uint32_t i = 0; i < kBodies; ++i) {
       BodyRow& row = rows[i + 1];
       bodies.push_back(i);
-      // Some fly, most hardly move.
+      // Some move fast, most are slow.
       const double speed = random.word() % 8 == 0 ? 3.0 : 0.01;
       for (int k = 0; k < 6; ++k) row.velocity[k] = number(-speed, speed);
       row.velocity[kInverseMass] = number(0.5, 2.0);
@@ -62,7 +63,7 @@ struct Net {
     }
     std::uint32_t contact = 0;
     for (std::uint32_t i = 0; i < kBodies; ++i) {
-      for (const std::uint32_t step : {0u, 1u, 7u}) {  // 0: with what is fixed
+      for (const std::uint32_t step : {0u, 1u, 7u}) {  // 0: with a fixed body
         if (random.word() % 4 == 0) continue;
         const std::uint32_t j = (i + step) % kBodies;
         const ContactGraph::End a{step == 0 ? kWorldRow : i + 1, step != 0, kSharedRegion};
@@ -141,7 +142,7 @@ struct Net {
     return bounces;
   }
 
-  // Of all that the passes read and write, but lanes that are not in use.
+  // Everything that the passes read and write, except unused lanes.
   std::vector<float> state() {
     std::vector<float> all = acted;
     const auto add = [&all](const float(&row)[8]) { all.insert(all.end(), row, row + 8); };
@@ -161,9 +162,9 @@ struct Net {
   }
 };
 
-// What a point carries meets its speed as a spring and a damper do, and it only pushes:
+// Each point's impulse p follows a spring and a damper, and is never negative:
 //   share m (u + bias) + (1 - share) p = 0,  or p = 0 and u + bias >= 0
-// with u from the bodies' velocities and the points' arms, and m of each body felt by a push.
+// with u from the bodies' velocities and the points' arms, and m the effective mass of the point.
 TEST(Passes, PushEveryPointAsItsEquationSays) {
   constexpr int kRounds = 200;
   const Soft soft{0.1f / kH, 0.93f, 3.0f, 1.0f / kH, 0.0f};
@@ -242,12 +243,12 @@ TEST(Passes, PushEveryPointAsItsEquationSays) {
   }
 }
 
-// What carries nothing is left alone by later rounds if a blow of 1 m/s would not close it within
-// the sub-step.
+// Later iterations skip a contact without an impulse if an impact of 1 m/s would not close it
+// within the sub-step.
 TEST(Passes, LeaveAloneWhatNoBlowReaches) {
   const Soft soft{0.1f / kH, 0.93f, 3.0f, 1.0f / kH, 0.0f};
   for (const Instructions& of : of_this_machine()) {
-    for (const double speed : {0.0, -0.5, 2.0}) {  // of separation
+    for (const double speed : {0.0, -0.5, 2.0}) {  // separation velocity
       std::vector<BodyRow> rows(2 * kLanes + 1);
       std::vector<ContactBlock<4>> blocks(1);
       for (int lane = 0; lane < kLanes; ++lane) {
@@ -259,7 +260,7 @@ TEST(Passes, LeaveAloneWhatNoBlowReaches) {
         NewContact c{};
         c.normal = {0, 0, 1};
         c.count = 2;
-        // Both gaps open as fast; the nearer one counts.
+        // Both separations grow at the same rate; the smaller one decides.
         const double blow = 0.05 + 0.1 * lane;
         c.points[0] = {{0.1, 0, 0}, kH * (blow - speed), 0.0f};
         c.points[1] = {{-0.1, 0, 0}, kH * (5.0 - speed), 0.0f};
@@ -269,7 +270,7 @@ TEST(Passes, LeaveAloneWhatNoBlowReaches) {
       of.passes->four.load_inertias(run);
       of.passes->four.solve_first(run, soft);
       for (int lane = 0; lane < kLanes; ++lane) {
-        if (speed > 0.05 + 0.1 * lane) continue;  // not a gap
+        if (speed > 0.05 + 0.1 * lane) continue;  // the points are not separated
         ASSERT_EQ(blocks[0].impulse[0].lane[lane], 0.0f);
         EXPECT_EQ(blocks[0].active.lane[lane], lane < 10 ? 1.0f : 0.0f)
             << of.name << ", lane " << lane << " at " << speed;
@@ -278,7 +279,7 @@ TEST(Passes, LeaveAloneWhatNoBlowReaches) {
   }
 }
 
-// An early end of one lane's work must not turn on the lanes beside it.
+// An early end of the work in one lane must not depend on the other lanes.
 TEST(Passes, GiveTheSameBitsInEveryWidth) {
   const std::vector<Instructions> all = of_this_machine();
   int bounces = 0;

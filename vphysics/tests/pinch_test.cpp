@@ -1,4 +1,4 @@
-// A ball held by a driven man against something that does not give.
+// A driven man presses a ball against a rigid body.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ BodyId add_field(World& world) {
   return add_ground(world, kWood);
 }
 
-// The man's foot presses the ball against a wall at x = -(ball) behind it.
+// The man's foot presses the ball against a wall behind it, at negative x.
 TEST(Pinch, ADrivenRodIsStoppedByABallAtAWall) {
   World world;
   add_field(world);
@@ -46,9 +46,9 @@ TEST(Pinch, ADrivenRodIsStoppedByABallAtAWall) {
   EXPECT_LT(world.joint_position(rod.articulation, 0, 1), 0.6);  // the ball is in the way
 }
 
-// The load goes to and fro between foot and wall, half a percent less each time: rounds that stop
-// before its end leave an impact that is none. Without acceleration the foot still moves at 0.1
-// rad/s after 60 ms, with it at 1e-6.
+// The load goes back and forth between foot and wall, half a percent smaller each time. Iterations
+// that stop early leave an impulse that looks like an impact. Without acceleration the foot still
+// moves at 0.1 rad/s after 60 ms, with it at 1e-6.
 TEST(Pinch, AFootThatPressesABallAtAWallComesToRest) {
   World world;
   add_field(world);
@@ -66,13 +66,13 @@ TEST(Pinch, AFootThatPressesABallAtAWallComesToRest) {
   EXPECT_LT(fastest, 1e-3);
 }
 
-// The sole comes down on the ball: torque turns into a force of hundreds of newtons at small
-// angles.
+// The sole comes down on the ball. At small angles, the torque gives a force of hundreds of
+// newtons.
 TEST(Pinch, ABallUnderAFootStaysAboveTheField) {
   for (const double target : {-0.3, -0.1, 0.0, 0.1, 0.3}) {
     World world;
     add_field(world);
-    // The rod hangs so low that the foot leaves 30 mm for a ball of 34.5.
+    // The rod is so low that the foot leaves 30 mm for a ball of 34.5 mm.
     const Rod rod = add_rod(world, 0.0, 0.076 + 0.030, 1, 0.0, kPlastic);
     must(world.set_joint_state(rod.articulation, 0, 1, 1.2, 0.0));
     const BodyId ball = add_ball(world, {0.0, 0.0, kBallRadius}, {}, kPlastic);
@@ -109,7 +109,7 @@ TEST(Pinch, ABallInACornerComesToRest) {
   EXPECT_GT(impacts, 3);
 }
 
-// Bounces that follow one another ever faster end, at the threshold, in rest.
+// Ever faster bounces end in rest at the threshold.
 TEST(Pinch, ZenoBouncingComesToRest) {
   World world;
   add_ground(world, {0.5, 0.9, 0.0});

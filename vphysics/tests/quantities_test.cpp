@@ -1,4 +1,4 @@
-// Momentum, energies and the forces of the equations of motion, each against another way to it.
+// Momentum, energies and generalised forces, each against an independent route.
 #include "vphysics/multibody/quantities.h"
 
 #include <gtest/gtest.h>
@@ -135,8 +135,8 @@ TEST(BiasForces, AreWhatNoAccelerationTakes) {
   }
 }
 
-// Newton and Euler of the whole tree about its centre of mass, along the motion that forward
-// dynamics makes of it: only gravity acts from outside on a tree that floats.
+// Newton's and Euler's equations for the entire tree about its centre of mass, along the motion by
+// forward dynamics: only gravity acts on a floating tree.
 TEST(Momentum, OfAFloatingTreeChangesByGravityAlone) {
   Random random(95);
   for (int round = 0; round < 20; ++round) {
@@ -155,7 +155,7 @@ TEST(Momentum, OfAFloatingTreeChangesByGravityAlone) {
     Numbers a(s.v.size());
     ASSERT_TRUE(forward_dynamics<double>(model, data, s.q, s.v, s.tau, {.gravity = gravity}, a));
     const auto central = [&](double h) {
-      // To second order in h; the odd part of the error falls out of the central difference.
+      // To second order in h; the central difference cancels the odd part of the error.
       Numbers v = s.v, middle = s.v;
       for (std::size_t k = 0; k < v.size(); ++k) {
         v[k] += h * a[k];
@@ -196,7 +196,7 @@ TEST(MomentumMatrix, TimesTheVelocitiesIsTheMomentum) {
     Vec3 sum{};
     for (std::size_t k = 0; k < J.size(); ++k) {
       sum += s.v[k] * J[k];
-      // The linear rows of the momentum matrix are the Jacobian, by the mass.
+      // The linear rows of the momentum matrix are the Jacobian times the mass.
       ASSERT_LT(norm(A[k].f - total_mass(model) * J[k]), 1e-13 * (1 + norm(A[k].f)));
     }
     const Vec3 u = centre_of_mass_velocity<double>(model, data);
@@ -204,7 +204,7 @@ TEST(MomentumMatrix, TimesTheVelocitiesIsTheMomentum) {
   }
 }
 
-// Gravity by two more ways: the weight through the Jacobian of the centre of mass.
+// Gravity forces by two more routes: the weight through the Jacobian of the centre of mass.
 TEST(GravityForces, AreTheWeightAtTheCentreOfMass) {
   Random random(97);
   for (int round = 0; round < 20; ++round) {

@@ -1,5 +1,4 @@
-// What a world is asked, against every collider tried one by one, whatever has happened to the
-// world.
+// World queries against brute force over all colliders, after all kinds of changes to the world.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +20,7 @@ constexpr double kUnboundedRadius = std::numeric_limits<double>::infinity();
 constexpr Kind kQueryKinds[] = {Kind::sphere,   Kind::capsule, Kind::box,
                                 Kind::cylinder, Kind::cone,    Kind::hull};
 
-// A world of random shapes, and what is known of its colliders besides.
+// A world of random shapes, and the expected data of its colliders.
 struct Known {
   ColliderId id;
   BodyId body;
@@ -59,7 +58,7 @@ BodyId fixed_body(World& world, const SE3& T) {
   return must(world.create_body(desc));
 }
 
-// What has parts: of fixed bodies a lumpy mesh or rough ground, of others a compound.
+// Shapes with parts: a bumpy mesh or height field for fixed bodies, a compound for others.
 Shape random_parted(Random& random, bool fixed) {
   if (!fixed) {
     std::vector<CompoundPart> parts;
@@ -105,8 +104,8 @@ Scene random_scene(Random& random, int bodies, double size) {
   return scene;
 }
 
-// The collider with the least value, the older of equals; f gives nothing for those that do not
-// count.
+// The collider with the smallest value, the older one of equals. f returns nothing for colliders
+// that do not count.
 struct Least {
   const Known* collider = nullptr;
   double value = kUnboundedRadius;
@@ -155,7 +154,7 @@ std::optional<double> fraction_of(const Geometry& shape, const SE3& T, const Cas
   return found.time;
 }
 
-// All questions once, each against all colliders one by one.
+// Each kind of query once, against brute force over all colliders.
 void expect_as_linear_scan(const Scene& scene, Random& random, double size, int rounds,
                            std::array<int, 4>& found) {
   std::vector<RayHit> rays;
@@ -198,7 +197,7 @@ void expect_as_linear_scan(const Scene& scene, Random& random, double size, int 
     if (cast) {
       ++found[1];
       EXPECT_NEAR(cast->fraction, meets.value, 1e-9);
-      // Who overlaps from the start is told by age.
+      // Of colliders that overlap at the start, the oldest is reported.
       EXPECT_EQ(cast->collider, meets.collider->id);
     }
     casts.clear();
@@ -250,7 +249,7 @@ TEST(Queries, AnswerAsALinearScanWhateverHasHappened) {
   ask();
   std::vector<std::byte> bytes;
   scene.world.snapshot(bytes);
-  // Put elsewhere without a step: out of the bounds that the broad phase knows.
+  // Moved without a step, out of the AABBs that the broad phase has.
   for (std::size_t i = 0; i < scene.colliders.size(); i += 5) {
     if (i + 1 < scene.colliders.size()) {
       must(scene.world.set_pose(scene.colliders[i].body, random.pose(6.0)));
@@ -336,7 +335,7 @@ TEST(Queries, FindInAStatedOrder) {
   const BodyId gone = add_fixed(world, Sphere{1}, {});
   add_fixed(world, Sphere{1}, {}, SE3(Vec3{1, 0, 0}));
   must(world.destroy_body(gone));
-  // Takes the free slot, but is younger; and one in the same place as it.
+  // One reuses the free slot but is younger; another is in the same place.
   add_fixed(world, Sphere{1}, {}, SE3(Vec3{-1, 0, 0}));
   add_fixed(world, Sphere{1}, {}, SE3(Vec3{-1, 0, 0}));
   add_fixed(world, Sphere{1}, {}, SE3(Vec3{9, 0, 0}));
@@ -358,7 +357,7 @@ TEST(Queries, FindInAStatedOrder) {
       must(world.shape_cast(Sphere{0.5}, SE3(Vec3{-5, 0, 0}), {{9, 0, 0}, {}}))->collider.index,
       1u);
   EXPECT_EQ(must(world.nearest(Vec3{-5, 0, 0}, 20))->collider.index, 1u);
-  // What is found is appended.
+  // Results are appended.
   must(world.overlapping(Sphere{0.5}, SE3{}, found));
   EXPECT_EQ(found.size(), 6u);
 }
@@ -387,11 +386,11 @@ TEST(Queries, AreRightInClosedForm) {
   const auto inside = must(world.shape_cast(Sphere{0.5}, SE3(Vec3{3.8, 0, 0}), {{1, 0, 0}, {}}));
   EXPECT_EQ(inside->fraction, 0.0);
   EXPECT_NEAR(inside->separation, -0.3, 1e-12);
-  // Without a motion, it is where it is.
+  // Without a displacement, the cast tests the pose itself.
   EXPECT_FALSE(must(world.shape_cast(Sphere{0.5}, SE3{}, {})));
 
-  // A rod along y, 4.2 m long, that turns about z in its place 4 m beside the box's middle: its tip
-  // meets the near face where 2.1 cos(angle) + 0.1 = 2, 2 m from the rod's middle.
+  // A rod along y, 4.2 m long, rotates about z, 4 m beside the box's centre. Its tip hits the near
+  // face where 2.1 cos(angle) + 0.1 = 2, 2 m from the rod's centre.
   const auto swung = must(world.shape_cast(
       Capsule{0.1, 2.0}, SE3(Exp(Vec3{-kPi / 2, 0, 0}), {2, 0, 0}), {{}, {0, 0, -kPi / 2}}));
   ASSERT_TRUE(swung);
@@ -422,7 +421,7 @@ TEST(Queries, FarFromTheOriginAreAsGood) {
                                    near->distance};
     };
     const auto here = ask({}), there = ask({1048576.0, -2097152.0, 524288.0});
-    // A position there has steps of 2.4e-10 m.
+    // Positions there have a spacing of 2.4e-10 m.
     for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(here[k], there[k], 1e-8) << k;
   }
 }
@@ -441,7 +440,7 @@ TEST(QueryFilter, TellsWhatIsFound) {
   };
   const BodyId sensor = add_box(2, true, {}, 10);
   const BodyId two = add_box(4, false, {2, ~0u}, 11);
-  const BodyId shy = add_box(6, false, {1, 4}, 12);  // meets category 4 alone
+  const BodyId shy = add_box(6, false, {1, 4}, 12);  // collides with category 4 only
   const BodyId plain = add_box(8, false, {}, 13);
   const auto first = [&](const QueryFilter& filter) {
     const auto hit = must(world.ray_cast({0, 0, 0}, {1, 0, 0}, 100, filter));

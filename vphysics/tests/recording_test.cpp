@@ -1,4 +1,4 @@
-// Recording a world's calls and making them again.
+// Recording and replaying a world's calls.
 #include "vphysics/recording.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kDt = 0.005;
 
-// Keeps two bodies at their heights' sum.
+// Holds the sum of two bodies' heights.
 class Balance : public PairConstraint {
  public:
   explicit Balance(double sum) : sum_(sum) {}
@@ -39,8 +39,8 @@ Shape hull_of(double size) {
   return must(ConvexHull::of(wedge(size)));
 }
 
-// Something of each kind: boxes on a floor, a rod, a hinged pair, a six-degree pair, two in
-// balance.
+// Several kinds of body and joint: boxes on a floor, a rod, a hinged pair, a six-degree pair, two
+// bodies in balance.
 struct Yard {
   World world;
   std::vector<BodyId> boxes;
@@ -92,7 +92,7 @@ void play(Yard& yard, int steps) {
   for (int i = 0; i < steps; ++i) must(yard.world.step(kDt));
 }
 
-// Each call that changes a world.
+// Every call that changes a world.
 struct Change {
   const char* name;
   std::function<void(Yard&)> make;
@@ -239,9 +239,9 @@ std::vector<Change> changes() {
 struct Recorded {
   std::shared_ptr<Recorder> recorder;
   std::vector<std::byte> bytes;
-  std::uint64_t hash = 0;  // of the world at the end
+  std::uint64_t hash = 0;  // of the final world
 };
-// All changes, a few steps after each.
+// All changes, with a few steps after each.
 Recorded record_all(std::uint32_t hash_every = 1) {
   Recorded out{std::make_shared<Recorder>(hash_every), {}, 0};
   Yard yard;
@@ -249,7 +249,7 @@ Recorded record_all(std::uint32_t hash_every = 1) {
   build(yard);
   for (const Change& change : changes()) {
     play(yard, 5);
-    if (std::strcmp(change.name, "destroy_joint") == 0) continue;  // its drive comes later
+    if (std::strcmp(change.name, "destroy_joint") == 0) continue;  // its drive is set later
     change.make(yard);
   }
   must(yard.world.destroy_joint(yard.hinge));
@@ -259,7 +259,7 @@ Recorded record_all(std::uint32_t hash_every = 1) {
   out.bytes.assign(out.recorder->bytes().begin(), out.recorder->bytes().end());
   return out;
 }
-// A short one, for what looks at each of its bytes.
+// A short recording, for tests that process each of its bytes.
 Recorded record_drop(std::uint32_t hash_every = 1) {
   Recorded out{std::make_shared<Recorder>(hash_every), {}, 0};
   World world;
@@ -280,7 +280,7 @@ Replay must_move(Expected<Replay> replay) {
   return std::move(replay.value());
 }
 
-// To the end, or to what stops it.
+// Replays to the end, or to an error.
 Expected<ReplayState> run(Replay& replay) {
   for (;;) {
     auto state = replay.step();
@@ -300,7 +300,8 @@ TEST(Replay, MakesEveryCallAgainToTheSameBits) {
               static_cast<unsigned long long>(replay.steps()));
 }
 
-// By itself, so that none hides behind another; in a recording that began with all built.
+// Each change alone, so that no change hides another, in a recording that starts from a complete
+// world.
 TEST(Recorder, NotesEachCallThatChangesAWorld) {
   for (const Change& change : changes()) {
     SCOPED_TRACE(change.name);
@@ -396,8 +397,8 @@ TEST(Recorder, GoesWithTheWorldAndEndsWithIt) {
   EXPECT_EQ(replay.steps(), 1u);
 }
 
-// What a recording costs: nothing but its hashes, at most 17 bytes for a step in which nothing is
-// done. Golden: the bytes of a world that is built, stepped without hashes, and built on.
+// The cost of a recording: apart from its hashes, at most 17 bytes for a step without calls.
+// Golden: the bytes of a world that is built, stepped without hashes, and extended.
 TEST(Recorder, WritesGoldenBytes) {
   const Recorded drop = record_drop(0);
   std::uint64_t hash = 0xcbf29ce484222325u;
@@ -477,7 +478,7 @@ TEST(Replay, RefusesDamagedBytesBeforeDoingThem) {
       ASSERT_EQ(replay->step().error().message, state.error().message) << "for good";
     }
   }
-  // Only a frame's length, made larger, looks like a recording that was cut.
+  // Only an increased frame length looks like a truncated recording.
   std::printf("%d flips refused, %d taken for an end that is missing\n", refused, short_ones);
   EXPECT_LE(short_ones, 4 * 13);
 }

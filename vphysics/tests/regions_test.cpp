@@ -1,4 +1,4 @@
-// Worlds that are solved region by region: the same physics, and every order of workers the same.
+// Worlds solved region by region: the same physics, and the same bits with every order of workers.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ World world_of(int region_bodies) {
   return World(desc);
 }
 
-// Unit boxes, each half on two of the row below, the lowest row on the ground.
+// A wall of unit boxes, each half on two boxes of the row below, the lowest row on the ground.
 std::vector<BodyId> build_wall(World& world, int rows) {
   std::vector<BodyId> boxes;
   for (int row = 0; row < rows; ++row) {
@@ -52,7 +52,8 @@ TEST(Regions, AreAsManyAsNeeded) {
   EXPECT_EQ(regions_of(17), 2u);
   EXPECT_EQ(regions_of(33), 4u);
   EXPECT_EQ(regions_of(100), 8u);
-  // Fewer only when they are well filled, so that a body more or less does not change all.
+  // Hysteresis: the number of regions decreases later than it increases, so that small changes in
+  // the number of bodies do not change all regions.
   EXPECT_EQ(regions_of(60), 8u);
   EXPECT_EQ(regions_of(40), 4u);
   EXPECT_EQ(regions_of(20), 2u);
@@ -61,7 +62,7 @@ TEST(Regions, AreAsManyAsNeeded) {
   EXPECT_EQ(regions_of(16), 0u);
 }
 
-// Every contact of a body is found wherever it is kept: each box stays where it was put.
+// Each contact of a body is found in the region that holds it: each box stays in place.
 TEST(Regions, CarryWhatLiesOnThem) {
   World world = world_of(4);
   add_ground(world, {});
@@ -85,7 +86,7 @@ TEST(Regions, CarryWhatLiesOnThem) {
   }
 }
 
-// Of nine bodies in regions of one each, some of sixteen are empty.
+// Nine bodies in regions of one body each: some of sixteen regions are empty.
 TEST(Regions, MayBeEmpty) {
   World world = world_of(1);
   std::vector<BodyId> bodies;
@@ -99,7 +100,7 @@ TEST(Regions, MayBeEmpty) {
   EXPECT_EQ(world.counters().regions, 16u);
 }
 
-// A kinematic body goes its way in the turn of its own region; what it carries is of all.
+// A kinematic body moves with its own region. Its contacts are shared by all regions.
 TEST(Regions, AreCarriedByALift) {
   for (const Vec3& speed : {Vec3{0, 0, 1}, Vec3{0, 0, -1}, Vec3{0.6, 0.2, 0.8}}) {
     World world = world_of(8);
@@ -117,7 +118,7 @@ TEST(Regions, AreCarriedByALift) {
   }
 }
 
-// A wall hangs together across all regions. It stands as one that is solved in one piece does.
+// A wall connected across all regions stands as one that is solved as a single region.
 TEST(Regions, StandAsOnePieceDoes) {
   for (const double dt : {1.0 / 60, kDt}) {
     double drift[2] = {};
@@ -138,8 +139,8 @@ TEST(Regions, StandAsOnePieceDoes) {
   }
 }
 
-// A blow runs through a row of equal balls, from region to region, within a step: the last leaves
-// with the speed of the first.
+// An impact passes through a row of equal balls, from region to region, within a step. The last
+// ball leaves with the speed of the first.
 TEST(Regions, PassABlowOn) {
   WorldDesc desc;
   desc.gravity = {};
@@ -161,7 +162,7 @@ TEST(Regions, PassABlowOn) {
   for (int i = 0; i < kBalls - 1; ++i) EXPECT_NEAR(world.velocity(balls[i]).v.x, 0.0, 1e-3) << i;
 }
 
-// What is thrown together keeps its momentum and loses energy.
+// Bodies thrown at each other conserve momentum and lose energy.
 TEST(Regions, KeepMomentum) {
   WorldDesc desc;
   desc.gravity = {};
@@ -206,7 +207,7 @@ TEST(Regions, KeepMomentum) {
   EXPECT_LT(after.energy, 0.6 * before.energy);
 }
 
-// Taken back and taken again after every step, while they are divided anew: not one bit differs.
+// Rolled back and repeated after every step, while regions are recomputed: the bits are the same.
 TEST(Regions, AreTakenBackWithTheState) {
   const auto make = [] {
     World world = world_of(6);

@@ -1,5 +1,5 @@
-// Articulations that nothing can meet are not gone through link by link (src/world/remote.cpp):
-// that changes what a step costs, and no bit of what it computes.
+// Articulations beyond the reach of all bodies are not processed link by link
+// (src/world/remote.cpp). This changes the cost of a step, and no bit of its result.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,8 +15,8 @@ namespace {
 constexpr double kDt = 0.001, kHeight = 0.09, kPitch = 0.15;
 constexpr int kRows = 4, kMenOfRow = 3;
 
-// Rows of men, each hinged on a slide of his own row, as the foosball table's paper layout has
-// them; a fast ball between walls. They meet the ball alone.
+// Rows of men, each hinged on a slider for its row, as in the paper layout of the foosball table,
+// and a fast ball between walls. The men collide with the ball only.
 struct Rows {
   World world{{}};
   std::vector<ArticulationId> rows;
@@ -92,7 +92,8 @@ void shoot(Rows& s, Random& random) {
       s.ball, {{}, {random.uniform(-12, 12), random.uniform(-12, 12), random.uniform(0, 1)}}));
 }
 
-// Asking for a pose brings an articulation out of remoteness, so the second world never has one.
+// A pose query ends the remote state of an articulation, so no articulation of the second world is
+// remote.
 TEST(Remote, ChangesNoBitOfAGame) {
   Rows plain = make_rows(), asked = make_rows();
   Random one(5), other(5);
@@ -121,7 +122,7 @@ TEST(Remote, ChangesNoBitOfAGame) {
     }
   }
   EXPECT_EQ(plain.world.state_hash(), asked.world.state_hash());
-  EXPECT_GT(hits, 200);  // 286
+  EXPECT_GT(hits, 200);  // measured 286
 }
 
 TEST(Remote, PosesAndVelocitiesAreThoseOfTheCoordinates) {
@@ -169,7 +170,7 @@ TEST(Remote, QueriesFindMenWhereTheyAre) {
   EXPECT_EQ(found.size(), 1u);
 }
 
-// A row slides to its stop while it is remote; then a ball at 20 m/s is shot at where it is now.
+// A remote row slides to its stop; then a ball at 20 m/s is shot at its current place.
 TEST(Remote, ABallMeetsARowThatHasSlidFarMeanwhile) {
   for (const double to : {-0.059, 0.059}) {
     Rows s = make_rows();
@@ -190,9 +191,8 @@ TEST(Remote, ABallMeetsARowThatHasSlidFarMeanwhile) {
   }
 }
 
-// Else it would come ever closer, into the range of denormal numbers, with which every step takes
-// several times as long: without a threshold its speed is 4e-285 rad/s here, and denormal soon
-// after.
+// Otherwise it would converge into the range of denormal numbers, where every step takes several
+// times as long. Without a threshold, its speed is 4e-285 rad/s here, and denormal soon after.
 TEST(RestOfALink, AJointThatHasComeToItsTargetStands) {
   World world;
   const Rod rod = add_rod(world, 0.0, 0.09, 1, 0.0, {});

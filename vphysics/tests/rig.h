@@ -9,7 +9,7 @@
 
 namespace vp::test {
 
-// The value of a call that must succeed.
+// Returns the value of a call that must succeed.
 template <class T>
 T must(const Expected<T>& result) {
   if (!result) ADD_FAILURE() << result.error().message;
@@ -19,7 +19,7 @@ inline void must(const Expected<void>& result) {
   if (!result) ADD_FAILURE() << result.error().message;
 }
 
-// With one collider.
+// A body with one collider.
 inline BodyId add_body(World& world, const BodyDesc& desc, const Shape& shape,
                        const Material& material) {
   const BodyId body = must(world.create_body(desc));
@@ -46,7 +46,7 @@ inline BodyId add_ground(World& world, const Material& material, const Vec3& nor
   return add_fixed(world, HalfSpace{}, material, SE3(R, {}));
 }
 
-// Goes at the velocity, body frame.
+// A kinematic body with a velocity in the body frame.
 inline BodyId add_kinematic(World& world, const Shape& shape, const se3& velocity,
                             const Material& material = {}, const SE3& pose = {}) {
   BodyDesc desc;
@@ -90,7 +90,8 @@ inline Model model_of(const std::vector<LinkSpec>& links) {
   return must(builder.build());
 }
 
-// A foosball rod along y, its axis at height h: a cylindrical joint, z of the joint frame along y.
+// A foosball rod along y with its axis at the given height: a cylindrical joint whose joint frame
+// has its z axis along the world's y.
 inline LinkSpec rod_link(double x, double height) {
   LinkSpec link;
   link.joint = CylindricalJoint{};
@@ -103,8 +104,7 @@ inline ArticulationDesc rod_desc(double x, double height) {
   return {model_of({rod_link(x, height)})};
 }
 
-// The boxes of a man in the rod's frame (z along the rod, y up, x fore and aft): foot, leg, torso,
-// head.
+// The boxes of a man in the rod's frame (z along the rod, y up, x forward): foot, leg, torso, head.
 struct ManPart {
   Vec3 centre, half;
 };

@@ -1,5 +1,5 @@
-// A joint of one's own whose subspace moves in the link, for the tests of what needs its slopes,
-// and random trees with it.
+// A user-defined joint whose motion subspace changes in the link frame, for tests that need its
+// derivatives, and random trees with it.
 #pragma once
 
 #include <array>
@@ -30,8 +30,9 @@ SE3T<T> as(const SE3& A) {
   return {Mat3T<T>{each(R.cx), each(R.cy), each(R.cz)}, each(A.position())};
 }
 
-// T(q) = product over k of Exp(q_k s_k + q_k^2 t_k / 2), N degrees. Everything but T comes by dual
-// numbers: S from its slope, the rate from the slope of S along v, and so on.
+// T(q) = product over k of Exp(q_k s_k + q_k^2 t_k / 2), N degrees of freedom. Dual numbers give
+// everything but T: S from the derivative of T, the rate from the derivative of S along v, and so
+// on.
 template <int N>
 class ScrewsJoint final : public UserJoint {
  public:
@@ -129,7 +130,7 @@ class ScrewsJoint final : public UserJoint {
   std::vector<se3> s_, t_;
 };
 
-// As random_tree, with joints of one's own of one and of two degrees among the others.
+// As random_tree, with user-defined joints of one and of two degrees of freedom among the others.
 inline Model tree_with_screws(Random& random, int links) {
   ModelBuilder builder;
   for (int i = 0; i < links; ++i) {

@@ -1,4 +1,5 @@
-// Near pairs that are left alone for some steps: what they do meanwhile must not hide a contact.
+// Speculative pairs are not processed for several steps. A contact that begins meanwhile must not
+// be missed.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,8 +12,8 @@ namespace {
 
 constexpr double kDt = 1.0 / 60;
 
-// A stick flies past a ball that turns, at the speed that the ball's points have where the middle
-// of the stick is: there the two are at rest against each other, but the stick's end comes nearer.
+// A stick flies past a rotating ball with the ball's velocity at the stick's centre. There their
+// relative velocity is zero, but the stick's end approaches.
 TEST(SearchMargin, AStickThatGoesWithATurningBoulderMeetsIt) {
   constexpr double kRadius = 1.1, kHalfLength = 1.0, kHalfWidth = 0.1;
   for (const bool kinematic : {false, true}) {
@@ -53,7 +54,7 @@ TEST(SearchMargin, AStickThatGoesWithATurningBoulderMeetsIt) {
   }
 }
 
-// A stick that spins above a compound much larger than itself loses its spin, but not its fall.
+// A stick spins above a compound much larger than itself. It stops spinning, but falls on.
 TEST(SearchMargin, ASpinThatEndsHidesNoPartOfALargeCompound) {
   WorldDesc desc;
   desc.gravity = {};

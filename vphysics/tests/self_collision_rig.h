@@ -1,4 +1,4 @@
-// Articulations whose links meet each other, for several tests.
+// Articulations with self-collision, for several tests.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@ inline const Material kRough{0.6, 0.0, 0.0};
 inline const Material kSmooth{0.0, 0.0, 0.0};
 inline constexpr Vec3 kY{0, 1, 0};
 
-// Its z axis along a unit vector.
+// A rotation whose z axis is a given unit vector.
 inline Mat3 facing(const Vec3& z) {
   const Vec3 across = cross(z, std::fabs(z.x) < 0.9 ? Vec3{1, 0, 0} : Vec3{0, 1, 0});
   const Vec3 x = (1.0 / norm(across)) * across;
@@ -52,8 +52,8 @@ inline long begins(const World& world) {
                        [](const ContactEvent& e) { return e.kind == ContactEvent::Kind::begin; });
 }
 
-// A table that stands, a post on it that stands, and an arm that swings about the post's top down
-// onto the table: the arm's tip, a ball, is 0.8 m from its joint.
+// A locked table, a locked post on it, and an arm that swings about the top of the post down onto
+// the table. The tip of the arm is a ball, 0.8 m from its joint.
 struct Folded {
   static constexpr double kRadius = 0.05;
   ArticulationId id;
@@ -86,7 +86,7 @@ inline Folded add_folded(World& world, const Material& material, bool collide = 
   must(world.set_joint_state(out.id, 2, 0, angle, 0.0));
   return out;
 }
-// Of the tip above the table.
+// Separation of the tip from the table [m].
 inline double gap(const World& world, const Folded& arm) {
   return (world.pose(arm.arm) * Vec3{-0.8, 0, 0}).z - Folded::kRadius;
 }

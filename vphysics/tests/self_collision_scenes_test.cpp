@@ -1,4 +1,4 @@
-// Heaps, hands and robots whose links meet each other, with free bodies, and their state.
+// Self-collision in heaps, hands and robots, with free bodies, and the state of such worlds.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -11,12 +11,12 @@
 namespace vp::test {
 namespace {
 
-// --- heaps ---------------------------------------------------------------------------------------
+// --- heaps
 
 struct Segment {
   Vec3 a, b;
 };
-// Of two segments, by the ends and the common perpendicular.
+// Distance of two segments, from their ends and their common perpendicular.
 double distance_between(const Segment& s, const Segment& t) {
   const auto to_point = [](const Segment& u, const Vec3& p) {
     const Vec3 d = u.b - u.a;
@@ -65,7 +65,7 @@ Rope add_rope(World& world, int links, const Joint& joint, bool collide, const V
   must(world.set_joint_states(rope.id, q, v));
   return rope;
 }
-// Of links that are no neighbours, in one another.
+// Maximum penetration between links of a rope that are not neighbours.
 double deepest_in_itself(const World& world, const Rope& rope) {
   std::vector<Segment> segments;
   for (int i = 0; i < rope.links; ++i) {
@@ -112,10 +112,10 @@ TEST(SelfCollision, AChainFallsIntoAHeapOfItself) {
   }
 }
 
-// --- the same by other routes --------------------------------------------------------------------
+// --- equivalent scenes
 
-// Two carriages on a rail, each with an arm that hangs from it, driven into each other: as two
-// roots of one articulation, and as two articulations. Without arms they could be remote.
+// Two carriages on a rail, each with an arm that hangs from it, collide: as two roots of one
+// articulation, and as two articulations. Without arms they could be remote.
 TEST(SelfCollision, TwoRootsOfOneArticulationMeetAsTwoArticulationsDo) {
   for (const bool arms : {false, true}) {
     World one, two;
@@ -172,7 +172,8 @@ TEST(SelfCollision, TwoRootsOfOneArticulationMeetAsTwoArticulationsDo) {
   }
 }
 
-// A motor on a rail that nothing else is near stops at the next carriage, whoever asks.
+// A motor drives a carriage on a rail, far from other bodies, until it stops at the next carriage.
+// This holds with and without queries.
 TEST(SelfCollision, ARemoteArticulationStillMeetsItself) {
   World world({.gravity = {}});
   const Box box{{0.1, 0.1, 0.1}};
@@ -186,16 +187,16 @@ TEST(SelfCollision, ARemoteArticulationStillMeetsItself) {
     must(world.add_collider(world.link_body(id, l), collider_of(box, kSmooth)));
     must(world.set_drive(id, l, 0, {1.0 - 2.0 * l, 0.0, 1e4, 500.0, 300.0}));
   }
-  add_ball(world, {0, 5, 0}, {}, kSmooth);  // far away: what makes articulations remote
+  add_ball(world, {0, 5, 0}, {}, kSmooth);  // far away: with it, articulations can be remote
   for (int i = 0; i < 2000; ++i) must(world.step(0.001));
   const auto q = world.coordinates(id);
   EXPECT_NEAR(q[0] - q[1], 0.8, 2e-4);
 }
 
-// --- state ---------------------------------------------------------------------------------------
+// --- state
 
-// An arm on its table, a rope on a floor, a box on the arm's table: contacts of links alone and
-// contacts in sub-steps.
+// An arm on its table, a rope on a floor, a box on the arm's table: contacts between links only,
+// and contacts in sub-steps.
 struct Mixed {
   Folded arm;
   Rope rope;
@@ -229,7 +230,7 @@ TEST(SelfCollision, StepsToTheSameBitsFromASnapshot) {
     ASSERT_EQ(straight.state_hash(), rolled.state_hash()) << i;
   }
   EXPECT_GT(begun, 5);
-  // In the middle of contacts, into a world that has done nothing yet.
+  // Taken while contacts exist, restored into a world without any steps.
   bytes.clear();
   straight.snapshot(bytes);
   World fresh;
@@ -289,7 +290,7 @@ TEST(SelfCollision, QueriesSeeTheSame) {
   (void)a, (void)b;
 }
 
-// --- with free bodies, in sub-steps --------------------------------------------------------------
+// --- with free bodies, in sub-steps
 
 // The arm rests on its table while a box lies on the table, or on the arm's tip.
 TEST(SelfCollision, LinksTouchInSubStepsToo) {
@@ -318,7 +319,7 @@ TEST(SelfCollision, LinksTouchInSubStepsToo) {
   }
 }
 
-// Two fingers of one hand, which close on a ball and then on each other once it is gone.
+// Two fingers of one hand close on a ball, and on each other once the ball is removed.
 TEST(SelfCollision, AHandGripsABallAndThenItself) {
   for (const double rate : {1000.0, 240.0}) {
     World world;
@@ -361,10 +362,10 @@ TEST(SelfCollision, AHandGripsABallAndThenItself) {
   }
 }
 
-// --- robots --------------------------------------------------------------------------------------
+// --- robots
 
-// Humanoid: 27 velocities, 19 capsules and balls; hips and shoulders of several hinges at a point,
-// with links in between that have no shape. As ./bench robots has it.
+// Humanoid: 27 velocities, 19 capsules and balls. Hips and shoulders consist of several hinges at
+// one point, with links without shapes between them. The same model as in ./bench robots.
 class Humanoid {
  public:
   explicit Humanoid(World& world, bool collide, double height) {
@@ -492,8 +493,8 @@ TEST(SelfCollision, AHumanoidFallsOnItselfAndLiesStill) {
   }
 }
 
-// Links that overlap deeply as they are created and are no neighbours: they come apart as far as
-// their joints let them, at moderate speeds, or stay.
+// Links that overlap deeply when created and are not neighbours. They separate as far as their
+// joints allow, at moderate speeds, or stay.
 TEST(SelfCollision, LinksThatOverlapDeeplyAtFirstDoNotExplode) {
   for (const double rate : kRates) {
     for (const double offset : {0.0, 0.002, 0.03}) {  // between the joints

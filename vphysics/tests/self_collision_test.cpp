@@ -1,5 +1,5 @@
-// Links of one articulation that meet each other (ArticulationDesc::links_collide): the impulses
-// between them, and which of them are neighbours.
+// Collisions between links of one articulation (ArticulationDesc::links_collide): their impulses,
+// and which links are neighbours.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -12,10 +12,10 @@
 namespace vp::test {
 namespace {
 
-// --- the solver's masses -------------------------------------------------------------------------
+// --- effective masses in the solver
 
-// Of random trees: what an impulse between two links does to their relative velocity, by the rows
-// of both sides and by J M^-1 J^T.
+// In random trees: the change of the relative velocity of two links by an impulse between them,
+// from the rows of both sides and from J M^-1 J^T.
 TEST(SelfCollision, AnImpulseBetweenTwoLinksIsFeltThroughAllThatCarriesBoth) {
   Random random(71);
   double worst = 0.0;
@@ -33,7 +33,7 @@ TEST(SelfCollision, AnImpulseBetweenTwoLinksIsFeltThroughAllThatCarriesBoth) {
     if (a == b) continue;
     const Vec3 point = random.in_cube(1.0);
     const Vec3 directions[2] = {random.direction(), random.direction()};
-    double z = 0.0;  // what both velocities would be; only its address counts
+    double z = 0.0;  // stands for both links' velocities; only its address counts
     solve::LinkSide side[2];
     std::vector<double> rows[2];
     std::vector<double> J[2] = {std::vector<double>(n), std::vector<double>(n)};
@@ -73,7 +73,8 @@ TEST(SelfCollision, AnImpulseBetweenTwoLinksIsFeltThroughAllThatCarriesBoth) {
   EXPECT_LT(worst, 1e-12);
 }
 
-// Three links that float, jackknifed: balls at both ends that come together in the next step.
+// A floating, jackknifed tree of three links, with balls at both ends that collide in the next
+// step.
 struct Floating {
   ArticulationId id;
   BodyId ends[2];
@@ -97,7 +98,7 @@ Floating add_jackknife(World& world, const Joint& joint, const Material& materia
 
 struct Clash {
   Vec3 normal, point;
-  Vec3 before, after;  // relative velocity there
+  Vec3 before, after;  // relative velocity at the point
   dse3 momentum_before, momentum_after;
   double energy_before = 0.0, energy_after = 0.0;
 };
@@ -107,8 +108,8 @@ dse3 momentum_of(const World& world, ArticulationId id) {
   forward_kinematics<double>(model, data, world.coordinates(id), world.velocities(id));
   return momentum<double>(model, data, {});
 }
-// Bends the joints until the balls touch by less than the slop, gives velocities, and takes one
-// step of a microsecond.
+// Bends the joints until the balls almost touch, sets velocities, and takes one step of a
+// microsecond.
 Clash clash(Random& random, double restitution, double friction) {
   World world({.gravity = {}});
   const Floating tree =
@@ -122,12 +123,12 @@ Clash clash(Random& random, double restitution, double friction) {
     must(world.set_joint_states(tree.id, q, v));
     return norm(world.pose(tree.ends[1]) * tip - world.pose(tree.ends[0]).position()) - 0.1;
   };
-  double low = 0.8, high = 2.0;  // apart, overlapping
+  double low = 0.8, high = 2.0;  // separated, overlapping
   EXPECT_GT(distance(low), 0.0);
   EXPECT_LT(distance(high), 0.0);
   for (int i = 0; i < 60; ++i) {
     const double middle = 0.5 * (low + high);
-    (distance(middle) > 1e-9 ? low : high) = middle;  // a fall over the gap is an approach
+    (distance(middle) > 1e-9 ? low : high) = middle;  // closing it counts as an approach
   }
   for (double& x : v) x = random.uniform(-1, 1);
   v[6] = 2.0;
@@ -168,18 +169,18 @@ TEST(SelfCollision, TwoLinksOfATreePartAtTheirRestitution) {
     }
   }
   std::printf("speeds %.2g off, momentum %.2g\n", worst, momentum);
-  EXPECT_LT(worst, 1e-5);  // the links go on for a microsecond
+  EXPECT_LT(worst, 1e-5);  // the links move for a microsecond
   EXPECT_LT(momentum, 1e-12);
 }
 
-// Without end: the two links' points stay together.
+// With very high friction, the contact points of the two links stay together.
 TEST(SelfCollision, FrictionBetweenTwoLinksStopsTheirSliding) {
   Random random(73);
   double worst = 0.0, momentum = 0.0;
   for (int k = 0; k < 20; ++k) {
     const Clash c = clash(random, 0.0, 1e3);
     ASSERT_GT(norm(c.before), 0.1);
-    // All joints turn about y: what the balls do along y the tree cannot change.
+    // All joints rotate about y, so the tree cannot change the balls' relative velocity along y.
     const Vec3 rest = c.after - dot(c.after, kY) * kY;
     worst = std::max(worst, norm(rest));
     momentum = std::max({momentum, norm(c.momentum_after.m - c.momentum_before.m),
@@ -191,7 +192,7 @@ TEST(SelfCollision, FrictionBetweenTwoLinksStopsTheirSliding) {
   EXPECT_LT(momentum, 1e-12);
 }
 
-// --- arms ----------------------------------------------------------------------------------------
+// --- arms
 
 TEST(SelfCollision, AnArmThatFallsOnItsFirstLinkRestsThere) {
   for (const double rate : kRates) {
@@ -210,7 +211,7 @@ TEST(SelfCollision, AnArmThatFallsOnItsFirstLinkRestsThere) {
     EXPECT_LT(deepest, 5e-4) << rate;
     EXPECT_NEAR(gap(world, arm), 0.0, 2e-4) << rate;
     EXPECT_LT(fastest(world, arm.id), 1e-3) << rate;
-    EXPECT_LT(grown, 0.02) << rate;  // explicit forces of velocities; of 4 J
+    EXPECT_LT(grown, 0.02) << rate;  // explicit velocity-dependent forces; of 4 J
     std::vector<ContactPoint> points;
     world.contacts_of(arm.arm, points);
     double force = 0.0;
@@ -218,7 +219,7 @@ TEST(SelfCollision, AnArmThatFallsOnItsFirstLinkRestsThere) {
       EXPECT_EQ(p.other, arm.table_collider);
       force += p.normal_impulse * rate;
     }
-    // By the lever: the weight halfway between joint and tip.
+    // The lever: the weight acts halfway between joint and tip.
     EXPECT_NEAR(force, 0.5 * 9.81, 0.05) << rate;
   }
 }
@@ -265,7 +266,7 @@ TEST(SelfCollision, FiltersAndSensorsAreAsElsewhere) {
   EXPECT_EQ(hits, 0);
   (void)sensor;
 
-  // A filter that is set later ends the contact; back, it begins again.
+  // A filter that is set later ends the contact. With the old filter, it begins again.
   const Folded c = add_folded(unfiltered, kRough);
   for (int i = 0; i < 2000; ++i) must(unfiltered.step(0.001));
   EXPECT_NEAR(gap(unfiltered, c), 0.0, 2e-4);
@@ -279,10 +280,10 @@ TEST(SelfCollision, FiltersAndSensorsAreAsElsewhere) {
   EXPECT_EQ(begins(unfiltered), 1);
 }
 
-// --- neighbours ----------------------------------------------------------------------------------
+// --- neighbours
 
-// Large balls about every joint. Links of a chain meet those beyond the next; a link that is fixed
-// to another counts as that one, and joints at one point as one.
+// Large balls about every joint. Links of a chain collide with those beyond the next link. A link
+// fixed to another counts as part of it, and joints at one point count as one.
 TEST(SelfCollision, NeighboursNeverMeetHoweverTheyOverlap) {
   struct Chain {
     const char* name;
@@ -319,7 +320,7 @@ TEST(SelfCollision, NeighboursNeverMeetHoweverTheyOverlap) {
        {{0, 2}, {0, 3}, {1, 3}}},
   };
   for (const Chain& chain : chains) {
-    for (const bool box_beside : {false, true}) {  // with one, there is a broad phase
+    for (const bool box_beside : {false, true}) {  // with it, the broad phase runs
       SCOPED_TRACE(chain.name);
       World world({.gravity = {}});
       const ArticulationId id = must(world.create_articulation({model_of(chain.links), true}));

@@ -1,5 +1,5 @@
-// Rays, touching, nearest points and first impacts of every shape, against marching along the
-// signed distance, against all parts one by one, and against fine samples.
+// Ray casts, overlap, nearest points and first impacts of every shape, against ray marching along
+// the signed distance, against brute force over all parts, and against fine samples.
 #include "collide/shape_query.h"
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ Vec3 at(const Ray& ray, double distance) {
   return ray.origin + distance * ray.direction;
 }
 
-// By steps of the distance that there is; negative if it misses.
+// Ray marching with steps of the current distance; negative on a miss.
 double marched(const Geometry& g, const Ray& ray, double limit) {
   double t = 0.0;
   for (int i = 0; i < 20000 && t <= limit; ++i) {
@@ -49,7 +49,7 @@ double marched(const Geometry& g, const Ray& ray, double limit) {
   return -1.0;
 }
 
-// --- rays ----------------------------------------------------------------------------------------
+// --- rays
 
 TEST(Ray, EntersEachSolidWhereMarchingDoes) {
   Random random(601);
@@ -64,14 +64,14 @@ TEST(Ray, EntersEachSolidWhereMarchingDoes) {
       const auto hit = cast(solid.geometry, ray, 6.0);
       const double truth = marched(solid.geometry, ray, 6.0);
       if (!hit) {
-        // Marching takes what it passes within 1e-9 for a hit.
+        // Marching counts a pass within 1e-9 as a hit.
         EXPECT_LT(truth, 0.0) << "kind " << static_cast<int>(kind);
         ++misses;
         continue;
       }
       ++hits;
       ASSERT_GE(truth, 0.0) << "kind " << static_cast<int>(kind) << " at " << hit->distance;
-      // A ray that arrives flat is within 1e-9 of the surface long before.
+      // A ray at a grazing angle is within 1e-9 of the surface long before it hits.
       const double flat = std::max(1e-3, -dot(hit->normal, ray.direction));
       worst = std::max(worst, std::fabs(hit->distance - truth) * flat);
       if (hit->distance == 0.0) continue;
@@ -91,7 +91,7 @@ TEST(Ray, EntersEachSolidWhereMarchingDoes) {
   }
 }
 
-// Straight through the middle along and beside the axes, flat on faces, along a side, at a rim.
+// Along and beside the axes through the centre, along faces, along a side, at a rim.
 TEST(Ray, IsRightWhereFormulasHaveNoSlope) {
   const Solid cone(Cone{0.5, 1.0}), cylinder(Cylinder{0.5, 1.0}), capsule(Capsule{0.5, 1.0}),
       box(Box{{0.5, 0.5, 1.0}});
@@ -117,10 +117,10 @@ TEST(Ray, IsRightWhereFormulasHaveNoSlope) {
   const Vec3 low = Vec3{0.5, 0, -1.0} - 3.0 * along;
   EXPECT_TRUE(cast(cone.geometry, {low - 1e-6 * out, along}, 10));
   EXPECT_FALSE(cast(cone.geometry, {low + 1e-6 * out, along}, 10));
-  // The mirrored nappe above the apex is no part of it.
+  // The mirrored nappe above the apex does not belong to the cone.
   EXPECT_FALSE(cast(cone.geometry, {{5, 0, 2.0}, {-1, 0, 0}}, 10));
   EXPECT_FALSE(cast(cone.geometry, {{0.2, 0, 5}, {0, 0.6, 0.8}}, 10));
-  // Flat on a face counts from a hair's breadth inside.
+  // A ray along a face hits if it is slightly inside.
   EXPECT_TRUE(cast(box.geometry, {{-5, 0, 1.0 - 1e-12}, {1, 0, 0}}, 10));
   EXPECT_FALSE(cast(box.geometry, {{-5, 0, 1.0 + 1e-12}, {1, 0, 0}}, 10));
 }
@@ -155,7 +155,7 @@ TEST(Ray, FromFarAwayHitsASmallSphereAsFromNearBy) {
   }
 }
 
-// Every triangle, by Moeller and Trumbore's formula.
+// Brute force over all triangles, by the formula of Moeller and Trumbore.
 struct Brute {
   double distance = kInfinite;
   std::uint32_t triangle = 0;
@@ -182,7 +182,7 @@ std::vector<double> random_heights(Random& random, std::size_t count, double hig
   return heights;
 }
 
-// A lumpy mesh, closed and facing outwards.
+// A bumpy mesh, closed and with outward normals.
 TriangleMesh lumpy_mesh(Random& random, bool two_sided) {
   MeshPoints points = sphere_mesh(1.0, 2);
   for (Vec3& v : points.vertices) v = random.uniform(0.7, 1.2) * v;
@@ -255,7 +255,7 @@ TEST(Ray, MeetsAHeightFieldWhereATryOfEveryTriangleDoes) {
   expect_as_brute_force(random, collide::make_geometry(field), ids, {3.0, 2.24, 0.5}, 3.0, 80);
 }
 
-// Down at corners and along edges of a plane of triangles of any shape: nothing falls through.
+// Downwards at vertices and along edges of a plane of arbitrary triangles: no ray passes through.
 TEST(Ray, NeverPassesBetweenNeighbours) {
   Random random(605);
   const MeshPoints points = random_plane(random, 12, 3.0);
@@ -313,9 +313,10 @@ TEST(Ray, MeetsTheFirstPartOfACompound) {
   EXPECT_GE(hits, 50);
 }
 
-// --- parts, one by one ---------------------------------------------------------------------------
+// --- brute force over parts
 
-// f(part, pose, number) of any shape: of surfaces their triangles.
+// Calls f(part, pose, number) for each part of any shape; the parts of surfaces are their
+// triangles.
 template <class F>
 void each_part(const Geometry& g, const SE3& T, std::span<const std::uint32_t> ids, const F& f) {
   if (g.kind == Kind::compound) {
@@ -333,7 +334,7 @@ void each_part(const Geometry& g, const SE3& T, std::span<const std::uint32_t> i
   }
 }
 
-// The least separation of all pairs of parts.
+// The smallest separation of all pairs of parts.
 double least_separation(const Geometry& a, const SE3& Ta, const Geometry& b, const SE3& Tb,
                         std::span<const std::uint32_t> ids) {
   double least = kInfinite;
@@ -346,7 +347,7 @@ double least_separation(const Geometry& a, const SE3& Ta, const Geometry& b, con
   return least;
 }
 
-// Something of each kind that has parts, and all of its triangles.
+// One shape of each kind that has parts, and all its triangles.
 struct Parted {
   std::string name;
   Shape shape;
@@ -393,7 +394,7 @@ TEST(Nearest, IsThatOfAllPartsTriedOneByOne) {
       if (!near) continue;
       (truth > 0.0 ? apart : overlapping) += 1;
       EXPECT_NEAR(found.points.distance, truth, 1e-9 * (1.0 + std::fabs(truth))) << parted.name;
-      // The parts that are named are the ones.
+      // The reported parts are the closest ones.
       each_part(a, Ta, {}, [&](const Geometry& pa, const SE3& Tpa, std::uint32_t ia) {
         each_part(b, Tb, parted.ids, [&](const Geometry& pb, const SE3& Tpb, std::uint32_t ib) {
           if (ia != found.part_a || ib != found.part_b) return;
@@ -411,8 +412,8 @@ TEST(Nearest, IsThatOfAllPartsTriedOneByOne) {
   }
 }
 
-// Balls, boxes and compounds flung at each, turning at up to 100 rad/s: no sample touches before,
-// and at the time told the two are as near as the tolerance.
+// Balls, boxes and compounds fly at each shape, spinning at up to 100 rad/s. No sample touches
+// before the reported time, and at that time the separation is within the tolerance.
 TEST(FirstImpact, IsThatOfFineSamplesOfAllParts) {
   Random random(608);
   for (const Parted& parted : parted_shapes(random)) {
@@ -463,7 +464,7 @@ TEST(FirstImpact, IsThatOfFineSamplesOfAllParts) {
   }
 }
 
-// A skin stops what comes from in front and nothing else; a sheet both.
+// A one-sided surface stops bodies from in front only; a two-sided one from both sides.
 TEST(FirstImpact, OneSidedTrianglesLetPassFromBehind) {
   const std::vector<Vec3> vertices{{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}};
   const std::vector<TriangleMesh::Triangle> triangles{{0, 1, 2}};
@@ -489,7 +490,7 @@ TEST(FirstImpact, OneSidedTrianglesLetPassFromBehind) {
   }
 }
 
-// Rolling over the inner edges of a mesh it meets nothing, pressed in it does.
+// A ball that rolls over the internal edges of a mesh has no impact; one that is pressed in has.
 TEST(FirstImpact, FromATargetBelowWhatItIsFeelsNoInnerEdges) {
   Random random(609);
   const Solid ball(Sphere{0.1});

@@ -1,5 +1,5 @@
-// Random shapes, and what is true of a pair of them, found the slow way: by support functions
-// written here and a search over directions.
+// Random shapes, and the exact separation of a pair by brute force: support functions written here
+// and a search over directions.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace vp::test {
 using collide::Geometry;
 using collide::Kind;
 
-// Its geometry points into the shape.
+// A shape with its geometry. The geometry points into the shape.
 struct Solid {
   Shape shape;
   Geometry geometry;
@@ -71,7 +71,7 @@ inline Solid random_solid(Random& random, Kind kind) {
   return Solid(Box{{x, y, z}});
 }
 
-// The farthest point of a shape in the direction n of its own frame.
+// The support point of a shape in the direction n, both in the shape's frame.
 inline Vec3 local_support(const Geometry& g, const Vec3& n) {
   const double across = std::sqrt(n.x * n.x + n.y * n.y);
   const Vec3 rim = across > 0.0 ? (g.radius / across) * Vec3{n.x, n.y, 0} : Vec3{};
@@ -100,21 +100,22 @@ inline Vec3 support(const Geometry& g, const SE3& T, const Vec3& n) {
   return T * local_support(g, T.unrotate(n));
 }
 
-// Gap between the shapes' projections on n, n from a to b.
+// Separation of the shapes' projections on n, with n from a to b.
 inline double separation_along(const Geometry& a, const SE3& Ta, const Geometry& b, const SE3& Tb,
                                const Vec3& n) {
   return dot(n, support(b, Tb, -n) - support(a, Ta, n));
 }
 
-// The separation of two convex shapes is the largest gap over all directions: hill climbing from
-// many starts, an independent route to distance and to penetration depth.
+// The separation of two convex shapes is the maximum of separation_along over all directions. Hill
+// climbing from many starts finds it, by a route independent of the distance and penetration
+// algorithms.
 inline double sampled_separation(Random& random, const Geometry& a, const SE3& Ta,
                                  const Geometry& b, const SE3& Tb) {
   double best = -1e30;
   for (int start = 0; start < 24; ++start) {
     Vec3 n = random.direction();
     double gap = separation_along(a, Ta, b, Tb, n);
-    // A step that gains doubles the reach, so that a long way along a ridge is not cut short.
+    // A successful step doubles the step size, so that the search follows long ridges.
     for (double size = 0.5; size > 1e-7;) {
       Vec3 m = n + size * random.in_cube(1.0);
       m = (1.0 / norm(m)) * m;

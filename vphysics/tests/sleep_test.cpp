@@ -1,4 +1,4 @@
-// What rests falls asleep, costs nothing, and wakes when it must.
+// Bodies at rest fall asleep, cost nothing, and wake when needed.
 #include <gtest/gtest.h>
 
 #include "joints_rig.h"
@@ -12,7 +12,7 @@ WorldDesc sleepy() {
   desc.sleep_after = 0.5;
   return desc;
 }
-constexpr double kHalf = 0.1;  // of the boxes' edges [m]
+constexpr double kHalf = 0.1;  // half edge of the boxes [m]
 
 std::vector<BodyId> add_tower(World& world, int height, const Vec3& at = {}) {
   std::vector<BodyId> tower;
@@ -32,7 +32,7 @@ bool none_asleep(const World& world, const std::vector<BodyId>& bodies) {
                       [&](BodyId body) { return world.is_asleep(body); });
 }
 
-// A tower on the ground, asleep.
+// A sleeping tower on the ground.
 struct Sleepers {
   World world{sleepy()};
   BodyId ground = add_ground(world, {});
@@ -63,7 +63,7 @@ TEST(Sleep, ComesAfterTheTimeThatItIsAskedFor) {
   EXPECT_TRUE(all_asleep(world, tower));
 }
 
-// Those that come to rest first wait for the last, and no longer.
+// Bodies that come to rest first wait for the last one, and no longer.
 TEST(Sleep, ComesToAllWhenTheLastHasRested) {
   for (const double height : {0.0, 0.02, 0.1, 0.3, 1.0}) {
     World world(sleepy());
@@ -80,7 +80,7 @@ TEST(Sleep, ComesToAllWhenTheLastHasRested) {
       }
       if (all_asleep(world, boxes)) slept = 0.001 * i;
     }
-    // It is 0.500 s.
+    // Measured: 0.500 s.
     EXPECT_NEAR(slept - last_fast, sleepy().sleep_after, 0.003) << "from " << height;
     must(world.wake(boxes[0]));
     EXPECT_TRUE(none_asleep(world, boxes));
@@ -89,7 +89,8 @@ TEST(Sleep, ComesToAllWhenTheLastHasRested) {
   }
 }
 
-// Of many, each comes to rest when it does: balls that spin on a point because that is braked.
+// Many bodies come to rest at different times, among them balls that spin on a point, which
+// spinning friction stops.
 class SleepIn : public testing::TestWithParam<std::uint64_t> {};
 INSTANTIATE_TEST_SUITE_P(Heaps, SleepIn, testing::Range<std::uint64_t>(71, 75));
 TEST_P(SleepIn, AWholePitComesToAll) {
@@ -118,7 +119,7 @@ TEST_P(SleepIn, AWholePitComesToAll) {
   EXPECT_GT(slept, 1.0);
   must(world.wake(bodies[0]));
   must(world.step(0.004));
-  EXPECT_GT(world.counters().awake, 10u);  // with the heap that it lies in
+  EXPECT_GT(world.counters().awake, 10u);  // with the heap around it
 }
 
 TEST(Sleep, MovesNothingAndLooksAtNothing) {
@@ -147,9 +148,9 @@ TEST(Sleep, GoesOnWhereItStopped) {
   for (int i = 0; i < 100; ++i) {
     must(s.world.step(0.001));
     fastest = std::max(fastest, norm(s.world.velocity(s.tower.back()).v));
-    ASSERT_TRUE(s.world.contact_events().empty());  // they have touched all the while
+    ASSERT_TRUE(s.world.contact_events().empty());  // they were in contact all the time
   }
-  // With its load it does not even twitch: 0.02 mm/s; from nothing it would sink.
+  // Warm starting keeps it almost still: 0.02 mm/s. Without, it would sink.
   EXPECT_LT(fastest, 1e-4);
   EXPECT_LT(norm(s.world.pose(s.tower.back()).position() - top.position()), 1e-6);
 }
@@ -166,12 +167,12 @@ TEST(Sleep, EndsForAllThatHangTogetherAndForNoOther) {
   add_dynamic(world, ball);
   int steps = 0;
   while (all_asleep(world, near) && ++steps < 1000) must(world.step(0.001));
-  // 0.35 m at 4 m/s.
+  // A distance of 0.35 m at 4 m/s.
   EXPECT_NEAR(steps, 88, 4);
   EXPECT_TRUE(none_asleep(world, near));
   EXPECT_TRUE(all_asleep(world, far));
   run(world, 0.1);
-  EXPECT_GT(world.pose(near[1]).position().x, 1e-3);  // the ball has pushed it
+  EXPECT_GT(world.pose(near[1]).position().x, 1e-3);  // the ball has moved it
 }
 
 TEST(Sleep, EndsByTheCallsThatChangeABody) {
@@ -292,7 +293,7 @@ TEST(Sleep, LeavesSensorsAsTheyAre) {
   }));
 }
 
-// Restored among the sleepers, the same bits.
+// A snapshot restored while bodies sleep gives the same bits.
 TEST(Sleep, IsPartOfTheState) {
   const auto make = [] {
     World world(sleepy());
@@ -305,7 +306,7 @@ TEST(Sleep, IsPartOfTheState) {
     return world;
   };
   World a = make(), b = make();
-  run(a, 1.1);  // the ball is about to hit those that sleep
+  run(a, 1.1);  // the ball is about to hit sleeping bodies
   EXPECT_EQ(a.counters().awake, 1u);
   std::vector<std::byte> bytes;
   a.snapshot(bytes);
@@ -318,16 +319,16 @@ TEST(Sleep, IsPartOfTheState) {
     ASSERT_EQ(a.state_hash(), b.state_hash()) << "step " << i;
     most = std::max(most, a.counters().awake);
   }
-  EXPECT_EQ(most, 5u);     // with the tower that it hit
-  must(b.restore(bytes));  // back into a sleep that it had left
+  EXPECT_EQ(most, 5u);     // with the tower that the ball hits
+  must(b.restore(bytes));  // bodies that have woken sleep again
   run(b, 0.5);
   World c = make();
   run(c, 1.6);
   EXPECT_EQ(b.state_hash(), c.state_hash());
 }
 
-// What is made or put beside those that sleep, and what comes of it, is the same whether anything
-// else is awake or not.
+// Objects that are created or moved beside sleeping bodies have the same effects whether any other
+// body is awake or not.
 struct News {
   std::vector<ContactEvent> events;
   std::vector<SE3> poses;
@@ -344,7 +345,7 @@ News after_change(bool with_ball, const F& change, double time = 0.1) {
   if (with_ball) {
     add_dynamic(world, {.shape = Sphere{0.1}, .pose = far});
   } else {
-    add_fixed(world, Sphere{0.1}, {}, far);  // so that all ids are the same
+    add_fixed(world, Sphere{0.1}, {}, far);  // for the same ids
   }
   must(world.step(0.001));
   EXPECT_EQ(world.counters().awake, with_ball ? 1u : 0u);
@@ -372,7 +373,7 @@ News same_with_and_without_others(const F& change) {
   }
   return alone;
 }
-// Where the upper box is: it reaches to 0.1 m to all sides of that.
+// The centre of the upper box, which extends by 0.1 m to each side.
 constexpr Vec3 kUpper{0, 0, 3 * kHalf};
 
 TEST(Sleep, EndsByWhatIsMadeInItsPlace) {
@@ -429,11 +430,11 @@ TEST(Sleep, IsSeenBySensorsMadeOrPutThere) {
     ASSERT_EQ(news.events.size(), 1u);
     EXPECT_EQ(news.events[0].kind, ContactEvent::Kind::begin);
     EXPECT_TRUE(news.events[0].sensor);
-    EXPECT_EQ(news.narrow_phase_pairs, 0u);  // not again and again
+    EXPECT_EQ(news.narrow_phase_pairs, 0u);  // not again in each step
   }
 }
 
-// A link is no body that sleeps, nor one that the sub-steps move.
+// A link neither sleeps nor moves in sub-steps.
 TEST(Sleep, EndsBeforeALinkArrives) {
   const News news = same_with_and_without_others([](World& world, BodyId) {
     LinkSpec slider;
@@ -450,7 +451,7 @@ TEST(Sleep, EndsBeforeALinkArrives) {
   EXPECT_LT(news.poses[1].position().x, -0.02);
 }
 
-// Also when a sensor has been made since all are asleep.
+// Also when a sensor was created after all bodies fell asleep.
 TEST(Sleep, IsTheSameAfterARestore) {
   const auto make = [] {
     World world(sleepy());

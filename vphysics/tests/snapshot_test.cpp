@@ -1,4 +1,4 @@
-// Snapshot, restore, and the same bits everywhere.
+// Snapshot, restore, and identical bits on every machine.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kDt = 0.001;
 
-// A scene with everything in it: rods driven at random, a fast ball, boxes, capsules, a turning
+// A scene with many features: randomly driven rods, a fast ball, boxes, capsules, a rotating
 // kinematic plate, a sensor.
 struct Scene {
   World world;
@@ -59,8 +59,8 @@ void play(Scene& s, Random& random, int ticks) {
   }
 }
 
-// Two seconds of the scene. The constant is the same for g++ and clang++, at -O0 and -O3: a change
-// of it is a change of results and belongs into the changelog.
+// Two seconds of the scene. The constant is the same for g++ and clang++, at -O0 and -O3. A change
+// of it is a change of results and belongs in the changelog.
 TEST(Determinism, GoldenHashOfAScene) {
   Scene s = make_scene();
   Random random(41);
@@ -84,7 +84,7 @@ TEST(Snapshot, RestoredStepsToTheSameBits) {
   play(s, random, 300);
   std::vector<std::byte> bytes;
   s.world.snapshot(bytes);
-  Scene other = make_scene();  // never stepped
+  Scene other = make_scene();  // without any steps
   must(other.world.restore(bytes));
   EXPECT_EQ(other.world.state_hash(), s.world.state_hash());
   Random r1 = random, r2 = random;
@@ -93,7 +93,7 @@ TEST(Snapshot, RestoredStepsToTheSameBits) {
   EXPECT_EQ(other.world.state_hash(), s.world.state_hash());
 }
 
-// Roll back one tick every tick: nothing outside the snapshot may matter.
+// Rolls back one tick every tick: state outside the snapshot must not matter.
 TEST(Snapshot, RollingBackEveryTickChangesNothing) {
   Scene straight = make_scene(), rolled = make_scene();
   Random r1(44), r2(44);
@@ -137,9 +137,9 @@ TEST(Restore, RefusesEveryTruncationAndEveryFlippedByte) {
   must(s.world.restore(bytes));
 }
 
-// What the engine writes it also reads, also after numbers at the end of the range it accepts: warm
-// impulses of a heavy body that strikes at 1e9 m/s, and a joint that leaves the range within a
-// step.
+// The engine reads every snapshot that it writes, also with numbers at the ends of the valid range:
+// warm-start impulses of a heavy body that hits at 1e9 m/s, and a joint that leaves the range
+// within a step.
 TEST(Restore, TakesEverySnapshotThatWasWritten) {
   const auto restores = [](World& world) {
     std::vector<std::byte> bytes;
@@ -166,9 +166,9 @@ TEST(Restore, TakesEverySnapshotThatWasWritten) {
   }
 }
 
-// Calls may give velocities beyond the range, which the next step stops: of a small body that is
-// struck hard, off its centre, of one that is then destroyed, of a link, of what hangs on a joint,
-// of rates that leave the range when they are turned into the world's axes.
+// Calls may give velocities beyond the valid range, which the next step stops: of a small body with
+// a large impulse off its centre, of a body that is then destroyed, of a link, of a jointed body,
+// and of rates that leave the range in the world's axes.
 TEST(Restore, TakesASnapshotBetweenACallAndTheStepThatStopsWhatItMoved) {
   const JointKind kinds[] = {Hinge{}, Gear{}, Spring{}, Distance{0.1, 0.2}, SixDof{}};
   for (const double mass : {1e-15, 1e-6, 1.0}) {
@@ -177,7 +177,7 @@ TEST(Restore, TakesASnapshotBetweenACallAndTheStepThatStopsWhatItMoved) {
     desc.inertia = Inertia(mass, mass * Vec3{1e-12, 2e-12, 2e-12});
     if (mass == 1.0) desc.inertia = Inertia(mass, Vec3{1, 2, 2});
     const BodyId body = must(world.create_body(desc)), gone = must(world.create_body(desc));
-    // Not millions of times as far as it is large: joints are solved in single precision.
+    // Not millions of times its size away: joints are solved in single precision.
     const double apart = mass == 1.0 ? 1.0 : 1e-3;
     desc.T_world_body = SE3(Exp(Vec3{0.5, 0.6, 0.7}), apart * Vec3{1, 2, 3});
     const BodyId turned = must(world.create_body(desc));
@@ -207,7 +207,8 @@ TEST(Restore, TakesASnapshotBetweenACallAndTheStepThatStopsWhatItMoved) {
       joint.kind = kind;
       (void)must(world.create_joint(body, turned, joint));
     }
-    // As hard as is allowed, off the centre by so much that it also turns as fast as is allowed.
+    // The largest valid impulse, off the centre by so much that the body also spins as fast as is
+    // valid.
     const double off = mass == 1.0 ? 0.5 : 1e-12;
     const auto hit = [&](BodyId id, double speed) {
       const Vec3 origin = world.pose(id).position();
@@ -235,8 +236,8 @@ TEST(Restore, TakesASnapshotBetweenACallAndTheStepThatStopsWhatItMoved) {
   }
 }
 
-// What is derived and kept over a restore must follow what goes back: here the wall, which a swept
-// ball has to find where it was.
+// Derived data that outlasts a restore must match the restored state: a continuous ball must find
+// the wall where it was.
 TEST(Restore, PutsBackWhatIsFixed) {
   const auto make = [](World& world) {
     const Material m{0.2, 0.6, 0.0};

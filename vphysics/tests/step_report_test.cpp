@@ -1,4 +1,4 @@
-// What a step tells of itself: its stages, its counters, and each limit that it has reached.
+// What a step reports: its stages, its counters, and each limit that it reached.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace vp::test {
 namespace {
 
-// Writes down "+stage" and "-stage".
+// Records "+stage" and "-stage".
 class Diary final : public StageObserver {
  public:
   void begin(Stage stage) override { lines.push_back(std::string("+") + name_of(stage)); }
@@ -120,7 +120,7 @@ TEST(StageClock, AddsUpWhatItsClockSays) {
   EXPECT_EQ(clock.total(Stage::contact_slots), 0);
 }
 
-// Two layers of three boxes at rest: six pairs that touch, with four points each.
+// Two layers of three boxes at rest: six pairs in contact, with four points each.
 TEST(Counters, OfBoxesAtRestAreThoseOfASketch) {
   World world;
   add_ground(world, {});
@@ -142,7 +142,7 @@ TEST(Counters, OfBoxesAtRestAreThoseOfASketch) {
   EXPECT_EQ(c.events, world.contact_events().size());
 }
 
-// --- limits --------------------------------------------------------------------------------------
+// --- limits
 
 std::vector<Limit> reached_in(const StepStatus& status) {
   std::vector<Limit> out;
@@ -170,7 +170,8 @@ TEST(Limits, OfADayWithoutTroubleAreNone) {
   EXPECT_TRUE(reached_by(pile.world, 500, 0.004).empty());
 }
 
-// A row of touching balls in the order that the blow runs against: each round takes it one further.
+// A row of touching balls, in the reverse order of the impact's propagation: each iteration
+// advances it by one ball.
 TEST(Limits, BouncesThroughARowOfManyBallsAreMoreThanOneSubStepHas) {
   WorldDesc desc;
   desc.gravity = {};
@@ -192,12 +193,12 @@ TEST(Limits, BouncesThroughARowOfManyBallsAreMoreThanOneSubStepHas) {
   }
 }
 
-// A disc that lies in a bowl of so many slopes touches them all.
+// A disc in a bowl of the given number of slopes touches all of them.
 TEST(Limits, ManifoldsAreToldApartUpToTwelveSlopes) {
   for (const int fan : {8, 24}) {
     std::vector<Vec3> v{{0, 0, 0}};
     std::vector<TriangleMesh::Triangle> triangles;
-    for (int i = 0; i <= fan; ++i) {  // a flat pyramid upside down: a bowl of `fan` slopes
+    for (int i = 0; i <= fan; ++i) {  // a flat pyramid upside down with `fan` slopes
       const auto at = sin_cos(2.0 * kPi * i / fan);
       v.push_back({at.cos, at.sin, 0.5});
     }
@@ -237,8 +238,8 @@ TEST(Limits, ColoursAreSharedFromTheFortiethNeighbourOn) {
   }
 }
 
-// A cylinder deep inside another along the same axis: nearly every way out is as long. That of a
-// box in a box is known exactly.
+// A cylinder deep inside another on the same axis: nearly all directions have the same depth. For a
+// box in a box, the depth is exact.
 TEST(Limits, DistancesAreToldWhereTheSearchIsLeftUnfinished) {
   for (const bool round : {false, true}) {
     Random random(3);

@@ -1,4 +1,4 @@
-// What touches meshes, height fields and compounds, and where.
+// Contacts with meshes, height fields and compounds.
 #include <gtest/gtest.h>
 
 #include "collide/bounds.h"
@@ -23,7 +23,7 @@ ConvexHull rock(Random& random, double size, int points) {
   return ConvexHull::of(p).value();
 }
 
-// One of each convex kind, about half a metre across.
+// One shape of each convex kind, about half a metre in size.
 std::vector<Shape> convex_shapes() {
   Random random(31);
   return {Sphere{0.25},    Box{{0.3, 0.2, 0.1}},   Capsule{0.1, 0.2},   Cylinder{0.2, 0.15},
@@ -53,14 +53,14 @@ Found find(const Shape& a, const SE3& T_a, const Shape& b, const SE3& T_b, doubl
   return found;
 }
 
-// The lowest point of a shape, as height over z = 0.
+// The height of a shape's lowest point above z = 0.
 double height_of(const Shape& shape, const SE3& T) {
   const Geometry g = collide::make_geometry(shape), plane = collide::make_geometry(HalfSpace{});
   collide::PairCache cache;
   return closest_points(g, T, plane, SE3{}, cache).distance;
 }
 
-// Puts the shape at a random turn so that its lowest point is at the height.
+// Places the shape with a random rotation and its lowest point at the given height.
 SE3 placed(Random& random, const Shape& shape, double height, double from, double to, bool flat) {
   const Mat3 R = flat ? Exp(random.uniform(0, 6) * Vec3{0, 0, 1}).matrix() : random.rotation();
   const double x = random.uniform(from, to), y = random.uniform(from, to);
@@ -77,8 +77,8 @@ void expect_of_plane(const Found& found, const Vec3& normal, double height, doub
   EXPECT_NEAR(found.deepest(), height, 2e-6);
 }
 
-// The ghost test: on a plane, however it is cut into triangles, there is no normal but the plane's,
-// and the deepest point is as deep as in a half-space.
+// Ghost contacts: on a plane with any triangulation, every normal is the plane's, and the deepest
+// point is as deep as in a half-space.
 TEST(SurfaceContact, OfAPlaneOfRandomTrianglesHasNoNormalButThePlanes) {
   Random random(32);
   const TriangleMesh mesh = random_plane(random, 25, 5.0).made();
@@ -94,7 +94,7 @@ TEST(SurfaceContact, OfAPlaneOfRandomTrianglesHasNoNormalButThePlanes) {
   }
 }
 
-// The same while sliding: a box and a ball that touch never feel an edge.
+// The same while sliding: internal edges never affect a box or a ball in contact.
 TEST(SurfaceContact, OfABoxAndABallThatSlideOverAPlaneNeverFeelsAnEdge) {
   Random random(33);
   const TriangleMesh mesh = random_plane(random, 40, 5.0).made();
@@ -130,7 +130,7 @@ TEST(SurfaceContact, OfAFlatHeightFieldHasNoNormalButThePlanesAndNoneOverHoles) 
   }
 }
 
-// A flat box keeps its support: its four corners, wherever they lie over the triangles.
+// A flat box keeps its four corners as support, on any triangles.
 TEST(SurfaceContact, OfABoxThatLiesFlatSpansItsWholeFace) {
   Random random(35);
   const TriangleMesh mesh = random_plane(random, 25, 5.0).made();
@@ -142,7 +142,7 @@ TEST(SurfaceContact, OfABoxThatLiesFlatSpansItsWholeFace) {
     ASSERT_EQ(found.manifolds.size(), 1u);
     const collide::Manifold& m = found.manifolds[0].manifold;
     ASSERT_EQ(m.count, 4);
-    // Twice the area of the hull of four points is the largest of the products of diagonals.
+    // Twice the area of the hull of four points is the largest product of diagonals.
     double most = 0.0;
     for (int a = 0; a < 3; ++a) {
       const int others[3][4] = {{0, 1, 2, 3}, {0, 2, 1, 3}, {0, 3, 1, 2}};
@@ -183,7 +183,8 @@ TEST(SurfaceContact, OfABallIsAsDeepAsTheNearestOfAllTriangles) {
       for (int i = 0; i < 3; ++i) centre[i] = random.uniform(b.lower[i] - 0.3, b.upper[i] + 0.3);
       const double radius = 0.2, distance = distance_to_mesh(surface, n, centre);
       const Found found = find(mesh, SE3{}, Sphere{radius}, SE3(centre), 0.02);
-      // From inside nothing is met but, of a ground, its border.
+      // Inside a closed mesh there is no contact; on other surfaces there may be one with the
+      // border only.
       const bool inside = mesh.closed() ? norm(centre) < 0.5 : false;
       if (inside) {
         EXPECT_TRUE(found.manifolds.empty());
@@ -208,8 +209,8 @@ TEST(SurfaceContact, OfABallOutsideAClosedMeshMissesNothing) {
     const auto n = static_cast<std::uint32_t>(mesh.triangles().size());
     const Surface surface(*mesh.data(), mesh.scale());
     for (int k = 0; k < 2000; ++k) {
-      // Outside by construction: a little beyond a random point of a triangle, along a direction
-      // that leaves it.
+      // Outside by construction: slightly beyond a random point of a triangle, along a direction
+      // that leaves the surface.
       const collide::SurfaceTriangle t =
           surface.triangle(static_cast<std::uint32_t>(random.word() % n));
       double u = random.uniform(0, 1), v = random.uniform(0, 1);
@@ -226,7 +227,7 @@ TEST(SurfaceContact, OfABallOutsideAClosedMeshMissesNothing) {
   }
 }
 
-// A box given as a mesh and as a box stop convex shapes alike: with the same normal and depth.
+// A box as a mesh and a box as a primitive give the same normal and depth against convex shapes.
 TEST(SurfaceContact, OfABoxMeshIsThatOfTheBox) {
   Random random(38);
   const Vec3 half{0.7, 0.5, 0.9};
@@ -243,7 +244,7 @@ TEST(SurfaceContact, OfABoxMeshIsThatOfTheBox) {
       const SE3 T(R, far.position() - (apart.distance - gap) * apart.normal);
       const collide::ClosestPoints truth = closest_points(box, SE3{}, g, T, cache);
       const Found found = find(mesh, SE3{}, shape, T, 0.01);
-      // A face's normal may be taken for one that is as good within 5%.
+      // A face normal is accepted if it is as good within 5%.
       const double allowance = 0.05 * std::fabs(truth.distance) + 1e-4;
       bool told = false;
       for (const SubManifold& s : found.manifolds) {
@@ -284,7 +285,7 @@ TEST(SurfaceContact, IsMadeFromTheFrontAloneUnlessTwoSided) {
   }
 }
 
-// In a valley a ball touches both sides, on a ridge the ridge.
+// In a valley a ball touches both sides, on a ridge only the ridge.
 TEST(SurfaceContact, InAValleyAreTwoAndOnARidgeOne) {
   const std::vector<TriangleMesh::Triangle> triangles{{0, 1, 2}, {0, 2, 3}, {1, 4, 5}, {1, 5, 2}};
   const auto bent = [&](double z) {
@@ -307,8 +308,8 @@ TEST(SurfaceContact, InAValleyAreTwoAndOnARidgeOne) {
   EXPECT_NEAR(ridge.manifolds[0].manifold.normal.x, 0.01 / std::hypot(0.01, radius), 1e-12);
 }
 
-// A box pushed along the ground against a wall of the same mesh feels the ground and the wall, and
-// not the edge between them.
+// A box pushed along the ground against a wall of the same mesh has contacts with the ground and
+// the wall, but not with the edge between them.
 TEST(SurfaceContact, InACornerAreTheFacesNormalsAlone) {
   Random random(39);
   MeshPoints m = random_plane(random, 20, 4.0);

@@ -1,4 +1,4 @@
-// Seconds of bodies on hills: in Release alone.
+// Several seconds of bodies on hills: Release builds only.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -42,8 +42,8 @@ const Rider kRiders[] = {{Box{{0.3, 0.2, 0.1}}, false},
                          {Sphere{0.1}, false},
                          {Sphere{0.1}, true}};
 
-// The energy of what slides over hills without friction, and of what rolls over them, does not
-// grow: no edge gives a kick.
+// The energy of bodies that slide over hills without friction, or roll over them, does not grow: no
+// edge adds energy.
 TEST(SurfaceWorld, HillsGiveNoEnergy) {
   const Shape grounds[] = {hilly_field(), hilly_mesh()};
   double most = 0.0, least = 0.0;
@@ -77,7 +77,7 @@ TEST(SurfaceWorld, HillsGiveNoEnergy) {
   EXPECT_LT(least, -0.1);         // they moved
 }
 
-// Fifty bodies of every kind, poured on hills with walls around: none falls through.
+// Fifty bodies of every kind fall on hills within walls: none falls through.
 TEST(SurfaceWorld, APileOfFiftyMixedBodiesStaysAboveAHeightField) {
   Random random(73);
   World world;
@@ -112,13 +112,14 @@ TEST(SurfaceWorld, APileOfFiftyMixedBodiesStaysAboveAHeightField) {
       fastest = std::max(fastest, norm(world.velocity(body).v));
     }
   }
-  // A centre of mass is never nearer to the ground than half of the thinnest body, but for chords.
+  // The centre of mass is never closer to the ground than half the thinnest body, except where the
+  // ground is a chord.
   EXPECT_GT(lowest, 0.04) << lowest;
   EXPECT_LT(fastest, 3.0);
 }
 
 // After Box3D's trees: logs of hexagonal prisms, each thinner than the one before, fall over on
-// waves of 10 and 20 m.
+// waves of 10 and 20 m length.
 double wave(double x, double y) {
   return 0.4 * std::sin(0.2 * kPi * x) * std::sin(0.1 * kPi * y);
 }

@@ -1,4 +1,4 @@
-// Worlds with meshes and height fields: what slides, rolls, falls and is shot on them.
+// Worlds with meshes and height fields: bodies slide, roll, fall and are shot on them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -68,7 +68,7 @@ Glided glide(const Shape& ground, const Glider& glider, double dt, double fricti
   return slid;
 }
 
-// No ghost hits: not a trace of the edges, at any step.
+// No ghost collisions: internal edges have no effect at any step.
 TEST(SurfaceWorld, WhatSlidesOrRollsOverAPlaneOfTrianglesFeelsNothingButFriction) {
   const Shape grounds[] = {flat_mesh(), flat_field()};
   for (const Shape& ground : grounds) {
@@ -83,12 +83,12 @@ TEST(SurfaceWorld, WhatSlidesOrRollsOverAPlaneOfTrianglesFeelsNothingButFriction
         // Measured: 3e-14 without friction.
         EXPECT_LT(smooth.speed_off, 1e-12) << place();
         EXPECT_LT(smooth.sideways, 1e-12) << place();
-        // Measured: sliding 7e-3 at 1/60 s, where the load is still settling in the first step;
-        // rolling 2.3e-4 at 1/60 s.
+        // Measured: sliding 7e-3 at 1/60 s, where the contact force has not converged in the first
+        // step; rolling 2.3e-4 at 1/60 s.
         EXPECT_LT(rough.speed_off, glider.rolls ? 3e-4 : 0.5 * dt + 1.5e-3) << place();
         EXPECT_LT(rough.sideways, 1e-4) << place();  // 3.6e-5
         for (const Glided& slid : {smooth, rough}) {
-          EXPECT_LT(slid.height_off, 6e-5) << place();  // 4.9e-5 at 1/60 s: what carries it
+          EXPECT_LT(slid.height_off, 6e-5) << place();  // 4.9e-5 at 1/60 s, by the weight
           EXPECT_EQ(slid.begins, 1) << place();
           EXPECT_EQ(slid.others, 0) << place();
           EXPECT_EQ(slid.impacts, 0) << place();
@@ -98,8 +98,8 @@ TEST(SurfaceWorld, WhatSlidesOrRollsOverAPlaneOfTrianglesFeelsNothingButFriction
   }
 }
 
-// A ball shot at a surface from above, and again from wherever it bounced to: its centre is never
-// below. The ground under a point is found without the engine.
+// A ball is shot at a surface from above, and again from each place it bounced to. Its centre is
+// never below the surface. The height of the ground is computed without the engine.
 double height_over(const TriangleMesh& mesh, const Vec3& p) {
   double top = -1e9;
   for (const TriangleMesh::Triangle& t : mesh.triangles()) {
@@ -144,8 +144,8 @@ TEST(SurfaceWorld, AContinuousBallNeverGoesThroughAMeshOrAHeightField) {
   EXPECT_EQ(limited, 0);
 }
 
-// From inside a closed mesh that faces inwards nothing gets out, and into one that faces outwards
-// nothing.
+// A ball inside a closed mesh with inward normals stays inside. A ball outside one with outward
+// normals stays outside.
 TEST(SurfaceWorld, AContinuousBallStaysInACageAndOutOfACrate) {
   MeshPoints cage = box_mesh({0.5, 0.4, 0.3});
   for (TriangleMesh::Triangle& t : cage.triangles) std::swap(t[1], t[2]);
@@ -173,7 +173,7 @@ TEST(SurfaceWorld, AContinuousBallStaysInACageAndOutOfACrate) {
   EXPECT_GT(hits, 200);
 }
 
-// A turning paddle of triangles, kinematic, against balls that fly at it.
+// A rotating kinematic paddle of triangles against balls that fly at it.
 TEST(SurfaceWorld, AContinuousBallNeverGoesThroughATurningMesh) {
   Random random(76);
   MeshOptions sheet;
@@ -211,8 +211,8 @@ TEST(SurfaceWorld, AContinuousBallNeverGoesThroughATurningMesh) {
   EXPECT_GT(met, 60);
 }
 
-// A box at rest costs nothing, and one that moves looks at as many triangles as lie under it:
-// neither depends on how many there are.
+// A box at rest costs nothing, and a moving one processes only the triangles under it. Neither
+// depends on the number of triangles.
 TEST(SurfaceWorld, CostDoesNotDependOnTheNumberOfTriangles) {
   std::uint32_t most[2] = {};
   for (const int large : {0, 1}) {
@@ -278,10 +278,11 @@ TEST(SurfaceWorld, EventsAreOfThePairOfCollidersHoweverManyPlacesTouch) {
     EXPECT_EQ(events[0].kind, ContactEvent::Kind::begin);
     EXPECT_EQ(events[1].kind, ContactEvent::Kind::hit);
     EXPECT_EQ(events.size(), 2u) << continuous;
-    // It fell by 0.1 m, at 45 degrees to each face: each takes half of the momentum along it.
+    // It fell by 0.1 m, at 45 degrees to each face. Each face takes half of the momentum along its
+    // normal.
     const double speed = std::sqrt(2 * kFall * 0.1), mass = world.inertia(ball).mass();
     EXPECT_NEAR(events[1].approach_speed, speed / std::sqrt(2.0), 0.02) << continuous;
-    // The sub-stepped solver tells the load of its last sub-step, not the sum.
+    // In the sub-stepped solver, the event reports the impulse of the last sub-step, not the sum.
     if (continuous) {
       EXPECT_NEAR(events[1].impulse, std::sqrt(2.0) * mass * speed, 0.01 * mass * speed);
     }
@@ -305,7 +306,7 @@ TEST(SurfaceWorld, SensorsAndFiltersKnowMeshes) {
     sheet.shape = flat_mesh(20, 4.0);
     sheet.sensor = true;
     must(world.add_collider(holder, sheet));
-    sheet.sensor = false;  // and one that meets nobody
+    sheet.sensor = false;  // and one that collides with nothing
     sheet.filter = {2, 2};
     must(world.add_collider(holder, sheet));
     Part part{.shape = Sphere{0.1}, .pose = SE3(Vec3{2, 2, 0.5})};

@@ -1,4 +1,4 @@
-// Meshes and grounds for the tests.
+// Meshes and height fields for the tests.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@ struct MeshPoints {
   }
 };
 
-// A box's surface, facing outwards.
+// A box's surface with outward normals.
 inline MeshPoints box_mesh(const Vec3& half) {
   MeshPoints m;
   for (int k = 0; k < 8; ++k) {
@@ -32,8 +32,8 @@ inline MeshPoints box_mesh(const Vec3& half) {
   return m;
 }
 
-// A plane z = 0 from (0, 0) to (size, size): a grid whose inner samples are moved about and whose
-// diagonals run either way, the triangles in a random order, beginning at random corners.
+// The plane z = 0 from (0, 0) to (size, size): a grid with displaced inner vertices and random
+// diagonals. The triangles come in a random order and begin at random corners.
 inline MeshPoints random_plane(Random& random, std::uint32_t cells, double size) {
   MeshPoints m;
   const double cell = size / cells;
@@ -48,7 +48,7 @@ inline MeshPoints random_plane(Random& random, std::uint32_t cells, double size)
   for (std::uint32_t j = 0; j < cells; ++j) {
     for (std::uint32_t i = 0; i < cells; ++i) {
       const std::uint32_t a = j * (cells + 1) + i, b = a + 1, c = b + cells + 1, d = c - 1;
-      // The diagonal that leaves both triangles counter-clockwise.
+      // Chooses a diagonal that leaves both triangles counter-clockwise.
       const auto turns = [&](std::uint32_t p, std::uint32_t q, std::uint32_t r) {
         return cross(m.vertices[q] - m.vertices[p], m.vertices[r] - m.vertices[p]).z >
                1e-3 * cell * cell;
@@ -72,7 +72,7 @@ inline MeshPoints random_plane(Random& random, std::uint32_t cells, double size)
   return m;
 }
 
-// A sphere of 20 * 4^levels triangles about the origin.
+// A sphere about the origin, of 20 * 4^levels triangles.
 inline MeshPoints sphere_mesh(double radius, int levels) {
   const double g = 0.5 * (1.0 + std::sqrt(5.0));
   MeshPoints m;

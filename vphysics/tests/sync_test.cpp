@@ -1,4 +1,4 @@
-// What a game with rollback does: every step is taken, taken back and taken again.
+// As in a game with rollback: every step is taken, rolled back and repeated.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,14 +15,14 @@ namespace {
 
 constexpr double kTick = 0.001;
 
-// VP_SYNC_STEPS=N: so many. Ten thousand take minutes under the sanitizers.
+// VP_SYNC_STEPS=N sets the number of steps. Ten thousand take minutes under the sanitizers.
 int sync_steps() {
   const char* wanted = std::getenv("VP_SYNC_STEPS");
   return wanted != nullptr ? std::atoi(wanted) : 600;
 }
 
-// Something of everything: a stack that falls asleep, boxes, joints with motors, rods, a walker, a
-// swept ball, a compound, ground of triangles, a sensor.
+// Many features at once: a stack that falls asleep, boxes, joints with motors, rods, a walker, a
+// continuous ball, a compound, a triangle mesh as ground, a sensor.
 struct Everything {
   World world;
   std::vector<Rod> rods;
@@ -92,7 +92,7 @@ void play(Everything& e, Random& random, int tick) {
     }
     must(e.world.set_drive(e.hinge, {random.uniform(-1, 1), 0, 50, 5, 5}));
   }
-  if (tick % 250 == 249) {  // a kick, which wakes it
+  if (tick % 250 == 249) {  // an impulse that wakes it
     const auto k = static_cast<std::size_t>(random.word() % e.loose.size());
     const SE3 T = e.world.pose(e.loose[k]);
     must(e.world.apply_impulse(e.loose[k], random.in_cube(10.0), T.position()));
@@ -104,8 +104,8 @@ void play(Everything& e, Random& random, int tick) {
   must(e.world.step(kTick));
 }
 
-// One plays straight on; the other takes two steps, of which the second is another than the one to
-// come, goes back and takes the first again, every time. Not one bit may differ, ever.
+// One world steps straight on. The other takes two steps, the second one a different step than the
+// first world will take. It is then restored and repeats the first. The bits are always the same.
 TEST(SyncTest, RollingBackEveryStepChangesNoBit) {
   Everything straight = make_everything(), rolled = make_everything();
   Random one(71), other(71);

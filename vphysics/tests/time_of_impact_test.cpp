@@ -1,4 +1,4 @@
-// Times of impact of any two convex shapes against the separation sampled finely in time.
+// Times of impact of any two convex shapes against the separation in fine samples of time.
 #include "collide/time_of_impact.h"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ MovingShape moving(const Geometry& shape, const SE3& T, const Vec3& v, const Vec
   return {&shape, T, {T * about, v, w}};
 }
 
-// The first sample at or below the level, or a negative number.
+// The first sample at or below the given separation; negative if there is none.
 double first_sample(const ImpactQuery& q, double level, int samples) {
   for (int k = 0; k <= samples; ++k) {
     const double t = q.duration * k / samples;
@@ -43,8 +43,8 @@ struct Outcome {
   int meets = 0, passes = 0;
 };
 
-// Not later than the first of the samples that touches, as near as the tolerance says, and none if
-// no sample touches.
+// The time of impact is not later than the first touching sample, the separation then is within the
+// tolerance, and without a touching sample there is no impact.
 void check(const ImpactQuery& q, Outcome& outcome) {
   if (separation_at(q, 0.0) <= q.tolerance) return;
   const double t = impact_of(q), sampled = first_sample(q, 0.0, 1000);
@@ -84,7 +84,7 @@ TEST_P(EveryPairsImpact, IsTheFirstOfFineSamples) {
     const bool ground = GetParam().second == Kind::half_space;
     const SE3 Ta(random.rotation(), ground ? Vec3{0, 0, 3} : 3.0 * random.direction());
     const SE3 Tb = ground ? SE3{} : SE3(random.rotation(), Vec3{});
-    // Towards one another, more or less, half of them turning at up to 150 rad/s, both moving.
+    // More or less towards one another, half of them spinning at up to 150 rad/s, both moving.
     const double speed = random.uniform(1.0, 60.0), turning = i % 2 ? 150.0 : 5.0;
     const Vec3 v = random.in_cube(20.0);
     const Vec3 towards =
@@ -102,8 +102,8 @@ TEST_P(EveryPairsImpact, IsTheFirstOfFineSamples) {
 
 INSTANTIATE_TEST_SUITE_P(, EveryPairsImpact, testing::ValuesIn(every_pair()));
 
-// A rod of 0.4 m and 1 cm, its ends at 30 m/s, flies at 25 m/s past and at a wall 2 mm thick: in a
-// step of 1/60 s, it turns by 2.5 rad.
+// A rod of 0.4 m length and 1 cm thickness, its ends at 30 m/s, flies at 25 m/s past or into a wall
+// 2 mm thick. In a step of 1/60 s, it rotates by 2.5 rad.
 TEST(TimeOfImpact, OfASpinningRodAndAThinWallIsThatOfFineSamples) {
   Random random(502);
   const Solid rod(Capsule{0.005, 0.2}), wall(Box{{0.001, 0.3, 0.3}});
@@ -122,11 +122,11 @@ TEST(TimeOfImpact, OfASpinningRodAndAThinWallIsThatOfFineSamples) {
   }
   EXPECT_GE(outcome.meets, samples(20));
   EXPECT_GE(outcome.passes, samples(20));
-  // Of samples 4.2 us apart at the most, the first behind is as near as that.
+  // Samples are 4.2 us apart, so the first one after the impact is at most that late.
   EXPECT_LE(worst, 1.0 / 60.0 / 4000.0 + 1e-9);
 }
 
-// Both turn: two men that kick against each other, and a wall that comes to a ball.
+// Both shapes move and rotate.
 TEST(TimeOfImpact, IsTheSameSeenFromEitherShape) {
   Random random(503);
   int meets = 0;
@@ -148,8 +148,8 @@ TEST(TimeOfImpact, IsTheSameSeenFromEitherShape) {
 }
 
 TEST(TimeOfImpact, IsTheClosedFormOfADoor) {
-  // A door of 1 m by 2 cm turns about its hinge at 2 rad/s and meets a ball on its way after 1 rad,
-  // less the angle of the ball's radius and half the door's thickness at its distance.
+  // A door of 1 m by 2 cm rotates about its hinge at 2 rad/s towards a ball at 1 rad. The impact is
+  // earlier by the angle of the ball's radius and half the door's thickness at its distance.
   const Solid door(Box{{0.5, 0.01, 1.0}}), ball(Sphere{0.05});
   const MovingShape a{&door.geometry, SE3(Vec3{0.5, 0, 0}), {{0, 0, 0}, {}, {0, 0, 2.0}}};
   const Vec3 at{0.8 * std::cos(1.0), 0.8 * std::sin(1.0), 0};
@@ -169,7 +169,7 @@ TEST(TimeOfImpact, LosesNothingFarFromTheOrigin) {
   EXPECT_NEAR(at(far), at({}), 1e-9);
 }
 
-// Past the wall and at it by a micrometre, parallel to it and turning about its normal.
+// A micrometre beside the wall and into it, parallel to the wall and spinning about its normal.
 TEST(TimeOfImpact, GrazingMeetsOnlyWhatIsInTheWay) {
   const Solid rod(Capsule{0.01, 0.2}), wall(Box{{0.5, 0.5, 0.5}});
   for (const double gap : {1e-6, -1e-6}) {
@@ -187,7 +187,8 @@ TEST(TimeOfImpact, OfWhatStandsStillIsNowOrNever) {
   EXPECT_LT(impact_of({ma, moving(b.geometry, SE3(Vec3{1.6, 0, 0}), {}, {}), 1.0, 1e-6}), 0.0);
 }
 
-// Deeper than they are by a slop: what is pressed in comes to that, what leaves does not.
+// A target separation below zero, by a slop beyond the current overlap: a shape that moves in
+// reaches it, one that moves out does not.
 TEST(TimeOfImpact, CountsOverlapFromATargetBelowZero) {
   const Solid a(Box{{0.5, 0.5, 0.5}}), b(Cylinder{0.3, 0.5});
   const auto with = [&](double v) {
@@ -200,7 +201,7 @@ TEST(TimeOfImpact, CountsOverlapFromATargetBelowZero) {
   EXPECT_LT(with(1.0), 0.0);
 }
 
-// What comes after latest is not told, and what comes before has the same bits.
+// Impacts after `latest` are not reported; earlier ones have the same bits.
 TEST(TimeOfImpact, LatestChangesNoBit) {
   const Solid a(Capsule{0.1, 0.4}), b(Box{{0.2, 0.3, 0.4}});
   const ImpactQuery q{moving(a.geometry, SE3(Vec3{2, 0, 0}), {-20, 1, 0}, {0, 30, 5}),

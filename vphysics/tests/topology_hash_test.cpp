@@ -1,4 +1,4 @@
-// A snapshot is taken only by a world that is made of the same constants, bit for bit.
+// Only a world created with the same constants, bit for bit, accepts a snapshot.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -71,7 +71,7 @@ TEST(Restore, TakesASnapshotOfAWorldMadeOfTheSame) {
   EXPECT_TRUE(takes([](Recipe&) {}));
 }
 
-// Of what calls can change, the snapshot holds the value; and user_data moves nothing.
+// Values that calls can change are in the snapshot; user_data does not affect the motion.
 TEST(Restore, TakesWhatDiffersInStateOrUserDataOnly) {
   EXPECT_TRUE(takes([](Recipe& r) { r.body.T_world_body = SE3(Vec3{3, 0, 0}); }));
   EXPECT_TRUE(takes([](Recipe& r) { r.body.velocity.v.x = 3; }));
@@ -178,7 +178,7 @@ TEST(Restore, RefusesASnapshotOfAWorldWithOtherConstants) {
   for (const auto& [name, change] : changes) EXPECT_FALSE(takes(change)) << name;
 }
 
-// The order of creation is part of it too.
+// The order of creation is part of it, too.
 TEST(Restore, RefusesASnapshotOfAWorldWhoseBodyWasDestroyed) {
   World a = make(recipe()), b = make(recipe());
   BodyDesc desc;

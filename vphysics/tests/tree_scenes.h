@@ -22,7 +22,7 @@ inline Inertia bar(double mass, double length) {
   return Inertia(mass, Vec3{across, across, 1e-3 * across}).InvXform(SE3(Vec3{0, 0, -length / 2}));
 }
 
-// Bars that hang from the origin of the world, one from another.
+// A chain of bars that hangs from the origin of the world.
 inline std::vector<LinkSpec> hanging_chain(int links, const Joint& joint, double length = 0.2,
                                            double mass = 0.5) {
   std::vector<LinkSpec> chain;
@@ -37,10 +37,10 @@ inline std::vector<LinkSpec> hanging_chain(int links, const Joint& joint, double
   return chain;
 }
 
-// A trunk that floats, and four legs of thigh and shin, with round feet: 6 + 8 degrees of freedom.
+// A floating trunk with four legs of thigh, shin and round foot: 6 + 8 degrees of freedom.
 struct Walker {
   static constexpr double kThigh = 0.25, kShin = 0.25, kFoot = 0.03;
-  static constexpr double kHeight = kThigh + kShin + kFoot;  // of the trunk over its feet
+  static constexpr double kHeight = kThigh + kShin + kFoot;  // of the trunk above its feet
   ArticulationId id;
   std::vector<double> rest;  // coordinates
 };

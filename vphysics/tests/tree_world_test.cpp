@@ -1,4 +1,4 @@
-// Trees of links in a world: how they move, what they hit, and what hits them.
+// Trees of links in a world: their motion, and impacts by and on them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ constexpr double kDt = 0.001;
 const Vec3 kGravity{0, 0, -9.81};
 const Material kSmooth{0.0, 0.0, 0.0};
 
-// What the world says of an articulation, through the model's own quantities.
+// An articulation's state in a world, with the quantities of its model.
 struct Look {
   Look(const World& world, ArticulationId id, const Model& of) : model(of), data(of) {
     forward_kinematics<double>(model, data, world.coordinates(id), world.velocities(id));
@@ -38,7 +38,7 @@ std::vector<double> mass_of(const Model& model, std::span<const double> q) {
   mass_matrix<double>(model, data, q, M);
   return M;
 }
-// A dense solution, by elimination: no code of the engine's.
+// A dense solution by elimination, without code of the engine.
 std::vector<double> solved(std::vector<double> M, std::vector<double> b) {
   const std::size_t n = b.size();
   for (std::size_t i = 0; i < n; ++i) {
@@ -54,7 +54,7 @@ std::vector<double> solved(std::vector<double> M, std::vector<double> b) {
   }
   return b;
 }
-// The velocities for which a point fixed to a link moves along d, by central differences.
+// The Jacobian row of a point fixed to a link along d, by central differences.
 std::vector<double> row_by_differences(const Model& model, std::span<const double> q, int link,
                                        const Vec3& point, const Vec3& d) {
   Data data(model);
@@ -62,7 +62,7 @@ std::vector<double> row_by_differences(const Model& model, std::span<const doubl
   const Vec3 local = inverse_times(T_world_link(model, data, link), point);
   std::vector<double> row;
   constexpr double kStep = 1e-6;
-  for (std::size_t i = 0; i < q.size(); ++i) {  // joints whose coordinates are their velocities'
+  for (std::size_t i = 0; i < q.size(); ++i) {  // if the rates of q are velocities
     std::vector<double> moved(q.begin(), q.end());
     double along[2];
     for (const int side : {0, 1}) {
@@ -76,7 +76,6 @@ std::vector<double> row_by_differences(const Model& model, std::span<const doubl
 }
 
 // --- motion
-// ----------------------------------------------------------------------------------------
 
 TEST(Tree, ADoublePendulumKeepsItsEnergy) {
   const Model model = model_of(hanging_chain(2, RevoluteJoint{{0, 1, 0}}));
@@ -100,8 +99,8 @@ TEST(Tree, ADoublePendulumKeepsItsEnergy) {
   EXPECT_LT(drift[1], 0.7 * drift[0]);  // first order
 }
 
-// Two pendulums that swing in turn: the sum of m g l (1 - cos) has the period of one, exactly where
-// the closed form of small swings says.
+// A double pendulum in each of its two normal modes, with the frequencies of the closed form for
+// small amplitudes.
 TEST(Tree, ADoublePendulumSwingsAtItsTwoFrequencies) {
   // Equal point masses m at lengths l: omega^2 = (2 -+ sqrt 2) g / l.
   const double l = 0.3, m = 0.8;
@@ -124,7 +123,7 @@ TEST(Tree, ADoublePendulumSwingsAtItsTwoFrequencies) {
   }
 }
 
-// Random trees of every kind of joint, afloat without gravity: nothing touches them.
+// Random trees of every kind of joint, floating without gravity and contacts.
 TEST(Tree, AFloatingTreeKeepsItsMomentum) {
   Random random(61);
   double worst = 0.0;
@@ -159,10 +158,9 @@ TEST(Tree, AFloatingTreeKeepsItsMomentum) {
 }
 
 // --- impacts
-// ---------------------------------------------------------------------------------------
 
-// A ball on a man's foot, across the rod's axis: with r the height of the axis over the ball, the
-// rod answers as a mass I / r^2, and the impulse is that of two bodies.
+// A ball hits a man's foot, across the rod's axis. With r the height of the axis above the ball,
+// the rod acts as a mass I / r^2, and the impulse is that of two bodies.
 TEST(Impact, OnARodsManIsThatOfTwoBodies) {
   const double e = 0.6, speed = 6.0, axial = 0.0015;
   const Material m{0.0, e, 0.0};
@@ -230,8 +228,7 @@ TEST(Impact, OnAChainChangesAllItsVelocitiesAsTheMassMatrixSays) {
   }
 }
 
-// A ball that strikes a floating tree, with friction: momentum, about any point, goes from the one
-// to the other.
+// A ball hits a floating tree, with friction: total momentum is conserved, about any point.
 TEST(Impact, OnAFloatingTreeKeepsTheMomentumOfAll) {
   const Material m{0.5, 0.4, 0.0};
   World world({.gravity = {}});
@@ -256,7 +253,7 @@ TEST(Impact, OnAFloatingTreeKeepsTheMomentumOfAll) {
   for (int i = 0; i < 200; ++i) {
     must(world.step(kDt));
     hit = hit || !world.contact_events().empty();
-    // Corrections of penetration may move a momentum's arm; there are none worth more than this.
+    // Position correction may change a momentum's arm; the effect is below these bounds.
     ASSERT_LT(norm(total().f - before.f), 1e-10 * norm(before.f)) << i;
     ASSERT_LT(norm(total().m - before.m), 1e-6 * norm(before.m)) << i;
   }
@@ -278,7 +275,7 @@ TEST(Impact, OfTwoArticulationsIsElastic) {
     must(world.set_joint_state(carts[i], 0, 0, i == 0 ? -0.5 : 0.5, i == 0 ? 3.0 : -1.0));
   }
   for (int i = 0; i < 500; ++i) must(world.step(kDt));
-  // v1' = (m1 - m2) / (m1 + m2) v1 + 2 m2 / (m1 + m2) v2, and alike.
+  // v1' = (m1 - m2) / (m1 + m2) v1 + 2 m2 / (m1 + m2) v2, and the same for v2'.
   const double sum = mass[0] + mass[1];
   EXPECT_NEAR(world.joint_velocity(carts[0], 0, 0),
               ((mass[0] - mass[1]) * 3.0 + 2 * mass[1] * -1.0) / sum, 1e-9);
@@ -302,9 +299,9 @@ TEST(Tree, ItsOwnLinksDoNotMeet) {
 }
 
 // --- resting
-// ---------------------------------------------------------------------------------------
 
-// A link that floats alone is a rigid body: dropped turned and sliding, both come to the same rest.
+// A single floating link is a rigid body: dropped with a tilt and sliding, a link and a body come
+// to rest at the same pose.
 TEST(Contact, OfALinkThatFloatsAloneIsThatOfABody) {
   const Material m{0.4, 0.3, 0.0};
   const Shape box = Box{{0.1, 0.1, 0.1}};
@@ -336,10 +333,10 @@ TEST(Contact, OfALinkThatFloatsAloneIsThatOfABody) {
   }
   std::printf("corners apart by %.3g m at most in the first 0.1 s, %.3g m in all\n", flight, all);
   EXPECT_LT(flight, 1e-9);
-  EXPECT_LT(all, 0.05);  // bodies meet in sub-steps, links between impacts: 0.033
+  EXPECT_LT(all, 0.05);  // sub-steps for bodies, impacts for links: 0.033
 }
 
-// On four driven legs of two joints each; every foot carries a quarter of the weight.
+// It stands on four driven legs with two joints each; every foot carries a quarter of the weight.
 TEST(Contact, AWalkerStandsOnItsFourFeet) {
   for (const double dt : {0.001, 1.0 / 240, 1.0 / 60}) {
     World world;
@@ -360,7 +357,7 @@ TEST(Contact, AWalkerStandsOnItsFourFeet) {
   }
 }
 
-// A chain let fall on a floor, and a pendulum that swings against a wall, at steps of any length.
+// A chain falls on a floor, and a pendulum swings against a wall, with steps of any length.
 TEST(Contact, OfAChainWithTheFloorHoldsAtLongSteps) {
   for (const double dt : {0.001, 1.0 / 240, 1.0 / 60}) {
     World world;
@@ -372,7 +369,7 @@ TEST(Contact, OfAChainWithTheFloorHoldsAtLongSteps) {
       must(world.add_collider(world.link_body(id, l),
                               collider_of(Capsule{0.02, 0.08}, m, SE3(Vec3{0, 0, -0.1}))));
     }
-    // It begins level, stretched out along x.
+    // It starts level, stretched along x.
     std::vector<double> q(8), v(8);
     q[1] = -kPi / 2;
     q[2] = 0.2;
@@ -396,7 +393,6 @@ TEST(Contact, OfAChainWithTheFloorHoldsAtLongSteps) {
 }
 
 // --- motors, damping
-// -------------------------------------------------------------------------------
 
 TEST(Tree, MotorsOfAnyStiffnessHoldAnArm) {
   for (const double stiffness : {1e3, 1e6, 1e12}) {
@@ -455,7 +451,6 @@ TEST(Limit, OfATreeHoldsAgainstItsWeight) {
 }
 
 // --- state
-// -----------------------------------------------------------------------------------------
 
 struct Mixed {
   World world;
@@ -484,7 +479,7 @@ Mixed mixed_scene() {
   return s;
 }
 
-// The same on every compiler and at every level.
+// The same with every compiler and optimisation level.
 TEST(Determinism, GoldenHashOfTrees) {
   Mixed s = mixed_scene();
   for (int i = 0; i < 1000; ++i) must(s.world.step(kDt));

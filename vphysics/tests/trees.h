@@ -17,7 +17,8 @@ T must_build(Expected<T>&& made) {
   return std::move(made).value();
 }
 
-// A slider on the curve (cos s, sin s, s^2 / 2), turned so that its x axis leads along it.
+// A slider on the curve (cos s, sin s, s^2 / 2). The x axis of its frame follows the tangent of the
+// curve's horizontal projection.
 class SliderOnACurve final : public UserJoint {
  public:
   int degrees_of_freedom() const override { return 1; }
@@ -25,10 +26,10 @@ class SliderOnACurve final : public UserJoint {
                 std::span<se3> S, se3& rate) const override {
     const auto [sine, cosine] = sin_cos(q[0]);
     const double s = q[0];
-    // The frame turns about z as the curve's shadow does.
+    // The frame rotates about z with the horizontal projection of the curve.
     const Mat3 R = {{-sine, cosine, 0}, {-cosine, -sine, 0}, {0, 0, 1}};
     T_joint_link = SE3(R, {cosine, sine, 0.5 * s * s});
-    S[0] = {{0, 0, 1}, {1, 0, s}};  // seen from the link
+    S[0] = {{0, 0, 1}, {1, 0, s}};  // in the link frame
     rate = {{0, 0, 0}, {0, 0, v[0] * v[0]}};
   }
   bool subspace_derivatives(std::span<const double> /*q*/, std::span<const double> /*v*/,
@@ -72,7 +73,8 @@ inline Inertia random_body(Random& random) {
   return Inertia(mass, mass * principal).Xform(random.pose(0.3));
 }
 
-// Every kind of joint in turn, each on a link chosen among those before it.
+// A tree with every kind of joint: random kinds, or the first `kinds` in turn. Each link gets a
+// random parent among the links before it.
 inline Model random_tree(Random& random, int links, int kinds = 10) {
   ModelBuilder builder;
   for (int i = 0; i < links; ++i) {
@@ -93,7 +95,7 @@ inline Model random_tree(Random& random, int links, int kinds = 10) {
 struct State {
   std::vector<double> q, v, tau, a;
 };
-// Quaternions are of unit length.
+// Quaternions have unit length.
 inline State random_state(Random& random, const Model& model) {
   State s;
   s.q = model.zero_coordinates();

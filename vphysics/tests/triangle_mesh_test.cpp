@@ -1,4 +1,4 @@
-// Meshes and height fields as data: what is refused, who is whose neighbour, masses, scales.
+// Meshes and height fields as data: rejected input, neighbours, masses, scales.
 #include "vphysics/triangle_mesh.h"
 
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ TEST(TriangleMesh, LeavesTrianglesWithoutAreaOut) {
   MeshPoints m = box_mesh({1, 1, 1});
   m.triangles.push_back({0, 0, 1});
   m.triangles.push_back({3, 3, 3});
-  m.vertices.push_back({0, -1, -1});  // in the middle of an edge
+  m.vertices.push_back({0, -1, -1});  // at the midpoint of an edge
   m.triangles.push_back({0, 8, 4});
   const TriangleMesh mesh = m.made();
   EXPECT_EQ(mesh.left_out(), 3u);
@@ -62,7 +62,7 @@ TEST(TriangleMesh, RefusesScalesThatAreNone) {
   }
   const TriangleMesh small = mesh.scaled({1e-4, 1e-4, 1e-4}).value();
   EXPECT_FALSE(small.scaled({1, 1, 1e-3}));  // the product
-  EXPECT_EQ(small.data(), mesh.data());      // nothing is copied
+  EXPECT_EQ(small.data(), mesh.data());      // no copy
   const TriangleMesh back = small.scaled({1e4, 1e4, 1e4}).value();
   EXPECT_NEAR(back.scale().x, 1.0, 1e-15);
   TriangleMesh moved_from = mesh;
@@ -118,7 +118,7 @@ TEST(TriangleMesh, HasNoMassUnlessItIsClosedAndFacesOutwards) {
   }
 }
 
-// Corners given anew for each triangle are known for the same by their place.
+// Vertices duplicated for each triangle are matched by position.
 TEST(TriangleMesh, KnowsNeighboursByThePlaceOfTheirCorners) {
   const MeshPoints shared = box_mesh({1, 2, 3});
   MeshPoints soup;
@@ -134,7 +134,7 @@ TEST(TriangleMesh, KnowsNeighboursByThePlaceOfTheirCorners) {
     const collide::SurfaceTriangle t = surface.triangle(i);
     for (int e = 0; e < 3; ++e) {
       EXPECT_TRUE(t.has_opposite[e]);
-      // The diagonals of the faces are not felt, the box's edges are, from outside only.
+      // Diagonals of the faces are inactive. The box's edges are active, from outside only.
       const Vec3 middle = 0.5 * (t.p[e] + t.p[(e + 1) % 3]);
       const int on = (std::fabs(middle.x) == 1.0) + (std::fabs(middle.y) == 2.0) +
                      (std::fabs(middle.z) == 3.0);
@@ -152,12 +152,12 @@ TEST(TriangleMesh, FeelsNoEdgeInsideAPlaneOfAnyTriangulation) {
     const collide::SurfaceTriangle t = surface.triangle(i);
     EXPECT_NEAR(t.normal.z, 1.0, 1e-12);
     for (unsigned e = 0; e < 3; ++e) {
-      EXPECT_EQ((t.active >> e) & 1u, t.has_opposite[e] ? 0u : 1u);  // the border is
+      EXPECT_EQ((t.active >> e) & 1u, t.has_opposite[e] ? 0u : 1u);  // the border is active
     }
   }
 }
 
-// A triangle without area between two others does not make a border of their edge.
+// A degenerate triangle between two others does not turn their edge into a border.
 TEST(TriangleMesh, LooksAcrossTrianglesWithoutArea) {
   const std::vector<Vec3> v{{0, 0, 0}, {2, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0.5, -1, 0}, {1.5, -1, 0}};
   const TriangleMesh mesh =
@@ -170,7 +170,7 @@ TEST(TriangleMesh, LooksAcrossTrianglesWithoutArea) {
   EXPECT_TRUE(surface.triangle(3).has_opposite[2]);
 }
 
-// An edge of three triangles, two triangles in one place, and a fold onto itself are borders.
+// An edge of three triangles, two coincident triangles, and a fold onto itself count as borders.
 TEST(TriangleMesh, FeelsEdgesThatHaveNoOneNeighbour) {
   const std::vector<Vec3> v{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0.2, 0.7, 0}};
   for (const Triangles& triangles :
@@ -212,7 +212,7 @@ TEST(Surface, FindsTheTrianglesOfAMeshThatBruteForceFinds) {
       for (const Vec3& p : t.p) b = merged(b, {p, p});
       if (overlap(b, box)) truth.push_back(i);
     }
-    // Floats find a few too many, none too few.
+    // Single-precision bounds may find a few too many, but never too few.
     EXPECT_TRUE(std::includes(found.begin(), found.end(), truth.begin(), truth.end()));
     EXPECT_LE(found.size(), truth.size() + 2);
   }
@@ -259,7 +259,7 @@ TEST(HeightField, RefusesWhatIsNoGroundAndSaysWhy) {
   }
 }
 
-// The same ground as a mesh says what its neighbours and edges are.
+// A mesh of the same ground has the same neighbours and edges.
 TEST(HeightField, HasTheNeighboursAndFeltEdgesOfTheMeshOfItsTriangles) {
   Random random(25);
   for (const bool with_holes : {false, true}) {
@@ -319,7 +319,7 @@ TEST(HeightField, FindsTheTrianglesThatBruteForceFinds) {
       for (const Vec3& p : t.p) b = merged(b, {p, p});
       if (overlap(b, box)) truth.push_back(id);
     }
-    // Whole cells are found where half of one does.
+    // A cell is found as soon as one of its triangles is.
     EXPECT_TRUE(std::includes(found.begin(), found.end(), truth.begin(), truth.end()));
     EXPECT_LE(found.size(), 2 * truth.size() + 2);
   }
@@ -356,7 +356,7 @@ TEST(Surface, CastsMeetEveryTriangleThatTheBoundsMeet) {
       });
       std::sort(found.begin(), found.end());
       ASSERT_TRUE(std::adjacent_find(found.begin(), found.end()) == found.end());
-      // Bounds that meet at one of many fractions do meet.
+      // Every triangle whose bounds overlap the box at one of many fractions is found.
       for (const std::uint32_t id : all) {
         const collide::SurfaceTriangle t = surface.triangle(id);
         collide::Bounds b;

@@ -1,5 +1,6 @@
-// A fast ball against fixed and turning men. The check knows nothing of the engine's sweep: it cuts
-// the chord of the ball's centre between two steps, seen from the man, with each of his boxes.
+// A fast ball against fixed and rotating men. The check is independent of the engine's sweep: it
+// intersects the chord of the ball's centre between two steps, in the man's frame, with each of his
+// boxes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,7 +12,7 @@
 namespace vp::test {
 namespace {
 
-// Does the segment from a to b cross the box |x| < h? Slab by slab.
+// Whether the segment from a to b crosses the box |x| < h: the slab test.
 bool crosses(const Vec3& a, const Vec3& b, const Vec3& h) {
   double enter = 0.0, leave = 1.0;
   for (int i = 0; i < 3; ++i) {
@@ -35,14 +36,14 @@ TEST(TunnellingCheck, SeesAChordThroughABoxAndNoOther) {
   EXPECT_FALSE(crosses({-1, 0, 0}, {-0.02, 0, 0}, h));
 }
 
-// Half extents less this: chords of a curved path cut a little, and a pressed ball gives by the
-// slop.
+// Half extents are reduced by this: chords of a curved path cut corners slightly, and a pressed
+// ball penetrates by the slop.
 constexpr double kShrink = 0.001;
 constexpr double kTick = 0.001;
 
 struct Outcome {
   int hits = 0, limited = 0, through = 0;
-  double deepest = 0.0;  // centre nearer to a man's surface than the radius, at the end of a step
+  double deepest = 0.0;  // largest penetration of the ball into a man at the end of a step
 };
 
 double distance_to(const Vec3& p, const ManPart& part) {
@@ -53,7 +54,8 @@ double distance_to(const Vec3& p, const ManPart& part) {
   return norm(out);
 }
 
-// One ball shot at one man; the rod turns at rate (free or driven), or does not move at all.
+// Shoots one ball at one man. The rod rotates and slides at random rates with a weak drive, or its
+// targets are zero.
 void shoot(Random& random, bool turning, Outcome& outcome) {
   World world;
   const Material material{0.3, random.uniform(0.0, 0.9), 0.0};
@@ -66,7 +68,8 @@ void shoot(Random& random, bool turning, Outcome& outcome) {
   must(world.set_drive(rod.articulation, 0, 0, {0.0, slide, 0.0, 1e4, 300.0}));
   must(world.set_drive(rod.articulation, 0, 1, {0.0, rate, 0.0, 10.0, 20.0}));
 
-  // Aim at a random point of the man, from 12 cm away, at where it is when the ball arrives or not.
+  // Aims at a random point of the man's current pose from 12 cm away; a rotating man may have moved
+  // on.
   const ManPart& part = kMan[random.word() % 4];
   const double speed = random.uniform(20.0, 25.0);
   const SE3 pose = world.pose(rod.body);
@@ -75,7 +78,7 @@ void shoot(Random& random, bool turning, Outcome& outcome) {
                                               random.uniform(-1, 1) * part.half.z});
   const Vec3 direction = random.direction();
   Vec3 start = aim - random.uniform(0.11, 0.14) * direction;
-  // A start behind the head may lie in the foot: farther away then.
+  // A start behind the head may be in the foot; the start then moves farther away.
   const auto in_the_way = [&](const ManPart& p) {
     return distance_to(inverse_times(pose, start), p) < kBallRadius + 0.001;
   };
@@ -110,7 +113,7 @@ void run_shots(std::uint64_t seed, bool turning, int shots) {
   }
   std::printf("shots %d, hits %d, steps at the impact limit %d, deepest %.3g mm\n", shots,
               outcome.hits, outcome.limited, 1e3 * outcome.deepest);
-  // The shots are aimed: a run in which they miss proves nothing.
+  // The shots are aimed: a run of misses would prove nothing.
   EXPECT_GT(outcome.hits, shots / 2);
   EXPECT_LT(outcome.deepest, 0.0005);
 }

@@ -1,4 +1,4 @@
-// What of URDF is refused: the line and the reason.
+// URDF that is rejected: the line and the reason.
 #include <gtest/gtest.h>
 #include <pthread.h>
 
@@ -122,7 +122,7 @@ TEST(UrdfRefusal, OfLinksThatAreNoTreeNamesTheLine) {
   }
 }
 
-// Runs it in 256 KiB of stack: what recurses as deep as the text does not survive.
+// Runs the work with a stack of 256 KiB: recursion as deep as the text overflows it.
 void on_a_small_stack(const std::function<void()>& work) {
   pthread_attr_t small;
   pthread_attr_init(&small);
@@ -141,8 +141,8 @@ void on_a_small_stack(const std::function<void()>& work) {
 TEST(UrdfRefusal, OfWhatIsTooMuchNeedsNoStack) {
   std::string deep = "<robot name=\"r\">";
   for (int i = 0; i < 200000; ++i) deep += "<link>";
-  // Links that urdfdom has own each other, ten thousand deep; of names in this order it would free
-  // them one within the other.
+  // The links of urdfdom own each other, here ten thousand deep. With names in this order it would
+  // free them recursively.
   constexpr int kLinks = 10000;
   const auto name = [](int i) { return std::to_string(kLinks + i); };
   std::string chain = body(name(0));

@@ -1,4 +1,5 @@
-// Models from URDF: against models built by hand and closed forms, and what is mended, by line.
+// Models from URDF: against models built in code and closed forms; and repaired input, with the
+// line of its note.
 #include "vphysics/multibody/urdf.h"
 
 #include <gtest/gtest.h>
@@ -34,7 +35,7 @@ SE3 turn(const Vec3& axis, double angle) {
   return SE3(Exp(angle * axis), {});
 }
 
-// --- what a model is made of ------------------------------------------------------------------
+// --- models
 
 TEST(Urdf, AnArmIsTheModelBuiltByHand) {
   const UrdfModel read = must_parse(
@@ -60,7 +61,7 @@ TEST(Urdf, AnArmIsTheModelBuiltByHand) {
   upper.joint = RevoluteJoint{{0, 1, 0}};
   upper.T_parent_joint = SE3(Vec3{0, 0, 0.5}) * rpy(0.1, 0.2, 0.3);
   upper.damping = 0.7;
-  // From the frame of the inertia's axes to the link's.
+  // From the frame of the principal axes to the link's frame.
   const SE3 T = SE3(Vec3{0.1, 0.2, 0.3}) * rpy(0.4, -0.5, 0.6);
   upper.inertia = Inertia(2.5, {}, {0.3, 0.4, 0.5, 0.01, -0.03, 0.02}).Xform(Inv(T));
   must_build(builder.add(upper));
@@ -103,7 +104,7 @@ TEST(Urdf, WithoutAnAxisItIsX) {
   EXPECT_LT(distance(pose_at(read.model, {0.7}, "b"), turn({1, 0, 0}, 0.7)), 1e-15);
 }
 
-// A plane is spanned by two directions across its axis; which two is the joint's own.
+// Two directions perpendicular to the axis span the plane. The joint chooses which two.
 TEST(Urdf, APlanarJointStaysInThePlaneAcrossItsAxis) {
   for (const Vec3& axis : {Vec3{0, 0, 1}, Vec3{1, 0, 0}, Vec3{0, 0, -1}, Vec3{0.48, 0.64, 0.6}}) {
     char text[100];
@@ -172,7 +173,7 @@ TEST(Urdf, AJointTellsItsLimitsFrictionAndMimic) {
   EXPECT_EQ(k.upper, std::numeric_limits<double>::infinity());
   EXPECT_TRUE(read.notes.empty());
 
-  // The model knows them too, and the coupling holds where k follows j.
+  // The model has the limits, too, and the coupling holds where k follows j.
   const JointForces& forces = read.model.link(j.link).forces.at(0);
   EXPECT_EQ(forces.lower, -1.5);
   EXPECT_EQ(forces.upper, 2.5);
@@ -206,13 +207,13 @@ TEST(Urdf, WhatIsLeftOutIsTold) {
   EXPECT_EQ(read.notes, notes);
 }
 
-// --- what is mended ---------------------------------------------------------------------------
+// --- repaired input
 
 struct Mended {
   std::string text;
-  const char* note;  // after its line
+  const char* note;  // without the line number
 };
-// The only note, and its model moves as forward dynamics says it does.
+// Expects exactly one note, and forward dynamics that inverts inverse dynamics.
 UrdfModel expect_mended(const Mended& mended, int line, UrdfBase base = UrdfBase::fixed) {
   UrdfModel read = must_parse(mended.text, {base, {}});
   EXPECT_EQ(read.notes.size(), 1u) << mended.note;
@@ -278,7 +279,7 @@ TEST(UrdfMended, AMimicInACircleIsOpenedOnce) {
   EXPECT_EQ(read.couplings.size(), 1u);
 }
 
-// What of a file has no effect is not read, and no note is made of it.
+// Parts of a file without effect are not read, and there is no note about them.
 TEST(UrdfMended, TheAxisOfAFixedJointIsNotRead) {
   for (const char* axis : {"<axis xyz=\"0 0 0\"/>", "<axis/>", "<axis xyz=\"a\"/>"}) {
     const UrdfModel read =
@@ -300,7 +301,7 @@ std::string with_inertial(const std::string& mass, const std::string& moments,
                joint("j", type, "base", "b", kLimit));
 }
 
-// What the only joint feels, at zero.
+// The inertia that acts on the only joint, at zero.
 double mass_felt(const UrdfModel& read) {
   Data data(read.model);
   std::vector<double> M(1);
@@ -309,13 +310,13 @@ double mass_felt(const UrdfModel& read) {
 }
 
 TEST(UrdfMended, InertiasThatNoBodyHasAreTakenAsStated) {
-  // Rounded, or turned wrong: one moment is more than the others together.
+  // Rounded, or rotated wrongly: one moment is larger than the sum of the others.
   const UrdfModel flat = expect_mended(
       {with_inertial("1", "ixx=\"3\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\""),
        "more than the two others"},
       3);
   EXPECT_DOUBLE_EQ(mass_felt(flat), 3.0);
-  // Of a link without a body, as files have for a frame.
+  // A link without a body, as files use it for a frame.
   const UrdfModel massless = expect_mended(
       {with_inertial("0", "ixx=\"1e-3\" ixy=\"0\" ixz=\"0\" iyy=\"1e-3\" iyz=\"0\" izz=\"1e-3\""),
        "moments and no mass"},
@@ -326,13 +327,13 @@ TEST(UrdfMended, InertiasThatNoBodyHasAreTakenAsStated) {
                                "iyz=\"1e-6\" izz=\"1e-6\""),
                  "more than the two others"},
                 3);
-  // Principal moments 3 and -1 in the plane of x and y.
+  // Principal moments 3 and -1 in the xy plane.
   const UrdfModel negative = expect_mended(
       {with_inertial("1", "ixx=\"1\" ixy=\"2\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\""),
        "negative, and taken as zero"},
       3);
   EXPECT_NEAR(mass_felt(negative), 1.5, 1e-14) << "half of the moment 3 about the diagonal";
-  // Products that are not given are zero.
+  // Missing products of inertia are zero.
   const UrdfModel short_one = must_parse(with_inertial("1", "ixx=\"1\" iyy=\"1\" izz=\"1\""));
   EXPECT_EQ(short_one.notes.size(), 3u);
 }
@@ -354,7 +355,7 @@ TEST(UrdfMended, AJointThatMovesNoMassIsGivenAnArmature) {
                 "moves no mass"},
                3),
       1e-6 * 2);
-  // A point mass on its axis; a wheel on a base without mass that is free to turn with it.
+  // A point mass on its axis; a wheel on a massless base that can rotate with it.
   EXPECT_GT(
       armature({with_inertial("1", "ixx=\"0\" ixy=\"0\" ixz=\"0\" iyy=\"0\" iyz=\"0\" izz=\"0\""),
                 "moves no mass"},
@@ -374,7 +375,7 @@ TEST(UrdfMended, ARobotWithoutANameAndZeroBytesAtItsEnd) {
   EXPECT_TRUE(must_parse(text).notes.empty());
 }
 
-// --- files, locales, silence, threads ---------------------------------------------------------
+// --- files, locales, output, threads
 
 TEST(UrdfFile, IsReadAsItsTextIs) {
   const std::string path = testing::TempDir() + "vphysics_urdf_test.urdf";
@@ -402,7 +403,7 @@ TEST(Urdf, NumbersReadTheSameInEveryLocale) {
       robot("<link name=\"base\"/>\n" + body("b") +
             joint("j", "continuous", "base", "b", "<origin xyz=\"1234.5 -0.25 1e-3\"/>"));
   const std::locale before = std::locale::global(std::locale(std::locale(), new CommaForPoint));
-  const char* named = std::setlocale(LC_ALL, "de_DE.UTF-8");  // where it is installed
+  const char* named = std::setlocale(LC_ALL, "de_DE.UTF-8");  // if it is installed
   const auto read = parse_urdf(text);
   std::locale::global(before);
   if (named) std::setlocale(LC_ALL, "C");

@@ -1,4 +1,4 @@
-// Pieces of URDF that tests put together.
+// Pieces of URDF for tests.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@ namespace vp::test {
 inline std::string robot(const std::string& inside) {
   return "<robot name=\"r\">\n" + inside + "</robot>\n";
 }
-// One line.
+// A link element with an inertia, on one line.
 inline std::string body(const std::string& name) {
   return "<link name=\"" + name +
          "\"><inertial><mass value=\"2\"/><inertia ixx=\"0.3\" ixy=\"0\" ixz=\"0\" iyy=\"0.4\" "

@@ -1,4 +1,4 @@
-// Robots from URDF in a world: shapes where the file has them, masses, meshes, and what is noted.
+// Robots from URDF in a world: placement of shapes, masses, meshes, and notes.
 #include "vphysics/urdf_world.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace {
 std::string collision(const std::string& geometry, const std::string& origin = "") {
   return "<collision>" + origin + "<geometry>" + geometry + "</geometry></collision>";
 }
-// One line; 2 kg unless it has no mass.
+// A link element on one line, of 2 kg or massless.
 std::string link(const std::string& name, const std::string& inside, bool mass = true) {
   const std::string inertial =
       "<inertial><mass value=\"2\"/><inertia ixx=\"0.3\" ixy=\"0\" ixz=\"0\" iyy=\"0.4\" "
@@ -66,7 +66,7 @@ Placed place(const std::string& text, UrdfWorldOptions options = {}) {
   out.robot = must_build(add_urdf(out.world, std::move(out.robot.urdf), "", options));
   return out;
 }
-// Down from 10 m at (x, y): where the world begins, and the collider's number, or -1.
+// A ray down from 10 m at (x, y): the height of its hit and the collider's number, or -1.
 struct Seen {
   double z;
   int collider;
@@ -107,14 +107,14 @@ TEST(UrdfWorld, EachShapeIsWhereTheFileHasIt) {
   const Seen cube = seen_from_above(placed, 1.9, -1.9);
   EXPECT_NEAR(cube.z, 1 + 0.5, 1e-12);
   EXPECT_EQ(cube.collider, 4);
-  // All are of the link, and turn with its joint.
+  // All belong to the link, and move with its joint.
   const ArticulationId art = placed.robot.articulation;
   ASSERT_TRUE(
       placed.world.set_joint_state(art, placed.robot.urdf.model.find_link("b"), 0, kPi / 2, 0.0));
   EXPECT_NEAR(seen_from_above(placed, 0, 10).z, 1 + 0.5, 1e-12);
 }
 
-// Links that a fixed joint welds keep their own bodies, and their geometry its place.
+// Links that a fixed joint welds keep their own bodies, and their geometry keeps its place.
 TEST(UrdfWorld, GeometryOfWeldedLinksIsInItsPlace) {
   UrdfWorldOptions options = floating();
   options.T_world_root = SE3(Vec3{0, 0, 2});
@@ -129,7 +129,7 @@ TEST(UrdfWorld, GeometryOfWeldedLinksIsInItsPlace) {
   EXPECT_EQ(placed.robot.link_body(placed.world, "none"), BodyId{});
 }
 
-// A frame that a file names, without mass and geometry: where a camera is, or a tool.
+// A frame that a file names, without mass and geometry: for a camera or a tool.
 TEST(UrdfWorld, ALinkWithoutMassHasTheVelocityOfItsOrigin) {
   Placed placed = place(robot(link("a", "") + link("b", "") + link("camera", "", false) +
                               joint("j", "continuous", "a", "b", "<axis xyz=\"0 0 1\"/>") +
@@ -141,13 +141,13 @@ TEST(UrdfWorld, ALinkWithoutMassHasTheVelocityOfItsOrigin) {
   const VelocityWorld v = world.velocity_world(camera);
   EXPECT_LT(norm(v.linear - Vec3{0, 6, 0}), 1e-12);
   EXPECT_LT(norm(v.angular - Vec3{0, 0, 2}), 1e-12);
-  // A force there turns the joint: 1 N at 3 m against 0.5 kg m^2, over 1 ms.
+  // A force there rotates the joint: 1 N at 3 m against 0.5 kg m^2, over 1 ms.
   ASSERT_TRUE(world.apply_force(camera, {0, 1, 0}));
   ASSERT_TRUE(world.step(0.001));
   EXPECT_NEAR(world.joint_velocity(placed.robot.articulation, b, 0), 2.0 + 0.006, 1e-9);
 }
 
-// A cube of edge 2 on two hulls: what lies on it, or falls onto its middle, feels both.
+// A cube of edge 2 from two hulls: bodies that rest on it, or fall onto its centre, touch both.
 TEST(UrdfWorld, EachObjectOfAMeshIsAHull) {
   for (const std::size_t max_hulls : {std::size_t{16}, std::size_t{1}}) {
     UrdfWorldOptions options = floating();
@@ -200,8 +200,8 @@ TEST(UrdfWorld, LinksWithoutMassGetThatOfTheirGeometry) {
   const Model& model = *placed.world.model(placed.robot.articulation);
   EXPECT_NEAR(model.link(0).inertia.mass(), 3.0, 1e-12);
   EXPECT_NEAR(model.link(0).inertia.first_moment().x, 3.0, 1e-12);
-  EXPECT_NEAR(model.link(1).inertia.mass(), 2.0, 1e-12);  // as the file says
-  ASSERT_EQ(placed.robot.notes.size(), 2u);  // the first is of an armature, which it had without
+  EXPECT_NEAR(model.link(1).inertia.mass(), 2.0, 1e-12);  // from the file
+  ASSERT_EQ(placed.robot.notes.size(), 2u);  // the first: an armature, while it had no mass
   EXPECT_EQ(placed.robot.notes[1], "link \"a\" has no mass, and gets 3.000000 kg by its geometry");
 }
 
@@ -219,7 +219,7 @@ TEST(UrdfWorld, PointMassesGetTheMomentsOfTheirGeometry) {
   EXPECT_NEAR(J.rotational().xx, 6.0 / 12 * (4 + 9), 1e-12);
 }
 
-// Such as a file with a mass of 0 that has moments all the same.
+// For instance a file with a mass of 0 but with moments of inertia.
 TEST(UrdfWorld, ABodyWithoutMassHasThatOfItsColliders) {
   Placed placed = place(
       robot("<link name=\"a\"><inertial><mass value=\"0\"/><inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" "
@@ -237,7 +237,7 @@ TEST(UrdfWorld, MeshesOfLinksThatDoNotMoveMayBeTriangles) {
             joint("j", "continuous", "base", "arm", origin("0 0 5") + "<axis xyz=\"0 0 1\"/>"));
   Placed placed = place(text, options);
   EXPECT_TRUE(placed.robot.notes.empty());
-  // The mirrored plate has been turned back: seen from its lower side alone it is solid.
+  // The mirrored plate has its triangles reversed: one-sided, it is solid from its lower side.
   BodyDesc ball;
   ball.T_world_body = SE3(Vec3{0, 0, -0.5});
   ball.gravity_scale = -1.0;
@@ -291,7 +291,7 @@ TEST(UrdfWorld, WhatCannotBeMadeIsNotedOrRefused) {
     const std::string text =
         robot(link("a", "") + link("b", bad.geometry) + joint("j", "continuous", "a", "b"));
     Placed placed = place(text);
-    if (*bad.note == '\0') continue;  // it need only be survived
+    if (*bad.note == '\0') continue;  // it only must not crash
     ASSERT_EQ(placed.robot.colliders.size(), 1u) << bad.geometry;
     EXPECT_FALSE(placed.robot.colliders[0]) << bad.geometry;
     ASSERT_EQ(placed.robot.notes.size(), 1u) << bad.geometry;
@@ -333,7 +333,7 @@ TEST(UrdfWorld, FaultsOfCollisionsAreNotedByLineWhenRead) {
   }
 }
 
-// An inertia that no body has is fine for a link, but not for a body.
+// An inertia that no rigid body has is valid for a link, but not for a body.
 TEST(UrdfWorld, ABodyWithAnInertiaOfNoBodyHasThatOfItsColliders) {
   Placed placed = place(
       robot("<link name=\"a\"><inertial><mass value=\"1\"/><inertia ixx=\"9\" ixy=\"0\" ixz=\"0\" "
@@ -400,7 +400,7 @@ TEST(UrdfWorld, LinksMeetEachOtherIfAskedTo) {
   }
 }
 
-// It falls onto its feet and stays there; nothing of it goes through the ground.
+// It falls onto its feet and stays there; no part of it passes through the ground.
 TEST(UrdfWorld, ARobotStandsOnTheGroundByItsGeometry) {
   const auto foot = [](const std::string& name, const std::string& at) {
     return link(name, collision("<sphere radius=\"0.05\"/>"), false) +

@@ -1,5 +1,5 @@
-// What makes the variational integrator one: it is symplectic and reversible, keeps momentum to
-// rounding and energy without a trend, where the others drift.
+// Properties of the variational integrator: it is symplectic and reversible, and conserves momentum
+// to rounding and energy without drift, where the others drift.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -22,7 +22,7 @@ Expected<void> step(Kind kind, const Model& model, IntegratorData& data, Numbers
   return {};
 }
 
-// No dampers, so that energy is kept.
+// Without damping, so that energy is conserved.
 Model lossless_tree(Random& random, const std::vector<Joint>& joints) {
   ModelBuilder builder;
   for (std::size_t i = 0; i < joints.size(); ++i) {
@@ -51,7 +51,7 @@ struct Drift {
   double first = 0, last = 0, worst = 0, momentum = 0;
 };
 Drift drift_of(Kind kind, const Model& model, State s, const Vec3& gravity, double h, int steps) {
-  IntegratorData data(model, Arithmetic::reproducible);  // what is measured is so everywhere
+  IntegratorData data(model, Arithmetic::reproducible);  // the same figures on every machine
   Data other(model);
   const Mechanics begin = mechanics(model, other, s.q, s.v, gravity);
   Drift drift;
@@ -80,8 +80,8 @@ State at_rest(const Model& model) {
   return s;
 }
 
-// Measured: variational 1.2e-12 of momentum and 3e-5 J at most without a trend; in 40 s Euler's
-// energy grows by 18 J of 2, in 200 s RK4's falls by 3e-8 J.
+// Measured: variational 1.2e-12 of momentum and at most 3e-5 J without drift. In 40 s Euler's
+// energy grows by 18 J of 2 J; in 200 s RK4's falls by 3e-8 J.
 TEST(Variational, KeepsATumblingBodysMomentumAndEnergyWhereOthersDrift) {
   const Model model = one_body(FreeJoint{}, Inertia(1.0, Vec3{0.2, 0.35, 0.5}));
   State s = at_rest(model);
@@ -94,15 +94,15 @@ TEST(Variational, KeepsATumblingBodysMomentumAndEnergyWhereOthersDrift) {
     std::printf("first %.2e last %.2e worst %.2e momentum %.1e\n", d.first, d.last, d.worst,
                 d.momentum);
   }
-  EXPECT_GT(drift[0].last, 1e-2);                 // explicit in the body's frame: it gains
+  EXPECT_GT(drift[0].last, 1e-2);                 // explicit in the body frame: it gains energy
   EXPECT_LT(drift[1].last, -1e-8);                // RK4 loses
-  EXPECT_GT(drift[1].last / drift[1].first, 10);  // and in proportion to time
+  EXPECT_GT(drift[1].last / drift[1].first, 10);  // in proportion to time
   EXPECT_LT(drift[2].momentum, 3e-12);
   EXPECT_LT(std::fabs(drift[2].last - drift[2].first), 0.05 * drift[2].worst);
   EXPECT_LT(drift[2].worst, 1e-3);
 }
 
-// Every kind of joint on a floating root, the user's joint too.
+// Every kind of joint on a floating root, a user-defined one included.
 TEST(Variational, KeepsAFloatingTreesMomentumToRounding) {
   Random random(81);
   const Model model = lossless_tree(random, all_joints(FreeJoint{}));
@@ -114,10 +114,10 @@ TEST(Variational, KeepsAFloatingTreesMomentumToRounding) {
   EXPECT_LT(d.momentum, 2e-12);  // measured: 1.3e-13
 }
 
-// A pendulum of three links on balls, in gravity. Chaotic, so the numbers are not random ones:
-// those depend on the compiler's order of evaluation. Measured after 40 s: RK4 has lost 1.4e-3 J at
-// steps of 10 ms; the variational method, at 2 ms, swings by 8e-4 J about a mean that moves by 3e-5
-// J.
+// A pendulum of three links on ball joints, in gravity. It is chaotic, so its numbers are fixed:
+// random ones would depend on the compiler's order of evaluation. Measured after 40 s: RK4 has lost
+// 1.4e-3 J in steps of 10 ms; the variational integrator, in steps of 2 ms, oscillates by 8e-4 J
+// about a mean that moves by 3e-5 J.
 TEST(Variational, EnergyHasNoTrendInGravity) {
   ModelBuilder builder;
   const Inertia link = Inertia(1.2, Vec3{0.02, 0.03, 0.04}).about({-0.05, 0.03, 0.25});
@@ -136,10 +136,10 @@ TEST(Variational, EnergyHasNoTrendInGravity) {
   std::printf("worst %.1e first %.1e last %.1e; RK4 worst %.1e first %.1e last %.1e\n", d.worst,
               d.first, d.last, rk4.worst, rk4.first, rk4.last);
   EXPECT_LT(std::fabs(d.last - d.first), 0.1 * d.worst);
-  EXPECT_GT(std::fabs(rk4.last), 0.5 * rk4.worst);  // ends where it is worst: a trend
+  EXPECT_GT(std::fabs(rk4.last), 0.5 * rk4.worst);  // the final error is the largest: a drift
 }
 
-// Forward, turned about, and back again.
+// Forwards, with reversed velocities, and back again.
 TEST(Variational, IsReversible) {
   Random random(83);
   const Model model = lossless_tree(random, all_joints(BallJoint{}));
@@ -160,7 +160,7 @@ TEST(Variational, IsReversible) {
   EXPECT_GT(off[0], 1e-4);
 }
 
-// The step of a double pendulum as a map of (q, p), p = M(q) v: its slope A, by central
+// The step of a double pendulum as a map of (q, p), p = M(q) v: its Jacobian A, by central
 // differences, satisfies A^T Omega A = Omega.
 TEST(Variational, IsSymplectic) {
   Random random(84);
@@ -222,7 +222,7 @@ TEST(Variational, SolvesItsEquationInFewRounds) {
   EXPECT_LE(most, 6);
 }
 
-// A damper beyond what the iteration can follow is told, not followed wrongly.
+// Damping too stiff for the iteration is reported, not integrated wrongly.
 TEST(Variational, SaysThatADamperIsTooStiffForTheStep) {
   ModelBuilder builder;
   must_build(builder.add(

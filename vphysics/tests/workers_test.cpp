@@ -1,4 +1,4 @@
-// Who helps with a step, and how many, does not matter: the same bits.
+// A step gives the same bits with any task scheduler and any number of workers.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 #include "joints_rig.h"
 #include "vphysics/task_scheduler.h"
-// The thread sanitizer does not see how Debian's oneTBB, not built for it, hands work over.
+// The thread sanitizer does not see how Debian's oneTBB, built without it, hands tasks over.
 #if defined(VP_TEST_TBB) && defined(__has_feature)
 #if __has_feature(thread_sanitizer)
 #undef VP_TEST_TBB
@@ -21,7 +21,7 @@
 namespace vp::test {
 namespace {
 
-// One grain after the other, the last first.
+// Runs the grains one after the other, in reverse order.
 class Backwards final : public TaskScheduler {
  public:
   int parts = 0;
@@ -34,7 +34,7 @@ class Backwards final : public TaskScheduler {
   }
 };
 
-// As many threads as it is told, each taking the next grain that is left.
+// Runs a given number of threads; each takes the next free grain.
 class Threads final : public TaskScheduler {
  public:
   explicit Threads(int count) : begin_(count), end_(count) {
@@ -78,8 +78,8 @@ class Threads final : public TaskScheduler {
   std::vector<std::thread> others_;
 };
 
-// Enough of everything that each loop is shared: boxes and balls that fall on one another and on a
-// belt, chains, and a corner that falls asleep.
+// Enough objects that each loop is shared: boxes and balls that fall on one another and on a belt,
+// chains, and a corner that falls asleep.
 World busy_world(int region_bodies) {
   WorldDesc desc;
   desc.sleep_after = 0.05;
@@ -127,12 +127,12 @@ std::vector<std::uint64_t> Workers::alone_;
 TEST_F(Workers, MayTakeThePartsInAnyOrder) {
   const auto jobs = std::make_shared<Backwards>();
   EXPECT_EQ(hashes_with(jobs), alone_);
-  EXPECT_GT(jobs->parts, 2000);  // the loops were shared indeed
+  EXPECT_GT(jobs->parts, 2000);  // the loops were shared
   World world = busy_world(2048);
   for (int i = 0; i < 30; ++i) must(world.step(1.0 / 240));
   EXPECT_GT(world.counters().contacts, 1000u);
 }
-// Fewer steps: where threads outnumber cores each loop waits for all of them to have had a turn.
+// Fewer steps: with more threads than cores, each loop waits until all of them have run.
 TEST_F(Workers, MayBeTwoThreads) {
   EXPECT_EQ(hashes_with(std::make_shared<Threads>(2), 20),
             std::vector<std::uint64_t>(alone_.begin(), alone_.begin() + 2));
@@ -149,8 +149,8 @@ TEST_F(Workers, MayBeThoseOfOneTbb) {
   }
 }
 #endif
-// Contacts alone, in regions of a few bodies that are divided anew on the way: a heap on a lift
-// that rises and turns.
+// Contacts only, in regions of a few bodies that are recomputed on the way: a heap on a lift that
+// rises and rotates.
 std::vector<std::uint64_t> hashes_of_lift(const std::shared_ptr<TaskScheduler>& jobs) {
   WorldDesc desc;
   desc.region_bodies = 12;
@@ -178,7 +178,7 @@ TEST_F(Workers, MayTakeTheTurnsOfRegions) {
   EXPECT_EQ(hashes_of_lift(std::make_shared<Backwards>()), alone);
   EXPECT_EQ(hashes_of_lift(std::make_shared<Threads>(2)), alone);
 }
-// And where each takes regions of their own.
+// Also with regions.
 TEST_F(Workers, MayTakeRegions) {
   constexpr int kRegionBodies = 100;
   const auto alone = hashes_with(nullptr, 30, kRegionBodies);
@@ -190,7 +190,7 @@ TEST_F(Workers, MayTakeRegions) {
   must(world.step(1.0 / 240));
   EXPECT_EQ(world.counters().regions, 16u);
 }
-// In the midst of a run.
+// Changed between steps of a run.
 TEST_F(Workers, MayComeAndGo) {
   World world = busy_world(2048);
   for (int i = 0; i < 30; ++i) {

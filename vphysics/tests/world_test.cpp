@@ -1,4 +1,4 @@
-// The world's calls: what they refuse, what they report, what they find.
+// The world's calls: rejected arguments, reports, query results.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();
 constexpr double kBad[] = {kNaN, kInf, -kInf, 1e300};
 
-// Refused with a sentence, and nothing has changed.
+// Expects an error with a message, and no change.
 template <class Call>
 void expect_refused(World& world, Call call, Errc code = Errc::invalid_argument) {
   const std::uint64_t before = world.state_hash();
@@ -95,7 +95,7 @@ TEST(CreateArticulation, RefusesWhatItCannotSimulate) {
     expect_refused(
         world, [&] { return world.create_articulation(desc); }, code);
   };
-  // Nothing turns about its axis.
+  // No inertia about its axis.
   refused([](LinkSpec& l) { l.inertia = Inertia(1.0, Vec3{1, 1, 0}); }, Errc::singular);
   refused([](LinkSpec& l) { l.inertia = Inertia(1.0, Vec3{}); }, Errc::singular);
   refused([](LinkSpec& l) { l.inertia = Inertia(1e10, Vec3{1, 1, 1}); });
@@ -197,7 +197,7 @@ TEST(Assertions, OfACallersMistakeReachTheHandler) {
   EXPECT_EQ(assertions, 3);
 #else
   World world;
-  EXPECT_EQ(world.pose(BodyId{3, 1}), SE3{});  // off: a harmless answer
+  EXPECT_EQ(world.pose(BodyId{3, 1}), SE3{});  // asserts off: a harmless default
 #endif
 }
 
@@ -257,7 +257,7 @@ TEST(Events, OfRestAreOneBegin) {
   EXPECT_EQ(others, 0);
 }
 
-// A ball at 25 m/s is inside a plate of 1 mm for less than a step, and is still seen.
+// A ball at 25 m/s is inside a plate of 1 mm for less than a step, and is still detected.
 TEST(Sensor, SeesABallThatIsThroughWithinAStep) {
   World world({.gravity = {}});
   BodyDesc fixed;
@@ -282,8 +282,8 @@ TEST(Sensor, SeesABallThatIsThroughWithinAStep) {
   EXPECT_EQ(world.velocity(ball).v, (Vec3{45, 0, 0}));
 }
 
-// Balls so fast between walls so near that a pair parts and meets again within one step, past
-// sensors that lie side by side.
+// Balls so fast between walls so close that a pair separates and collides again within one step,
+// with sensors side by side on their paths.
 World rattle() {
   World world({.gravity = {}, .max_impacts_per_step = 64});
   const Material bouncy{0.0, 1.0, 0.0};

@@ -1,5 +1,6 @@
-// How well a scene stands, from its bodies' poses alone. The geometry is our own and not the
-// engine's, and the same for every engine that is measured.
+// Measures of a scene from its bodies' poses alone: bodies in place, penetration, drift, joint
+// separation. The geometry code is independent of the engine, and the same for every engine that is
+// measured.
 #pragma once
 
 #include <span>
@@ -8,28 +9,30 @@
 
 namespace scenes {
 
-// How deep two shapes are in each other: the shortest way to part them [m]. Negative where they are
-// apart, but then not always their distance. One of them may be of fixed bodies only, not both. Of
-// Terrain: how far corners are in the triangle under them, and balls at centres and ends of axes in
-// the triangles around. Of a Hull and another one or a Box: the deepest corner of the one in the
-// other, by the face that is nearest; where only edges cross, nothing is seen. Of a Mesh: how far
-// corners, or balls at centres and ends of axes, are behind the triangle that is nearest, if that
-// is no farther than the radius of a ball around the other shape; and how deep the mesh's vertices
-// are in the other shape.
+// Penetration depth: the shortest translation that separates two shapes [m]. Negative if they are
+// separated, but then not always their distance. At most one of the shapes may be of a kind for
+// fixed bodies only.
+// Terrain: the depth of corners below the triangle under them, and of spheres at centres and ends
+// of axes in the triangles around them.
+// A Hull and another Hull or a Box: the depth of the deepest corner of one in the other, by the
+// nearest face. Crossings of edges only are not detected.
+// Mesh: the depth of corners, or of spheres at centres and ends of axes, behind the nearest
+// triangle, if it is within the other shape's bounding radius; and the depth of the mesh's vertices
+// in the other shape.
 double penetration(const Shape& a, const SE3& T_world_a, const Shape& b, const SE3& T_world_b);
 
 struct Standing {
   int in_place = 0, of = 0;  // dynamic bodies that exist
-  int lost = 0;              // of them, without a finite pose: they are in no other figure
-  double penetration = 0.0;  // deepest, of bodies that are not joined [m]; 0: none touch
-  double drift = 0.0;        // largest horizontal displacement from the start [m]
-  double sink = 0.0;         // largest vertical displacement from the start [m]
-  double gap = 0.0;          // largest distance between a joint's two frames' origins [m]
+  int lost = 0;              // those without a finite pose, left out of all other results
+  double penetration = 0.0;  // maximum, of bodies without a common joint [m]; 0: no contact
+  double drift = 0.0;        // maximum horizontal displacement from the start [m]
+  double sink = 0.0;         // maximum vertical displacement from the start [m]
+  double gap = 0.0;          // maximum distance between the origins of a joint's two frames [m]
 };
-// poses: T_world_body of all bodies of the scene, in their order; what does not exist at that time
-// [s] is left out.
+// poses: T_world_body of all bodies of the scene, in their order. Bodies that do not exist at the
+// given time [s] are left out.
 Standing measure(const Scene& scene, std::span<const SE3> poses, double time = 0.0);
-// The poses that the scene begins with.
+// The initial poses of the scene.
 std::vector<SE3> start_poses(const Scene& scene);
 
 }  // namespace scenes

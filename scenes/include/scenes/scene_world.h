@@ -1,4 +1,4 @@
-// A scene in a world of Virtual Physics, with what happens in it at its time.
+// A scene in a world of Virtual Physics, with its events at their times.
 #pragma once
 
 #include <map>
@@ -10,10 +10,10 @@
 
 namespace scenes {
 
-// Shapes as the engine has them. What shares its data here does so there.
+// Converts shapes to the engine's. Shapes that share data here share it there.
 class EngineShapes {
  public:
-  // Refused: what the engine refuses.
+  // Fails if the engine rejects the shape.
   vp::Expected<vp::Shape> of(const Shape& shape);
 
  private:
@@ -22,22 +22,23 @@ class EngineShapes {
 
 class SceneWorld {
  public:
-  // settings.gravity is the scene's. Refused: what the engine cannot have, with its reason.
+  // settings.gravity is replaced by the scene's. Fails with a reason if the engine rejects a part
+  // of the scene.
   static vp::Expected<SceneWorld> create(Scene scene, vp::WorldDesc settings = {});
 
-  // One step of the world; what is due before its middle happens first.
+  // Steps the world. Events that are due before the middle of the step happen first.
   vp::Expected<vp::StepStatus> step(double dt);
 
   const Scene& scene() const { return scene_; }
   double time() const { return time_; }  // [s] since the start
   vp::World& world() { return world_; }
   const vp::World& world() const { return world_; }
-  // Of all bodies of the scene, in their order, null of one that does not exist now; user data of a
-  // body and of its colliders is that index too.
+  // The bodies of the scene, in their order; null for one that does not exist now. The user data of
+  // a body and of its colliders is that index.
   const std::vector<vp::BodyId>& bodies() const { return bodies_; }
-  // How many of the scene's events have happened: bodies come and go with them alone.
+  // The number of the scene's events that have happened. Only events create and destroy bodies.
   std::size_t happened() const { return happened_; }
-  // What does not exist has the pose that it starts with.
+  // A body that does not exist has its initial pose.
   std::vector<SE3> poses() const;
   EngineShapes& shapes() { return shapes_; }
 

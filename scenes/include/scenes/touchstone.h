@@ -1,5 +1,5 @@
-// Scenes whose end is known in closed form: who has them right has masses, moments of inertia,
-// gravity, friction, restitution, launches, joints and their limits as the scenes say.
+// Scenes with a closed-form final state. An engine that reaches it has masses, moments of inertia,
+// gravity, friction, restitution, launches, joints and joint limits as the scenes define them.
 #pragma once
 
 #include <span>
@@ -12,10 +12,11 @@ namespace scenes {
 struct Expectation {
   const char* what;
   int body;
-  Vec3 point;        // in the body's frame
-  Vec3 expected;     // where it is at the scene's end, world frame
-  double tolerance;  // [m]: for steps of 1/240 s, and contacts that give by a few millimetres
-  // Of two bodies it is the mean of their points that is expected, with this share of the other's.
+  Vec3 point;        // in the body frame
+  Vec3 expected;     // its position at the scene's end, world frame
+  double tolerance;  // [m]: for steps of 1/240 s, and contacts that penetrate a few millimetres
+  // With a second body, the expected point is the mean of both bodies' points; `share` is the
+  // weight of the other body's point.
   int other = -1;
   double share = 0.0;
 
@@ -29,9 +30,9 @@ struct Touchstone {
   Scene scene;
   std::vector<Expectation> expectations;
 };
-// Bodies that slide, roll, fall, collide, turn and are launched.
+// Bodies that slide, roll, fall, collide, rotate and are launched.
 Touchstone touchstone();
-// Pendulums on hinges and balls, and arms that fall onto the limits of their hinges.
+// Pendulums on hinges and ball joints, and arms that fall onto the limits of their hinges.
 Touchstone joined_touchstone();
 
 }  // namespace scenes
