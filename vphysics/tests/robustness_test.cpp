@@ -191,7 +191,7 @@ TEST(Snapshot, CarriesThatTheLastStepHadAPositionError) {
 // A ball, and a link above another ball, which the impact limit stops in every step once they would
 // touch: at 1 m/s, by the 1 mm between them in a step of 1 ms. Before the fix, they had 9.8 m/s
 // after a second.
-TEST(SlotImpulses, CollectsNoSpeedFromGravity) {
+TEST(ImpactLimit, CollectsNoSpeedFromGravity) {
   WorldDesc desc;
   desc.max_impacts_per_step = 0;
   World world(desc);
