@@ -37,7 +37,7 @@ enum class Limit : std::uint8_t {
   // Shapes overlap, and the search for their penetration depth reached its iteration limit with an
   // error above a thousandth of the smaller one's size. The step used the best result.
   distances,
-  // A body has more contacts than there are colours: 40 with moving bodies and 23 with others. The
+  // A body has more contacts than there are colours: 64 with moving bodies and 63 with others. The
   // rest were solved sequentially, which costs time only.
   colours,
   // This step and the one before ended with shapes that overlap by more than half of the smaller
