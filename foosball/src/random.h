@@ -1,5 +1,6 @@
-// A small generator whose output is the same everywhere (the standard's distributions are not).
-// PCG-XSH-RR 64/32, O'Neill 2014; seeded through SplitMix64, so that neighbouring seeds differ.
+// A small random generator with the same output on every platform (the standard's distributions
+// differ). PCG-XSH-RR 64/32, O'Neill 2014. SplitMix64 seeds it, so that neighbouring seeds give
+// different sequences.
 #pragma once
 
 #include <cstdint>
