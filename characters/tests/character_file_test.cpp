@@ -96,7 +96,8 @@ void expect_ranges(const Fields& fields, const std::string& section) {
     std::snprintf(below, sizeof below, "%.17e", std::nextafter(f.least, -INFINITY));
     std::snprintf(above, sizeof above, "%.17e", std::nextafter(f.most, INFINITY));
     const bool foot = std::string(f.name).starts_with("foot_reach");
-    const std::string shallow = foot ? "foot_depth = 0.012\n" : "";  // no corner too far
+    const std::string shallow =
+        foot ? "foot_depth = 0.012\n" : "";  // the foot's corner stays in range
     EXPECT_EQ(error_of(text(least) + shallow), "") << f.name;
     EXPECT_EQ(error_of(text(most) + shallow), "") << f.name;
     for (const std::string& bad :
