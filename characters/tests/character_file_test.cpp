@@ -42,7 +42,7 @@ bool says(const std::string& error, const std::string& part) {
   return error.find(part) != std::string::npos;
 }
 
-// --- what is taken -------------------------------------------------------------------------------
+// --- accepted files ------------------------------------------------------------------------------
 
 TEST(CharacterFile, TheBuiltInOnesAreTheFilesOfTheRepository) {
   const auto files = load_characters(CHARACTERS_DATA);
@@ -82,7 +82,7 @@ TEST(CharacterFile, TakesCarriageReturnsAByteOrderMarkAndNamesOfAnyScript) {
   EXPECT_EQ(c->body.mass, 0.1);
 }
 
-// --- what is refused -----------------------------------------------------------------------------
+// --- rejected files ------------------------------------------------------------------------------
 
 template <class Fields>
 void expect_ranges(const Fields& fields, const std::string& section) {

@@ -214,7 +214,7 @@ void Assists::pull(int rod, const AssistView& view, double slide, bool strikes, 
   own.pull = towards(own.pull, goal, kAimRate * kTick * ticks);
 }
 
-// --- all together --------------------------------------------------------------------------------
+// --- all assists ---------------------------------------------------------------------------------
 
 std::array<RodTarget, kRods> Assists::steer(const AssistView& view, const AssistHand& hand,
                                             int ticks) {

@@ -14,7 +14,7 @@ namespace {
 constexpr double kDrifts = 0.001, kDriftsBy = 0.03;  // [m], [m/s]
 constexpr double kSurprise = 0.008, kSurpriseBy = 0.4;
 
-constexpr double kKeepsOn = 0.6;  // of another player's displacement: the hand may have stopped
+constexpr double kKeepsOn = 0.6;  // fraction of another's displacement: the hand may have stopped
 
 // A world allocates in its first steps: in the very first one, and when the ball first touches
 // something. The start of a run overwrites the resulting states of rods and ball.

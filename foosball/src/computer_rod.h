@@ -123,7 +123,7 @@ class ComputerRod {
   vp::Vec3 sent_;
   double scoop_side_ = 0.0;    // 0: not chosen yet
   double scoop_rate_ = 0.0;    // [rad/s]
-  double scoop_beside_ = 0.0;  // distance of the foot's edge beyond the ball's centre [m]
+  double scoop_beside_ = 0.0;  // from the foot's edge to the ball's centre [m]
   bool struck_ = false;        // in this tick
   PassPlan pass_;              // the pass that the stroke plays, if any
   int receives_ = 0;           // ticks that remain to wait for a pass

@@ -191,7 +191,7 @@ void Match::Impl::leave_idle_screen() {
   enter(Screen::logo);
 }
 
-// --- what is seen --------------------------------------------------------------------------------
+// --- view ----------------------------------------------------------------------------------------
 
 void Match::Impl::refresh_view() {
   const BallState ball = world->ball();
@@ -263,7 +263,7 @@ vp::Expected<void> Match::Impl::restore(std::span<const std::byte> bytes) {
   return {};
 }
 
-// --- the public face -----------------------------------------------------------------------------
+// --- public interface ----------------------------------------------------------------------------
 
 vp::Expected<Match> Match::create(const MatchDesc& desc) {
   if (!plausible(desc)) {

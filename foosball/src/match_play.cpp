@@ -38,7 +38,7 @@ Shot shot_by(const TableSpec& table, const Touch& touch, const vp::Vec3& velocit
 
 }  // namespace
 
-// --- what the ball meets -------------------------------------------------------------------------
+// --- contacts of the ball ------------------------------------------------------------------------
 
 void Match::Impl::watch_ball(const vp::Vec3& velocity_before) {
   if (!state.ball_in_play) return;

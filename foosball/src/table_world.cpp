@@ -421,7 +421,7 @@ bool TableWorld::free_for_ball(const Vec3& position) const {
   return found_.empty();
 }
 
-// --- time ----------------------------------------------------------------------------------------
+// --- step ----------------------------------------------------------------------------------------
 
 // Midway between two rods is a strip that feet hardly reach. There a force towards the nearer rod
 // acts on the ball, as if the field sagged by a millimetre: a ball at rest rolls to where it can be

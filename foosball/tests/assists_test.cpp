@@ -237,7 +237,7 @@ TEST(Aim, PrefersTheLessGuardedOfTwoPlacesThatAreNear) {
   EXPECT_GT(place[0], 0.013);  // further on the edge: the ball goes to -y, away from both
 }
 
-// --- all -----------------------------------------------------------------------------------------
+// --- all assists ---------------------------------------------------------------------------------
 
 TEST(Assists, ThatAreOffChangeNothing) {
   Assists assists = assists_with({});

@@ -10,8 +10,7 @@
 namespace foosball {
 namespace {
 
-// --- meaning of a setup
-// ---------------------------------------------------------------------------
+// --- meaning of a setup --------------------------------------------------------------------------
 
 TEST(GameSetup, ADateIsADayOfTheCalendar) {
   for (const std::uint32_t day : {20261122u, 20240229u, 20000229u, 20261231u, 10000101u})
@@ -214,7 +213,7 @@ TEST(Challenge, DrawsFromTheBuiltInCharactersAlone) {
   }
 }
 
-// --- to the bit ----------------------------------------------------------------------------------
+// --- determinism ---------------------------------------------------------------------------------
 
 // A match in which people change the game on every screen.
 std::vector<Command> commands_at(int tick) {

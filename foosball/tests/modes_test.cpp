@@ -14,7 +14,7 @@ class ModesTest : public MatchTest {
   }
 };
 
-// --- an absent side ------------------------------------------------------------------------------
+// --- an absent team ------------------------------------------------------------------------------
 
 // Time of play until the present team has won, or the limit [s]. seed: of the match and of the
 // player. Regression: 2 goals in 47 minutes, with the ball at rest for 98.6 % of the time.
@@ -180,7 +180,7 @@ TEST_F(ModesTest, AStrikeThatSendsTheBallOffIsAShotWithSpeedAndAngle) {
   EXPECT_EQ(view().last_shot.speed, shot->value);
 }
 
-// --- nobody there --------------------------------------------------------------------------------
+// --- no players ----------------------------------------------------------------------------------
 
 TEST_F(ModesTest, EveryScreenReturnsToTheLogoWhenNobodyMovesARod) {
   desc.rules.idle_seconds = 3.0;
@@ -460,7 +460,7 @@ TEST_F(ModesTest, TheLadderIsClimbedByWinningAndLeftByLosing) {
   EXPECT_EQ(view().rung, 0);
 }
 
-// --- saved anywhere ------------------------------------------------------------------------------
+// --- save and restore ----------------------------------------------------------------------------
 
 // Every mode and both rule sets, restored at random ticks of a minute of play with every screen, a
 // pause, a time-out and a spin: the match continues to the same hash.

@@ -82,7 +82,7 @@ struct Character {
 };
 using Characters = std::vector<Character>;
 
-// --- numbers with their ranges -------------------------------------------------------------------
+// --- numbers and their ranges --------------------------------------------------------------------
 
 // A number of T in a character file, with its range.
 template <class T>

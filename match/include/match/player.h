@@ -5,8 +5,7 @@
 //   classic:SKILL     the original computer player, SKILL 0 to 1 (default 0.6)
 //   idle              no hand on any rod
 //   spinner           every rod spins all the time, with a man level with the ball
-//   one-rod:PLAYER    PLAYER with one hand and all assists (foosball/assists.h), as a person with a
-//   mouse
+//   one-rod:PLAYER    PLAYER with one hand and all assists (foosball/assists.h), as with a mouse
 #pragma once
 
 #include <cstdint>

@@ -4,8 +4,8 @@
 // whose mean s is the expected score. H0: s = s0, H1: s = s1. After N pairs with frequencies p_i
 // the generalized log-likelihood ratio is
 //   LLR = N sum_i p_i log(p1_i / p0_i),   pk the distribution of mean sk that is nearest to p,
-//   pk_i = p_i / (1 + t (a_i - sk)),      t the root of sum_i p_i (a_i - sk) / (1 + t (a_i - sk)) =
-//   0.
+//   pk_i = p_i / (1 + t (a_i - sk)),
+//   t the root of sum_i p_i (a_i - sk) / (1 + t (a_i - sk)) = 0.
 // The test ends with H1 when LLR >= log((1 - beta) / alpha), with H0 when LLR <= log(beta / (1 -
 // alpha)). By Wald's bounds the error probabilities are at most about alpha and beta.
 // Sources: Wald 1945 (wald1945), Van den Bergh 2020 (vandenbergh2020), docs/references.bib.
