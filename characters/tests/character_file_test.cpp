@@ -96,8 +96,7 @@ void expect_ranges(const Fields& fields, const std::string& section) {
     std::snprintf(below, sizeof below, "%.17e", std::nextafter(f.least, -INFINITY));
     std::snprintf(above, sizeof above, "%.17e", std::nextafter(f.most, INFINITY));
     const bool foot = std::string(f.name).starts_with("foot_reach");
-    const std::string shallow =
-        foot ? "foot_depth = 0.012\n" : "";  // the foot's corner stays in range
+    const std::string shallow = foot ? "foot_depth = 0.012\n" : "";  // corner in range
     EXPECT_EQ(error_of(text(least) + shallow), "") << f.name;
     EXPECT_EQ(error_of(text(most) + shallow), "") << f.name;
     for (const std::string& bad :

@@ -58,8 +58,7 @@ std::uint64_t digest(const Characters& characters) {
 }
 
 std::array<ManBox, kManParts> boxes_of(const CharacterBody& c) {
-  constexpr double kFootHeight =
-      0.024;  // its top is above a ball on the field, so that no edge lifts the ball
+  constexpr double kFootHeight = 0.024;  // top above a ball on the field: no edge lifts the ball
   constexpr double kHip = -0.028;
   constexpr double kShoulder = 0.020;
   const double sole = -c.foot_reach;

@@ -33,8 +33,7 @@ class ClassicPlayer final : public ComputerPlayer::Impl {
   ComputerSight sight_;
   std::vector<RodTactics> rods_;  // in order from its own goal
   Layout layout_ = Layout::tournament;
-  std::uint8_t lines_ = 0,
-               before_ = 0;  // its lines in this tick and the previous one, as bits by Line
+  std::uint8_t lines_ = 0, before_ = 0;  // its lines now and in the previous tick, as bits by Line
 };
 
 void ClassicPlayer::play(const MatchView& view, RodTargets& targets, std::uint8_t rods) {

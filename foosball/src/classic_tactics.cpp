@@ -244,8 +244,7 @@ void RodTactics::wind_up(const TableSpec& table, const Sighting& now, const Temp
 // A ball far ahead is met by a foot that already rises, and would leave the table. The further
 // ahead, the lower the power, so that the upward part of the speed stays small.
 double RodTactics::power_for(const TableSpec& table, double ahead) const {
-  constexpr double kLift =
-      0.11;  // upward fraction of a full strike that keeps the ball on the table
+  constexpr double kLift = 0.11;  // upward fraction at full power that stays on the table
   constexpr double kLeast = 0.25;
   const double rise = std::max(0.0, ahead - 0.010 - table.ball_radius);
   const double arm = table.rod_height - table.ball_radius;

@@ -40,8 +40,7 @@ class LevelPlayer final : public ComputerPlayer::Impl {
   ComputerSight sight_;
   ComputerMind mind_;
   std::optional<BallForecast> forecast_;
-  std::uint8_t lines_ = 0,
-               before_ = 0;  // its lines in this tick and the previous one, as bits by Line
+  std::uint8_t lines_ = 0, before_ = 0;  // its lines now and in the previous tick, as bits by Line
   Screen screen_ = Screen::logo;
 };
 

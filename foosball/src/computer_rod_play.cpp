@@ -313,8 +313,7 @@ void ComputerRod::strike_if_ready(const Sighting& now, const Meeting& m, bool al
 
 // Error of the slope with the flat of the foot or with its edge [1].
 double ComputerRod::slope_error(bool flat, const Temperament& t) const {
-  constexpr double kFlatError = 0.012,
-                   kEdge = 50.0;  // slope per metre of lateral error of the foot
+  constexpr double kFlatError = 0.012, kEdge = 50.0;  // kEdge: per metre of lateral error
   return flat ? kFlatError : kFlatError + kEdge * std::min(t.aim_error, judgment_.aim_belief);
 }
 
@@ -329,8 +328,7 @@ double ComputerRod::shot_worth(const Sighting& then, const Meeting& m, double sl
 
 // True if the rod can reach the offset, and the ball leaves the wall.
 bool ComputerRod::can_turn(const Meeting& m, double slope, double natural) const {
-  const double wall =
-      0.5 * table_->width - table_->ball_radius - 0.02;  // nearer to it the ball only rubs along
+  const double wall = 0.5 * table_->width - table_->ball_radius - 0.02;  // it would rub along
   if (std::fabs(slope - natural) > kSteepest) return false;
   const double offset = foot_offset(foot_, *table_, m, slope - natural);
   if (std::fabs(m.y - man_offset(spec(), man_) + offset) > spec().slide_limit) return false;

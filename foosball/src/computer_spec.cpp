@@ -58,8 +58,7 @@ PlayStyle style_of_level(int level) {
 }
 
 PlayerSpec challenge_opponent(std::uint64_t challenge) {
-  Random random(challenge ^
-                0x6f70706f6e656e74u);  // "opponent": a sequence different from the match's
+  Random random(challenge ^ 0x6f70706f6e656e74u);  // "opponent": unlike the match's sequence
   const int level = 1 + random.below(kLevels);
   return {.level = level, .style = static_cast<PlayStyle>(random.below(kPlayStyles))};
 }

@@ -35,8 +35,7 @@ double contact_swing(const TableSpec& table, const Foot& foot, double ahead) {
 
 double stroke_time(double from, double contact, const AxisLimits& stroke) {
   constexpr double kLag = 0.0013;  // [s]: a tick until the hand moves, and the foot's delay
-  constexpr double kEarly =
-      0.04;  // [rad]: the ball leaves before the foot has reached the contact swing
+  constexpr double kEarly = 0.04;  // [rad]: the ball leaves before the contact swing is reached
   const double way = std::max(0.0, contact - kEarly - from);
   const double gathering = 0.5 * stroke.rate * stroke.rate / stroke.acceleration;
   if (way < gathering) return kLag + std::sqrt(2.0 * way / stroke.acceleration);

@@ -124,8 +124,7 @@ struct MatchState {
   std::array<Touch, kTeams> touch_of{};  // the latest of each team
   bool shot_pending = false;             // not yet decided whether the touch was a shot
   BallWatch watch;
-  std::uint64_t review_ticks =
-      0;  // remaining time for which a goal waits until the rod that shot stops
+  std::uint64_t review_ticks = 0;  // waiting time of a goal for the rod that shot
 
   // Stops.
   std::uint64_t time_out_left = 0;  // ticks; 0: none

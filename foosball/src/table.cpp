@@ -93,8 +93,7 @@ double field_reach(const TableSpec& table, const CharacterBody& c) {
   double reach = 0.0;
   for (int i = 0; i <= 1000; ++i) {
     const double sine = 0.001 * i, cosine = std::sqrt(1.0 - sine * sine);
-    const double edge =
-        table.rod_height - c.foot_reach * cosine + half_depth * sine;  // height of the edge
+    const double edge = table.rod_height - c.foot_reach * cosine + half_depth * sine;  // height
     if (edge >= 2.0 * r) continue;
     const double above = std::max(0.0, edge - r);  // of the edge above the ball's centre
     reach = std::max(reach, c.foot_reach * sine + half_depth * cosine +

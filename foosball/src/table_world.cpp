@@ -339,8 +339,7 @@ void TableWorld::read_rods() {
 // him to the hand's state, modulo full turns. From then on they move identically to the bit, and
 // are computed once.
 void TableWorld::join_hands() {
-  constexpr double kAngle = 1e-9,
-                   kRate = 1e-7;  // [rad], [rad/s]; at the foot less than an atom's diameter
+  constexpr double kAngle = 1e-9, kRate = 1e-7;  // [rad], [rad/s]; at the foot less than an atom
   bool joined = false;
   for (int rod = 0; rod < kRods; ++rod) {
     if (at_hand_[rod]) continue;

@@ -130,8 +130,7 @@ class TableWorld {
     RodTarget target;
     double now_slide, now_angle;
     AxisDrive slide, hand;
-    bool at_hand =
-        false;  // and the men have the hand's; false: not known, for example after restore()
+    bool at_hand = false;  // the men have the hand's drive; false also: not known, after restore()
   };
   std::array<RowDrive, kRods> driven_{};  // as set in the world
   BallState ball_state_;                  // cached after each change

@@ -119,8 +119,8 @@ TEST_P(Exhibition, HasBouncesThatAreSeenAndABallThatStaysOnTheTable) {
 }
 
 TEST_P(Exhibition, OfTwentySecondsShowsShots) {
-  constexpr int kExhibitions =
-      32;  // with eight, one program in twenty would have three with a goal by chance
+  // Of eight exhibitions, three have a goal by chance in one program in twenty.
+  constexpr int kExhibitions = 32;
   int with_goal = 0, shots = 0, fewest = 1000;
   for (std::uint64_t seed = 1; seed <= kExhibitions; ++seed) {
     Tally tally;

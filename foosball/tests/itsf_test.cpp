@@ -115,8 +115,7 @@ TEST_F(ItsfTest, Article8ADeadBallGoesToTheNearestDefenceOrIsServedAgain) {
   for (RodTarget& rod : input.rods) rod.angle = 1.5;
   run(0.3);
   int server = 0;
-  shoot({0.40, 0.33 - 0.0173, 0.5},
-        {});  // into the strip at the corner that the two men do not reach
+  shoot({0.40, 0.33 - 0.0173, 0.5}, {});  // into the corner that the two men do not reach
   arrange([](MatchState&, TableWorld& world) { world.set_ball({0.45, 0.0, 0.0173}, {}); });
   for (int i = 0; i < 2500; ++i) {
     arrange([](MatchState&, TableWorld& world) { world.set_ball({0.448, 0.0, 0.0173}, {}); });

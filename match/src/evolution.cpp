@@ -56,8 +56,7 @@ EvolutionStrategy::EvolutionStrategy(Point start, double step, std::size_t popul
   c_s_ = (mu_w_ + 2.0) / (n + mu_w_ + 5.0);
   d_s_ = 1.0 + c_s_ + 2.0 * std::max(0.0, std::sqrt((mu_w_ - 1.0) / (n + 1.0)) - 1.0);
   c_c_ = (4.0 + mu_w_ / n) / (n + 4.0 + 2.0 * mu_w_ / n);
-  const double faster =
-      (n + 2.0) / 3.0;  // a diagonal has n numbers instead of n (n + 1) / 2: larger learning rates
+  const double faster = (n + 2.0) / 3.0;  // learning rates for n instead of n (n + 1) / 2 numbers
   c_1_ = std::min(0.5, faster * 2.0 / ((n + 1.3) * (n + 1.3) + mu_w_));
   c_mu_ = std::min(1.0 - c_1_,
                    faster * 2.0 * (mu_w_ - 2.0 + 1.0 / mu_w_) / ((n + 2.0) * (n + 2.0) + mu_w_));

@@ -178,8 +178,7 @@ struct Kind {
   const char* name;
   const char* syntax;
   const char* meaning;
-  Made (*make)(const PlayerDesc&,
-               const std::string& argument);  // argument: the text after the colon
+  Made (*make)(const PlayerDesc&, const std::string& argument);  // text after the colon
 };
 
 constexpr Kind kKinds[] = {

@@ -13,8 +13,7 @@ using Players = std::map<std::string, Standing>;
 double weighted_rating(const Team& team, Players& players) {
   double sum = 0.0, weights = 0.0;
   for (const Player& player : team.players) {
-    const double weight =
-        std::max(player.share, 1e-6);  // avoids a division by zero if nobody played
+    const double weight = std::max(player.share, 1e-6);  // avoids a division by 0
     sum += weight * players[player.name].rating;
     weights += weight;
   }

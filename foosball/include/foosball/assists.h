@@ -34,9 +34,9 @@ inline constexpr double kAssistAcceleration = 12.0;  // [m/s^2]
 inline constexpr double kSettleRate = 5.0;           // of men that return to hanging down [rad/s]
 inline constexpr double kAimPull = 0.008;            // limit of the aim's correction of a slide [m]
 inline constexpr double kAimRate = 0.25;             // and of its rate [m/s]
-inline constexpr double kAimReach =
-    0.030;  // the aim ignores a foot that is further from its target [m]: it corrects an aim, but
-            // does not replace it
+// The aim ignores a foot that is further from its target [m]: it corrects an aim, but replaces
+// none.
+inline constexpr double kAimReach = 0.030;
 // Automatic rod: another rod replaces the current one if it can act this much sooner [s]. With
 // less, the choice flickers while the ball is between two rods.
 inline constexpr double kSoonerBy = 0.12;
@@ -52,10 +52,9 @@ struct AssistView {
 // The person's input.
 struct AssistHand {
   std::array<RodTarget, kRods> targets{};
-  std::uint8_t held =
-      0;                 // rods in the hand, as bits: the hand alone moves them, except for the aim
-  bool strikes = false;  // presses or rotates to strike with the rod in hand: aim is active, and
-                         // the rod does not change
+  std::uint8_t held = 0;  // rods in the hand, as bits: only the aim affects them
+  bool strikes = false;   // presses or rotates to strike with the rod in hand: aim is active, and
+                          // the rod does not change
 };
 
 class Assists {

@@ -13,8 +13,7 @@ namespace foosball {
 inline constexpr int kMostGoals = 99;  // to win a set
 inline constexpr int kMostSets = 17;   // of a match (best of)
 inline constexpr std::uint32_t kMostMatchMs = 3'600'000;
-inline constexpr int kGoalsBeyond =
-    3;  // margin of max_goals over goals_to_win: a set to 5 ends at most at 8
+inline constexpr int kGoalsBeyond = 3;  // margin of max_goals over goals_to_win: 8 for 5
 inline constexpr std::uint32_t kFirstDate = 1000'01'01, kLastDate = 9999'12'31;
 
 struct GameSetup {

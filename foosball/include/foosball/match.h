@@ -91,8 +91,7 @@ struct Event {
                        // team, seen from above, counter-clockwise positive [rad]
   bool own = false;    // goal: scored by a man of the team that conceded
 };
-inline constexpr std::size_t kMaxEventsPerStep =
-    128;  // MatchView::events_dropped counts events beyond it
+inline constexpr std::size_t kMaxEventsPerStep = 128;  // further ones: MatchView::events_dropped
 
 struct MatchDesc {
   Layout layout = Layout::tournament;

@@ -48,9 +48,8 @@ struct Rules {
   int lead = 1;
   int sets_to_win = 1;
   double match_seconds = 0.0;  // playing time of a set; 0: no limit
-  bool golden_goal =
-      true;  // at a draw when the time ends, the next goal wins; false: the set is drawn
-  bool change_sides = false;  // between sets (13)
+  bool golden_goal = true;     // after a drawn time the next goal wins; false: the set is drawn
+  bool change_sides = false;   // between sets (13)
 
   // The ball.
   double dead_ball_seconds = 2.0;             // no man can reach it (8)

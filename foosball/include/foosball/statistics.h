@@ -92,9 +92,7 @@ struct Statistics {
   std::uint64_t balls_out = 0;
   std::uint64_t fouls = 0;
 
-  // Hands. A rod counts while a hand holds it (RodTarget::live).
-  std::array<std::array<std::uint64_t, 5>, kTeams>
-      moving_ticks{};  // [team][number of rods moving at once]
+  std::array<std::array<std::uint64_t, 5>, kTeams> moving_ticks{};  // [team][rods in motion]
   PerRod hand_ticks{};
   PerRod slide_reversals{};
   PerRod swing_reversals{};
@@ -107,12 +105,11 @@ struct Statistics {
   PerTeam passes_arrived{};  // that man touched the ball next
   PerTeam shots{};
   PerTeam shots_on_target{};
-  PerTeam saves{};                     // by the defending team
-  Histogram<300, 100'000> shot_speed;  // [m/s]
-  Histogram<500, 1'000> hop_height;    // height of the ball's underside above the ground [m]
-  Histogram<200, 10'000>
-      bounce_ratio;                // ratio of the heights after and before a bounce on the ground
-  Histogram<64, 1'000'000> rally;  // changes of team until play stopped
+  PerTeam saves{};                      // by the defending team
+  Histogram<300, 100'000> shot_speed;   // [m/s]
+  Histogram<500, 1'000> hop_height;     // height of the ball's underside above the ground [m]
+  Histogram<200, 10'000> bounce_ratio;  // height after a bounce on the ground to that before
+  Histogram<64, 1'000'000> rally;       // changes of team until play stopped
 
   std::uint64_t matches() const { return wins[0] + wins[1] + undecided; }
   void merge(const Statistics& other);

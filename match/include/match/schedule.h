@@ -43,8 +43,7 @@ class Schedule {
   GameDesc game(JobId id) const { return series_[id.series].game(id.game); }
   const std::vector<Series>& series() const { return series_; }
   std::uint64_t games_taken() const;
-  std::uint64_t games_at_most()
-      const;  // upper bound: all games of undecided series, and the counted ones of the others
+  std::uint64_t games_at_most() const;  // all games of undecided series, counted ones of others
 
  private:
   void take_known(std::size_t series);

@@ -53,9 +53,8 @@ struct SequentialTest {
 };
 
 struct Band {
-  double limit = 0.6;  // c: 1/2 < c < 1
-  double alpha =
-      0.05;  // error probability: "within" although s is outside; "beyond" although s is inside
+  double limit = 0.6;   // c: 1/2 < c < 1
+  double alpha = 0.05;  // error probability of "within" outside, and of "beyond" inside
 };
 
 // Processes the pairs in order.

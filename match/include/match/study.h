@@ -14,8 +14,8 @@ namespace match {
 
 struct StudyPlan {
   std::string player = default_player();  // for both teams
-  std::uint64_t seed =
-      1;  // of the first pair at every point: all points have the same serves and characters
+  // Of the first pair at every point: all points have the same serves and characters.
+  std::uint64_t seed = 1;
   std::uint64_t max_ticks = 600'000;
   std::uint64_t matches = 100;  // per point and layout
   std::uint64_t samples = 64;   // number of space-filling points

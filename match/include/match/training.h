@@ -20,8 +20,8 @@ struct TrainPlan {
   std::string player = "5";  // start of the search: a level, optionally with a style and values
   std::vector<std::string> opponents{"5", "classic:0.9"};
   std::vector<std::size_t> fields;  // indices in foosball::kJudgmentFields
-  SeriesDesc
-      base{};  // settings of all games, except the layout; its seed is the first generation's
+  // Settings of all games, except the layout; its seed is the first generation's.
+  SeriesDesc base{};
   std::uint64_t matches = 4;   // per sample, opponent and layout; even
   std::size_t population = 0;  // 0: usual_population()
   std::uint64_t generations = 20;
