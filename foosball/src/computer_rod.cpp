@@ -193,8 +193,8 @@ bool ComputerRod::ball_in_sweep(double goal, const Sighting& now) const {
   constexpr double kHigh = 0.10;  // [m]
   if (!now.ball_in_play || now.ball.z > kHigh) return false;
   const double hang = level();
-  const auto foot = [&](double swing) {  // distance ahead of the axis; the sine as a series,
-                                         // identical on all platforms
+  // Distance of the foot ahead of the axis. The sine is a series, identical on all platforms.
+  const auto foot = [&](double swing) {
     const double s = std::clamp(swing - hang, -kSoleAbove, kSoleAbove);
     return kFoot * s * (1.0 - s * s / 6.0 * (1.0 - s * s / 20.0));
   };

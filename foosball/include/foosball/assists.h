@@ -34,8 +34,7 @@ inline constexpr double kAssistAcceleration = 12.0;  // [m/s^2]
 inline constexpr double kSettleRate = 5.0;           // of men that return to hanging down [rad/s]
 inline constexpr double kAimPull = 0.008;            // limit of the aim's correction of a slide [m]
 inline constexpr double kAimRate = 0.25;             // and of its rate [m/s]
-// The aim ignores a foot that is further from its target [m]: it corrects an aim, but replaces
-// none.
+// The aim ignores a foot that is further from its target [m]: it only corrects a person's aim.
 inline constexpr double kAimReach = 0.030;
 // Automatic rod: another rod replaces the current one if it can act this much sooner [s]. With
 // less, the choice flickers while the ball is between two rods.
