@@ -44,7 +44,7 @@ bool ComputerScreens::work(const MatchView& view, HandAxis& slide, HandAxis& swi
 
 void ComputerScreens::work_selection(const MatchView& view, HandAxis& slide, HandAxis& swing) {
   constexpr double kLookAround = 0.4;                       // [s]
-  constexpr double kOneChoice = 2.0 * vp::kPi / 3.0 + 0.1;  // a little beyond a third of a turn
+  constexpr double kOneChoice = 2.0 * vp::kPi / 3.0 + 0.1;  // a little more than a third of a turn
   if (view.confirmed[team_] || view.screen_seconds < kLookAround) {
     slide.move(0.0, kCalmSlide);
     return;

@@ -23,7 +23,7 @@ class Random {
   int below(int n) {
     return static_cast<int>((std::uint64_t{next()} * static_cast<std::uint32_t>(n)) >> 32);
   }
-  // Bell-shaped, mean 0, deviation 1, within +-3: the sum of three uniforms.
+  // Approximately normal: mean 0, standard deviation 1, within +-3. The sum of three uniforms.
   double bell() { return 2.0 * (unit() + unit() + unit() - 1.5); }
 
   std::uint64_t state() const { return state_; }
