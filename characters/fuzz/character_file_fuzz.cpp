@@ -1,5 +1,5 @@
-// parse_character() on a stranger's file. What is accepted is written to the same character, and
-// passes through its record unchanged.
+// Fuzzes parse_character() with untrusted files. An accepted character must survive a round trip
+// through its file format and through its record.
 #include <cstdlib>
 #include <string_view>
 

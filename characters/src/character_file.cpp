@@ -26,7 +26,7 @@ using foosball::Colour;
 
 constexpr std::size_t kMostBytes = 64 * 1024;
 
-using Problem = std::optional<std::string>;  // none: all is well
+using Problem = std::optional<std::string>;  // none: success
 
 // --- messages ------------------------------------------------------------------------------------
 
@@ -34,7 +34,7 @@ std::string at(std::string_view file, const toml::source_region& where, const st
   return fmt::format("{}:{}: {}", file, where.begin.line, why);
 }
 
-// Letters to insert, leave out or replace (Levenshtein 1966).
+// Number of letters to insert, delete or replace (Levenshtein 1966).
 std::size_t distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   for (std::size_t k = 0; k <= b.size(); ++k) row[k] = k;
@@ -48,7 +48,7 @@ std::size_t distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
-// A key as it may be shown: a stranger's may be long, or hold anything.
+// An untrusted key in a printable form: it may be long, and contain anything.
 std::string shown(std::string_view key) {
   std::string text(key.substr(0, 40));
   std::ranges::replace_if(
@@ -115,7 +115,7 @@ Problem take_text(const toml::node& node, const char* name, std::size_t least, s
   return {};
 }
 
-// On every screen, in lists and in front of goals: as plain as a player's.
+// Appears on every screen, in lists and at goals: the same restrictions as for a player's name.
 Problem take_name(const toml::node& node, std::string_view file, std::string& name) {
   const Problem problem = take_text(node, "name", 1, foosball::kMaxCharacterName, file, name);
   if (problem || wire::clean_name(name) == name) return problem;
@@ -188,7 +188,7 @@ Problem take_look(const toml::table& table, std::string_view file, foosball::Cha
   return {};
 }
 
-// A section of the file, and what reads it.
+// Reads a section of the file with `take`.
 Problem take_section(const toml::node& node, const char* name, std::string_view file,
                      const std::function<Problem(const toml::table&)>& take) {
   const toml::table* table = node.as_table();

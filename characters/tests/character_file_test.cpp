@@ -42,7 +42,7 @@ bool says(const std::string& error, const std::string& part) {
   return error.find(part) != std::string::npos;
 }
 
-// --- what is taken -------------------------------------------------------------------------------
+// --- accepted files ------------------------------------------------------------------------------
 
 TEST(CharacterFile, TheBuiltInOnesAreTheFilesOfTheRepository) {
   const auto files = load_characters(CHARACTERS_DATA);
@@ -82,7 +82,7 @@ TEST(CharacterFile, TakesCarriageReturnsAByteOrderMarkAndNamesOfAnyScript) {
   EXPECT_EQ(c->body.mass, 0.1);
 }
 
-// --- what is refused -----------------------------------------------------------------------------
+// --- rejected files ------------------------------------------------------------------------------
 
 template <class Fields>
 void expect_ranges(const Fields& fields, const std::string& section) {
@@ -96,7 +96,7 @@ void expect_ranges(const Fields& fields, const std::string& section) {
     std::snprintf(below, sizeof below, "%.17e", std::nextafter(f.least, -INFINITY));
     std::snprintf(above, sizeof above, "%.17e", std::nextafter(f.most, INFINITY));
     const bool foot = std::string(f.name).starts_with("foot_reach");
-    const std::string shallow = foot ? "foot_depth = 0.012\n" : "";  // no corner too far
+    const std::string shallow = foot ? "foot_depth = 0.012\n" : "";  // corner in range
     EXPECT_EQ(error_of(text(least) + shallow), "") << f.name;
     EXPECT_EQ(error_of(text(most) + shallow), "") << f.name;
     for (const std::string& bad :

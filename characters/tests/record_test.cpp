@@ -23,7 +23,7 @@ TEST(Record, ThroughTheWireIsTheSame) {
   EXPECT_EQ(from_record(received), built_in_characters());
 }
 
-// Each number set to what a stranger may send: never a character that cannot be played.
+// Each number set to values that an untrusted sender may send: never an unplayable character.
 TEST(Record, NumbersOutOfRangeAreRefused) {
   const wire::Characters good = to_record(built_in_characters());
   const double bad[] = {std::nan(""), INFINITY, -INFINITY, -1.0, 1e300, 0x1p-1074};

@@ -1,7 +1,7 @@
-// Match::restore on a stranger's bytes. The first input byte chooses a saved match, what follows
-// are changes of it: place (2 bytes, little-endian), size less one (of which 3 bits count), bytes.
-// What is accepted must play on, and what it then saves must restore to the same match. Bytes of
-// the world are behind its checksum, and vphysics_restore_fuzz's.
+// Fuzzes Match::restore with untrusted bytes. The first input byte selects a saved match. The rest
+// are changes of it: offset (2 bytes, little-endian), size minus one (3 bits of a byte), bytes. An
+// accepted match must play on, and its new snapshot must restore to the same match. A checksum
+// protects the world's bytes; vphysics_restore_fuzz covers them.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -21,7 +21,7 @@ struct SavedMatch {
   std::vector<std::byte> bytes;
 };
 
-// Each layout in three modes, with the ball in play, in the third with a time-out.
+// Each layout in three modes with the ball in play; the third with a time-out.
 std::vector<SavedMatch> saved_matches() {
   std::vector<SavedMatch> saved;
   for (const Layout layout : {Layout::tournament, Layout::paper}) {

@@ -6,34 +6,35 @@
 namespace foosball {
 namespace {
 
-// A ball that comes no faster is waited for where it is [m/s].
+// A ball that approaches more slowly counts as not approaching [m/s].
 constexpr double kComes = 0.4;
-// How fast a ball that does not come is taken to arrive [m/s]: orders the rods by distance.
+// Assumed speed of a ball that does not approach [m/s]: orders the rods by distance.
 constexpr double kStray = 0.5;
-// What a rod that the ball has passed or leaves waits beside [s].
+// Additional time for a rod that the ball has passed or leaves [s].
 constexpr double kPassed = 0.5;
-// Men are let down only while the ball is further from their rod [m]: from before the ball they
+// Men are lowered only while the ball is further from their rod [m]: in front of the ball they
 // would drive it towards their own goal.
 constexpr double kClear = 0.12;
-// A ball at rest at the feet is not swept aside: the rod waits for its hand [m], [m/s].
+// A ball at rest at the feet must not be swept aside: the rod waits for its hand [m], [m/s].
 constexpr double kAtFeet = 0.030, kAtRest = 0.30;
-// Where a foot strikes, ahead of the axis [m], and how fast a ball may move aside [m/s].
+// Range in which a foot strikes, ahead of the axis [m], and the largest lateral speed of the ball
+// [m/s].
 constexpr double kStrikeFrom = -0.030, kStrikeTo = 0.060, kTame = 2.0;
-constexpr double kSteepest = 0.8;  // tangent of the most oblique shot aimed at
+constexpr double kSteepest = 0.8;  // tangent of the most oblique shot considered
 constexpr double kShade = 0.028;   // goalie and defence each cover one side of the shot [m]
 
 constexpr double team_of(int team, double along) {
   return attack_sign(team) * along;
 }
 
-// y of a ball after a time, bounced once off the side walls.
+// Reflects y once at the side walls.
 double bounced(const TableSpec& table, double y) {
   const double wall = 0.5 * table.width - table.ball_radius;
   const double once = y > wall ? 2.0 * wall - y : y < -wall ? -2.0 * wall - y : y;
   return std::clamp(once, -wall, wall);
 }
 
-// One kTick towards the goal, braking in time to stop there.
+// One kTick towards the goal; brakes early enough to stop there.
 void slide_towards(double goal, double& position, double& rate) {
   const double error = goal - position;
   const double stopping = std::sqrt(1.8 * kAssistAcceleration * std::fabs(error));
@@ -73,7 +74,7 @@ double Assists::reach_of(const CharacterBody& body) const {
 
 // --- automatic rod -------------------------------------------------------------------------------
 
-// Seconds until the ball is within the feet's reach of the rod: 0 while it is.
+// Time until the ball is within reach of the rod's feet [s]: 0 while it is.
 double Assists::time_to_act(int rod, const Ball& ball, double reach) const {
   const double ahead = ball.x - rod_x(rod);
   const double beyond = std::fabs(ahead) - reach;
@@ -91,7 +92,7 @@ int Assists::rod_to_take(const AssistView& view, const AssistHand& hand, int now
   const auto time = [&](int rod) { return time_to_act(rod, ball, reach); };
   int best = have ? now : -1;
   double least = have ? time(now) - kSoonerBy : 1e9;
-  for (const int rod : rods_of_team(*table_, team_)) {  // from the own goal, for either team
+  for (const int rod : rods_of_team(*table_, team_)) {  // in order from the team's own goal
     if ((mine_ >> rod & 1) == 0 || rod == now || time(rod) >= least) continue;
     least = time(rod);
     best = rod;
@@ -101,7 +102,7 @@ int Assists::rod_to_take(const AssistView& view, const AssistHand& hand, int now
 
 // --- goalie follows ------------------------------------------------------------------------------
 
-// Where a man should stand: in the path of a ball that comes, else between ball and goal.
+// Where a man should stand: in the path of an approaching ball, otherwise between ball and goal.
 double Assists::guard_y(int rod, const Ball& ball) const {
   const double ahead = ball.x - rod_x(rod);
   if (ball.vx < -kComes && ahead > 0.0) return bounced(*table_, ball.y - ball.vy * ahead / ball.vx);
@@ -113,7 +114,8 @@ double Assists::guard_y(int rod, const Ball& ball) const {
   return goalie ? std::clamp(y, -mouth, mouth) : y;
 }
 
-// The slide that brings a man to y: the man who can, and then the least moved.
+// The slide that brings a man to y: the man who comes nearest to it, then the one with the shortest
+// slide.
 double Assists::slide_for(int rod, double y, double from) const {
   const RodSpec& spec = table_->rods[rod];
   double best = from, least = 1e9;
@@ -152,10 +154,10 @@ void Assists::follow(int rod, const AssistView& view, const RodTarget& from, int
 
 // --- aim -----------------------------------------------------------------------------------------
 
-// Distance between the line from the ball to (goal line, target) and the nearest man in its way.
+// Distance between the nearest man in the way and the line from the ball to (goal line, target).
 double Assists::clearance(const AssistView& view, const Ball& ball, double target) const {
   const double run = 0.5 * table_->length - ball.x;
-  double least = 0.06;  // wider is not better
+  double least = 0.06;  // a wider lane is not better
   for (int rod = 0; rod < kRods; ++rod) {
     const RodSpec& spec = table_->rods[rod];
     const double ahead = rod_x(rod) - ball.x;
@@ -169,9 +171,9 @@ double Assists::clearance(const AssistView& view, const Ball& ball, double targe
   return least;
 }
 
-// The slide at which the foot sends the ball to the least guarded place, of those near to where the
-// person aims. A flat foot sends the ball straight on; its edge, at an angle a from the axis of
-// play, touches the ball r sin a beyond the foot's side.
+// The slide at which the foot sends the ball to the least guarded target, among those near the
+// person's aim. A flat foot sends the ball straight on. Its edge, for a direction at angle a from
+// the axis of play, touches the ball r sin a beyond the foot's side.
 double Assists::aimed_slide(int rod, const AssistView& view, double slide) const {
   const Ball ball = ball_of(view);
   const RodSpec& spec = table_->rods[rod];
@@ -181,7 +183,7 @@ double Assists::aimed_slide(int rod, const AssistView& view, double slide) const
   if (!there) return slide;
   const double half_foot = 0.5 * view.bodies[team_].foot_width;
   const int man = man_nearest(spec, ball.y - slide);
-  const double beside = man_offset(spec, man) + slide - ball.y;  // of the foot from the ball
+  const double beside = man_offset(spec, man) + slide - ball.y;  // offset of the foot from the ball
   const double run = 0.5 * table_->length - ball.x;
   const double post = 0.5 * table_->goal_width - table_->ball_radius;
   double best = 0.0, most = -1e9;
@@ -193,7 +195,7 @@ double Assists::aimed_slide(int rod, const AssistView& view, double slide) const
     best = foot;
   };
   const double flat = 0.6 * half_foot;
-  consider(ball.y, std::clamp(beside, -flat, flat), 0.015);  // squarely: the surest
+  consider(ball.y, std::clamp(beside, -flat, flat), 0.015);  // straight on: the most reliable
   for (const double share : {0.9, 0.45, 0.0, -0.45, -0.9}) {
     const double tangent = (share * post - ball.y) / run;
     if (std::fabs(tangent) > kSteepest) continue;
@@ -212,7 +214,7 @@ void Assists::pull(int rod, const AssistView& view, double slide, bool strikes, 
   own.pull = towards(own.pull, goal, kAimRate * kTick * ticks);
 }
 
-// --- all together --------------------------------------------------------------------------------
+// --- all assists ---------------------------------------------------------------------------------
 
 std::array<RodTarget, kRods> Assists::steer(const AssistView& view, const AssistHand& hand,
                                             int ticks) {

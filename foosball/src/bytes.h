@@ -1,6 +1,6 @@
-// Little-endian bytes of a saved match. Writer and reader have the same calls, so that what is
-// saved is described once, by a function that visits every field. The reader never reads outside;
-// its first error sticks and is asked for once at the end.
+// Little-endian bytes of a saved match. Writer and reader have the same interface, so one function
+// that visits every field describes both directions. The reader checks bounds. Its first error is
+// sticky; callers check ok() once at the end.
 #pragma once
 
 #include <bit>
@@ -10,7 +10,7 @@
 
 namespace foosball {
 
-// Out: whatever takes bytes by push_back(), such as a vector of them.
+// Out: any type with push_back(), such as a vector of bytes.
 template <class Out>
 class ByteWriter {
  public:
@@ -34,7 +34,7 @@ class ByteWriter {
   Out& out_;
 };
 
-// FNV-1a of the bytes it is given. Takes no memory: the recorder hashes between two ticks.
+// FNV-1a of the bytes. It needs no buffer, because the recorder hashes between two ticks.
 struct ByteHash {
   void push_back(std::byte b) {
     value = (value ^ std::to_integer<std::uint64_t>(b)) * 0x100000001b3u;
@@ -62,7 +62,7 @@ class ByteReader {
     x = above - 1;
   }
   void any(std::uint64_t& x) { x = take(8); }
-  // A whole number in [0, most].
+  // An integer in [0, most].
   void count(std::uint64_t& x, std::uint64_t most) {
     const std::uint64_t value = take(8);
     if (require(value <= most)) x = value;

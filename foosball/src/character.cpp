@@ -14,7 +14,7 @@ bool all_in_range(const Fields& fields, const T& values) {
                      [&](const auto& f) { return in_range(f, values.*f.value); });
 }
 
-// A box centred on the axis' vertical plane, between two heights in the man's frame.
+// A box centred on the vertical plane through the axis, between two heights in the man's frame.
 ManBox slab(ManBox::Part part, double width, double depth, double bottom, double top) {
   return {{0.0, 0.0, 0.5 * (bottom + top)}, {0.5 * depth, 0.5 * width, 0.5 * (top - bottom)}, part};
 }
@@ -58,13 +58,13 @@ std::uint64_t digest(const Characters& characters) {
 }
 
 std::array<ManBox, kManParts> boxes_of(const CharacterBody& c) {
-  constexpr double kFootHeight = 0.024;  // its top is above a ball on the field: no edge to climb
+  constexpr double kFootHeight = 0.024;  // top above a ball on the field: no edge lifts the ball
   constexpr double kHip = -0.028;
   constexpr double kShoulder = 0.020;
   const double sole = -c.foot_reach;
   const double ankle = sole + kFootHeight;
   return {{slab(ManBox::Part::foot, c.foot_width, c.foot_depth, sole, ankle),
-           // As deep as the foot: a ball that hops meets one upright face, not an edge to fly off.
+           // As deep as the foot: a hopping ball meets one upright face instead of an edge.
            slab(ManBox::Part::leg, 0.8 * c.foot_width, c.foot_depth, ankle, kHip),
            slab(ManBox::Part::torso, c.torso_width, c.torso_depth, kHip, kShoulder),
            slab(ManBox::Part::head, 0.016, 0.016, kShoulder, c.head_height)}};

@@ -1,5 +1,5 @@
-// The first computer player, kept as it was: a fixed opponent to measure others by. Moves all four
-// rods at once, which no person can.
+// The original computer player, unchanged: a fixed reference opponent. It moves all four rods at
+// once, which no person can.
 #include <cmath>
 
 #include "classic_tactics.h"
@@ -31,9 +31,9 @@ class ClassicPlayer final : public ComputerPlayer::Impl {
   Random random_;
   ComputerScreens screens_;
   ComputerSight sight_;
-  std::vector<RodTactics> rods_;  // from its own goal outwards
+  std::vector<RodTactics> rods_;  // in order from its own goal
   Layout layout_ = Layout::tournament;
-  std::uint8_t lines_ = 0, before_ = 0;  // its own, now and in the tick before, by bit of Line
+  std::uint8_t lines_ = 0, before_ = 0;  // its lines now and in the previous tick, as bits by Line
 };
 
 void ClassicPlayer::play(const MatchView& view, RodTargets& targets, std::uint8_t rods) {
@@ -66,7 +66,7 @@ void ClassicPlayer::play(const MatchView& view, RodTargets& targets, std::uint8_
   }
 }
 
-// A new table or a new screen.
+// Handles a new table or a new screen.
 void ClassicPlayer::come_to(const MatchView& view) {
   if (rods_.empty() || layout_ != view.layout) {
     layout_ = view.layout;
@@ -79,8 +79,8 @@ void ClassicPlayer::come_to(const MatchView& view) {
   before_ = lines_;
 }
 
-// Takes each rod over where it is: when it becomes its own, and when something else has moved it
-// far off.
+// Takes over a rod at its current position when it becomes its own, or when something else has
+// moved it far away.
 void ClassicPlayer::hold_or_adopt(const MatchView& view) {
   const auto indices = rods_of_team(table_spec(layout_), team_);
   for (std::size_t line = 0; line < rods_.size(); ++line) {

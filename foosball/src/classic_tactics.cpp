@@ -7,28 +7,29 @@ namespace foosball {
 namespace {
 
 // Swings [rad], feet forward positive.
-constexpr double kDrawn = -0.95;      // foot drawn back; its sole is then above the ball
-constexpr double kDrawnOver = -1.15;  // ... and clear of a ball that lies under it
-constexpr double kThrough = 0.80;     // the end of a strike
-constexpr double kLifted = 1.40;      // feet out of the way of a shot from behind
+constexpr double kDrawn = -0.95;      // foot drawn back: its sole is above the ball
+constexpr double kDrawnOver = -1.15;  // ... and clear of a ball under it
+constexpr double kThrough = 0.80;     // end of a strike
+constexpr double kLifted = 1.40;      // feet clear of a shot from behind
 
-// Where a ball can be struck, ahead of the axis [m]: from just behind the hanging foot to as far as
-// the foot still meets the ball below its top.
+// Range in which a ball can be struck, ahead of the axis [m]: from just behind the hanging foot to
+// where the foot can still meet the ball below its top.
 constexpr double kStrikeFrom = -0.030, kStrikeTo = 0.058;
 constexpr double kScrapeFrom = -0.062;  // a ball at rest behind the foot is hooked from above
 
-// Faster balls [m/s] are blocked, not struck.
+// Faster balls [m/s] are blocked instead of struck.
 constexpr double kTameApproach = 0.6, kTame = 1.6, kResting = 0.15;
 
-// Feet of the widest and thinnest character differ by 3 mm from this: the player does not know.
+// The feet of the widest and the narrowest character differ from this by 3 mm: the player does not
+// know.
 constexpr double kHalfFoot = 0.012;  // [m]
-constexpr double kSteepest = 0.8;    // tangent of the most oblique shot tried
+constexpr double kSteepest = 0.8;    // tangent of the most oblique shot considered
 
 double lerp(double a, double b, double t) {
   return a + (b - a) * t;
 }
 
-// Least distance between the line from the ball to (goal line, target) and the men in the way.
+// Minimum distance between the men in the way and the line from the ball to (goal line, target).
 double clearance(const TableSpec& table, const Sighting& now, int team, double target) {
   const double run = 0.5 * table.length - now.ball.x;
   double least = 0.2;
@@ -109,11 +110,11 @@ void RodTactics::watch(const TableSpec& table, const Sighting& now, const Temper
   swing_to(table, now, level() + (behind ? kLifted : 0.0), temper.swing);
 }
 
-// A foot that comes down from before the ball would drive it towards its own goal: where the ball
-// is in the way, it comes down so slowly that it only lays itself against it.
+// A foot that comes down in front of the ball would drive it towards its own goal. With the ball in
+// its way it comes down slowly enough to only rest against it.
 void RodTactics::swing_to(const TableSpec& table, const Sighting& now, double goal,
                           const AxisLimits& limits) {
-  constexpr double kGently = 2.0;  // [rad/s], of the foot 0.15 m/s
+  constexpr double kGently = 2.0;  // [rad/s]; 0.15 m/s at the foot
   const bool comes_back = swing_.position() > goal + 0.05;
   const bool gently = comes_back && ball_before_foot(table, now);
   swing_.move(goal, {gently ? kGently : limits.rate, limits.acceleration});
@@ -124,7 +125,7 @@ bool RodTactics::ball_before_foot(const TableSpec& table, const Sighting& now) c
   const double reach = table.rod_height + table.ball_radius;
   if (!now.ball_in_play || ahead < -table.ball_radius || ahead > reach) return false;
   if (now.ball.z > 4.0 * table.ball_radius) return false;
-  constexpr double kAir = 0.015;  // [m] for what the delay of sight leaves unknown
+  constexpr double kAir = 0.015;  // [m], margin for the delay of sight
   const RodSpec& rod = spec(table);
   for (int man = 0; man < rod.men; ++man) {
     const double beside = now.ball.y - man_offset(rod, man) - slide_.position();
@@ -133,8 +134,8 @@ bool RodTactics::ball_before_foot(const TableSpec& table, const Sighting& now) c
   return false;
 }
 
-// Where a man should stand: in the path of a ball that comes, else between ball and goal (defence)
-// or level with the ball.
+// Where a man should stand: in the path of an approaching ball, otherwise between ball and goal
+// (goalie, defence) or level with the ball.
 double RodTactics::guard_y(const TableSpec& table, const Sighting& now) const {
   const double ahead = now.ball.x - x(table);
   if (now.velocity.x < -0.4) {
@@ -142,7 +143,7 @@ double RodTactics::guard_y(const TableSpec& table, const Sighting& now) const {
   }
   const Line line = spec(table).line;
   if (line == Line::midfield || line == Line::attack) return now.ball.y;
-  // Goalie and defence each shade one side, so that together they cover the mouth.
+  // Goalie and defence each shift to one side, so that together they cover the goal mouth.
   const double shade = line == Line::goalie ? 0.028 : -0.028;
   const double to_goal = now.ball.x + 0.5 * table.length;
   const double y = now.ball.y + (shade - now.ball.y) * ahead / to_goal;
@@ -150,7 +151,8 @@ double RodTactics::guard_y(const TableSpec& table, const Sighting& now) const {
   return line == Line::goalie ? std::clamp(y, -mouth, mouth) : y;
 }
 
-// The slide that brings the best man to y: nearest to it, then least moved.
+// The slide that brings a man to y: the man who comes nearest to it, then the one with the shortest
+// slide.
 double RodTactics::slide_for(const TableSpec& table, double y) const {
   const RodSpec& rod = spec(table);
   double best = slide_.position();
@@ -178,8 +180,8 @@ bool RodTactics::can_strike(const TableSpec& table, const Sighting& now) const {
   return ahead > from && ahead < kStrikeTo;
 }
 
-// Chooses the least guarded of a few targets, and how far beside the ball the foot must come down:
-// a flat foot sends the ball straight on; its edge, at an angle a from the axis of play, touches
+// Chooses the least guarded of a few targets, and the foot's offset beside the ball. A flat foot
+// sends the ball straight on. Its edge, for a direction at angle a from the axis of play, touches
 // the ball r sin a beyond the foot's side.
 void RodTactics::take_aim(const TableSpec& table, const Sighting& now, const Temper& temper,
                           Random& random) {
@@ -206,7 +208,8 @@ void RodTactics::take_aim(const TableSpec& table, const Sighting& now, const Tem
               : -std::copysign(kHalfFoot + table.ball_radius * std::fabs(sine), sine);
   aim_ += temper.aim_error * random.bell();
   pause_ = random.between(temper.pause_low, temper.pause_high);
-  // A ball beside or behind the foot: step aside, towards the middle, before drawing back.
+  // A ball beside or behind the foot: the foot steps aside, towards the centre, before it draws
+  // back.
   const bool hooked = now.ball.x - x(table) < 0.5 * table.ball_radius;
   aside_ = hooked ? std::copysign(0.045, -now.ball.y) : 0.0;
 }
@@ -224,24 +227,24 @@ void RodTactics::wind_up(const TableSpec& table, const Sighting& now, const Temp
   if (is_drawn) aside_ = 0.0;
   const bool aside_yet =
       std::fabs(now.slide[rod_] - slide_.position()) < 0.01 && since_ > 0.12;  // [s]
-  constexpr double kLead = 0.03;  // [s] from the decision to the hit
+  constexpr double kLead = 0.03;  // [s], time from the decision to the hit
   const double ball_y = y_after(table, now.ball.y, now.velocity.y, kLead);
   goal_slide_ = slide_for(table, ball_y + (aside_ != 0.0 ? aside_ : aim_));
   if (aside_ == 0.0 || aside_yet) swing_.move(drawn, temper.swing);
 
   const bool aligned = std::fabs(goal_slide_ - slide_.position()) < 0.003;
   const bool ready = is_drawn && aligned && since_ > pause_;
-  constexpr double kPatience = 0.6;  // [s] beyond the pause, then strike at what there is
+  constexpr double kPatience = 0.6;  // [s] after the pause: then it strikes anyway
   if (ready || since_ > pause_ + kPatience) {
     stance_ = Stance::strike;
     power_ = power_for(table, ahead);
   }
 }
 
-// A ball far ahead is met by a foot already rising, which would lift it off the table: the further,
-// the softer, so that the part of the speed that goes upwards stays small.
+// A ball far ahead is met by a foot that already rises, and would leave the table. The further
+// ahead, the lower the power, so that the upward part of the speed stays small.
 double RodTactics::power_for(const TableSpec& table, double ahead) const {
-  constexpr double kLift = 0.11;  // upward share of a full strike that still stays on the table
+  constexpr double kLift = 0.11;  // upward fraction at full power that stays on the table
   constexpr double kLeast = 0.25;
   const double rise = std::max(0.0, ahead - 0.010 - table.ball_radius);
   const double arm = table.rod_height - table.ball_radius;

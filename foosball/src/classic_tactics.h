@@ -1,5 +1,5 @@
-// How a computer player works one of its rods: guard, lift the feet out of its own shots' way, wind
-// up and strike. All in the team's frame (computer_sight.h).
+// Tactics of the classic computer player for one rod: guards, lifts the feet to clear the way of
+// its own shots, winds up and strikes. Everything is in the team's frame (computer_sight.h).
 #pragma once
 
 #include "computer_hand.h"
@@ -8,11 +8,11 @@
 
 namespace foosball {
 
-// What skill makes of a player.
+// The parameters that follow from a player's skill.
 struct Temper {
-  double delay;                  // sight to hand [s]
-  double aim_error;              // standard deviation of a foot's place at the hit [m]
-  double pause_low, pause_high;  // thought spent with the foot drawn back [s]
+  double delay;                  // reaction time [s]
+  double aim_error;              // standard deviation of the foot's position at the hit [m]
+  double pause_low, pause_high;  // time to think with the foot drawn back [s]
   AxisLimits slide, swing, strike;
 };
 Temper temper_of(double skill);  // clamped to [0, 1]
@@ -22,7 +22,7 @@ class RodTactics {
   RodTactics(int team, int rod) : team_(team), rod_(rod) {}
 
   void play(const TableSpec& table, const Sighting& now, const Temper& temper, Random& random);
-  // The hand takes the rod where it is, whoever moved it there.
+  // Takes over the rod at its current position, which another hand may have set.
   void adopt(double slide, double swing);
 
   HandAxis& slide() { return slide_; }
@@ -46,16 +46,16 @@ class RodTactics {
   double guard_y(const TableSpec& table, const Sighting& now) const;
   double slide_for(const TableSpec& table, double y) const;
   double power_for(const TableSpec& table, double ahead) const;
-  double level() const;  // the full turn nearest to the swing, where the feet hang down
+  double level() const;  // full turn nearest to the swing, at which the feet hang down
 
   int team_, rod_;
   HandAxis slide_, swing_;
   Stance stance_ = Stance::watch;
   double since_ = 0.0;  // in this stance [s]
   double pause_ = 0.0;  // before this strike [s]
-  double aim_ = 0.0;    // foot's centre from the ball's [m]
-  double aside_ = 0.0;  // sidestep while the foot goes back past a ball beside it [m]
-  double power_ = 1.0;  // of this strike, share of the full rate
+  double aim_ = 0.0;    // offset of the foot's centre from the ball's [m]
+  double aside_ = 0.0;  // sidestep while the foot swings back past a ball beside it [m]
+  double power_ = 1.0;  // of this strike, as a fraction of the full rate
   double goal_slide_ = 0.0;
 };
 

@@ -9,15 +9,15 @@
 namespace foosball {
 namespace {
 
-// How far from what was expected the ball may be seen. Beyond the first bounds the second world
-// starts, beyond the others the forecast no longer counts.
+// Bounds on the deviation of the ball from the prediction. Beyond kDrifts the second world starts.
+// Beyond kSurprise the forecast becomes invalid.
 constexpr double kDrifts = 0.001, kDriftsBy = 0.03;  // [m], [m/s]
 constexpr double kSurprise = 0.008, kSurpriseBy = 0.4;
 
-constexpr double kKeepsOn = 0.6;  // of another player's way; a hand that moved may have stopped
+constexpr double kKeepsOn = 0.6;  // fraction of another's displacement: the hand may have stopped
 
-// A world takes memory in its first steps: at the start, and where the ball first touches
-// something. What they make of rods and ball is set again where a run starts.
+// A world allocates in its first steps: in the very first one, and when the ball first touches
+// something. The start of a run overwrites the resulting states of rods and ball.
 void take_memory(TableWorld& world) {
   const double radius = world.table().ball_radius;
   world.set_ball({0.0, 0.0, radius}, {0.0, 0.0, -1.0});
@@ -33,9 +33,9 @@ struct BallForecast::Run {
       : world(TableWorld::InParts{}, layout, bodies, team, tuning), expected(memory) {}
 
   TableWorld world;
-  std::vector<BallGuess> expected;  // by tick, a ring
+  std::vector<BallGuess> expected;  // ring buffer, by tick
   long tick = 0;                    // of the world's state
-  long since = 0;                   // the first of its expectations
+  long since = 0;                   // tick of the first prediction
   bool runs = false;
 };
 
@@ -124,7 +124,7 @@ void BallForecast::act(const RodTargets& targets, std::uint8_t own) {
   RodTargets& acted = targets_[slot(tick_)];
   for (const int rod : rods_of_team(table_spec(layout_), team_)) {
     acted[rod] = targets[rod];
-    acted[rod].live = (own >> rod & 1) != 0;  // without a hand it stays where it was left
+    acted[rod].live = (own >> rod & 1) != 0;  // a rod without a hand stays where it was left
   }
   if (is_built() && now_->runs) step(*now_);
   ++tick_;

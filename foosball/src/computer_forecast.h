@@ -1,13 +1,13 @@
-// Where the ball is now, by the real simulation: a forward model that makes up for the player's
-// reaction delay. The player remembers what its own hands have done since what it sees now
-// happened; a table world of its own carries the ball on from there. While the ball does what was
-// expected, that world runs one tick ahead for each tick of play. When the ball is seen elsewhere,
-// a second world starts from what was seen and catches up, a bounded number of ticks for each tick
-// of play; until then there is no forecast.
+// Predicts the current state of the ball by the real simulation: a forward model that compensates
+// the player's reaction delay. The player knows its own targets since the delayed view. A separate
+// table world advances the ball with them from that view to now. While the ball behaves as
+// predicted, this world takes one step per tick of play. When the ball is seen elsewhere, a second
+// world starts from the view and catches up by a bounded number of steps per tick of play; until
+// then there is no forecast.
 //
-// Knows no more than the player has seen: ball and rods with its delay, and its own targets. What
-// others, opponents and team mates, have done since then it does not know; their men stay where
-// they are expected.
+// The forecast uses only what the player has seen: ball and rods with its delay, and its own
+// targets. It does not know what others, opponents and team mates, did since then; their men stay
+// where they are expected.
 //
 // Team frame: see computer_sight.h.
 #pragma once
@@ -29,27 +29,27 @@ class TableWorld;
 
 class BallForecast {
  public:
-  // Of the player's team. delay: of its sight. ticks: of both worlds together, the most for one
-  // tick of play; at least 3.
+  // team: the player's. delay_ticks: of its sight. ticks: maximum number of steps of both worlds
+  // together per tick of play; at least 3.
   BallForecast(int team, int delay_ticks, int ticks);
   ~BallForecast();
   BallForecast(BallForecast&&) noexcept;
   BallForecast& operator=(BallForecast&&) noexcept;
 
-  // Each tick, before see(). If they differ, the worlds are made anew, a part of one world a call
-  // (table_world.h): until both are whole there is no forecast. Takes memory then, and only then.
+  // Call each tick, before see(). If a value changes, it rebuilds the worlds, one part of a world
+  // per call (table_world.h). There is no forecast until both are built. Allocates only then.
   void set_table(Layout layout, const TeamBodies& bodies, const Tuning& tuning);
-  // Before the player acts. Precondition: set_table() in this tick.
+  // Call before the player acts. Precondition: set_table() in this tick.
   void see(const Sighting& seen);
-  // The ball now; nothing while it does what was not expected.
+  // The ball now; none while it deviates from the prediction.
   std::optional<BallGuess> ball() const;
-  // After the player has acted: its targets of this tick, in the table's frame, of the rods that
-  // are its own, by bit; those of others are not read.
+  // Call after the player has acted. targets: of this tick, in the table's frame. own: the player's
+  // own rods, as bits; it does not read the targets of other rods.
   void act(const RodTargets& targets, std::uint8_t own);
-  // What went before says nothing of what comes: play was interrupted.
+  // Discards the history: play was interrupted.
   void forget();
 
-  // World ticks since the last see() began, and the most of any tick of play.
+  // Steps of both worlds since the last see() began.
   int ticks_spent() const { return spent_; }
 
  private:
@@ -69,10 +69,10 @@ class BallForecast {
   Layout layout_ = Layout::tournament;
   TeamBodies bodies_;
   Tuning tuning_;
-  std::unique_ptr<Run> now_, catching_up_;  // null until made
-  int built_ = 0;                           // of them, of this table
-  bool begun_ = false;                      // the next one
-  std::vector<RodTargets> targets_;         // by tick, a ring; live: of a rod that was its own
+  std::unique_ptr<Run> now_, catching_up_;  // null until created
+  int built_ = 0;                           // number of them built for this table
+  bool begun_ = false;                      // the next one is partly built
+  std::vector<RodTargets> targets_;  // ring buffer, by tick; live: the rod was the player's own
   Sighting seen_;
   long tick_ = 0;
   int spent_ = 0;

@@ -10,8 +10,8 @@ namespace {
 constexpr double kStep = 0.002;       // [s]
 constexpr double kFoot = 0.073;       // axis to sole [m]
 constexpr double kHalfDepth = 0.010;  // of a foot [m]
-constexpr double kFeetUp = 0.8;       // |swing| from which a rolling ball passes below [rad]
-constexpr double kManBounce = 0.6;    // of the ball's speed towards a man
+constexpr double kFeetUp = 0.8;  // |swing| beyond which a rolling ball passes below the foot [rad]
+constexpr double kManBounce = 0.6;  // restitution of a man
 
 class Flight {
  public:
@@ -20,7 +20,7 @@ class Flight {
     find_rows(rods);
   }
 
-  // False when it has left the ball as it was: then no further step changes it.
+  // Returns false if the ball's state is unchanged: then no further step changes it.
   bool step() {
     before_ = p_;
     const vp::Vec3 velocity = v_;
@@ -32,8 +32,8 @@ class Flight {
     return !(p_ == before_ && v_ == velocity);
   }
 
-  // As many steps at once as surely meet nothing, `most` at most; returns how many. What comes
-  // then, step() finds.
+  // Takes as many steps at once as are certain to be free of collisions, at most `most`. Returns
+  // their number. step() handles the collision that may follow.
   int skip(int most) {
     const Cell cell = free_cell();
     const double dx = kStep * v_.x, dy = kStep * v_.y;
@@ -55,18 +55,18 @@ class Flight {
 
  private:
   struct Field {
-    double radius, fall, hop_from, restitution;  // fall: what gravity adds in a step [m/s]
+    double radius, fall, hop_from, restitution;  // fall: velocity change by gravity in a step [m/s]
 
     void bounce(double& z, double& rise) const {
       z = radius;
       rise = rise < -hop_from ? -restitution * rise : 0.0;
     }
-    // So that a step leaves height and rise as they are.
+    // True if a step leaves height and vertical velocity unchanged.
     bool rolls(double z, double rise) const {
       return z == radius && rise == 0.0 && fall <= hop_from;
     }
-    // Of free fall until it lands, less one: height z + h (n rise - fall n (n - 1) / 2) after n.
-    // Negative where nothing pulls it down: such a ball goes step by step.
+    // Steps of free fall until landing, minus one: after n steps the height is z + h (n rise - fall
+    // n (n - 1) / 2). Negative without gravity: such a ball is stepped one by one.
     double steps_above(double z, double rise) const {
       if (!(fall > 0.0)) return -1.0;
       const double a = 0.5 * fall, b = rise + a;
@@ -74,8 +74,8 @@ class Flight {
     }
   };
 
-  // Of a way of `step` each, at least until it leaves the range, less one: negative where it is not
-  // within.
+  // Lower bound on the number of steps with displacement `step` before the position leaves the
+  // range, minus one. Negative outside the range.
   static double steps_within(const double (&range)[2], double at, double step) {
     if (!(at > range[0] && at < range[1])) return -1.0;
     constexpr double kEver = 1e9;
@@ -83,20 +83,20 @@ class Flight {
     return step < 0.0 ? std::min(kEver, (range[0] - at) / step) - 1.0 : kEver;
   }
 
-  // Own men that hang down, by the row.
+  // Own men who hang down, by row.
   struct Row {
     const RodSpec* spec;
     double x;  // of their feet, in the team's frame [m]
     double slide;
   };
 
-  // Where the ball's centre meets no wall and no man.
+  // A region in which the ball's centre touches no wall and no man.
   struct Cell {
     double x[2], y[2];
   };
 
-  // About the ball; empty where it meets one now. Smaller than it need be by what rounding makes of
-  // its bounds.
+  // The free cell around the ball; empty if the ball touches something now. A margin covers
+  // rounding of its bounds.
   Cell free_cell() const {
     constexpr double kRounding = 1e-9;  // [m]
     const double end = 0.5 * m_.table->length - radius(), side = 0.5 * m_.table->width - radius();
@@ -118,7 +118,7 @@ class Flight {
     return cell;
   }
 
-  // Where the others' men were, they are no more.
+  // Only own men: the opponent's have moved since they were seen.
   void find_rows(const Sighting& rods) {
     for (std::size_t rod = 0; rod < kRods; ++rod) {
       const RodSpec& spec = m_.table->rods[rod];

@@ -9,7 +9,8 @@ namespace foosball {
 
 void HandAxis::move(double goal, const AxisLimits& limits) {
   const double error = goal - position_;
-  // v^2 = 2 a d, with a tenth of the acceleration kept in hand; within a tick of the goal, arrive.
+  // v^2 = 2 a d with 90 % of the acceleration, as a margin. Within one tick of the goal it moves
+  // there.
   const double stopping = std::sqrt(1.8 * limits.acceleration * std::fabs(error));
   const double speed = std::min({limits.rate, stopping, std::fabs(error) / kTick});
   accelerate(std::copysign(speed, error), limits);

@@ -1,15 +1,15 @@
-// The hand of a computer player on one rod: moves with a hand's speeds and accelerations, so that
-// it can do nothing a person could not. In its team's frame: see computer_sight.h.
+// The hand of a computer player on one rod. It moves with the speeds and accelerations of a human
+// hand, so that it cannot do more than a person. In the team's frame: see computer_sight.h.
 #pragma once
 
 namespace foosball {
 
 struct AxisLimits {
-  double rate;          // most speed [m/s or rad/s]
+  double rate;          // maximum speed [m/s or rad/s]
   double acceleration;  // [m/s^2 or rad/s^2]
 };
 
-// One coordinate on its way to where it is wanted, with a bounded rate and acceleration.
+// One coordinate that moves to its goal with bounded rate and acceleration.
 class HandAxis {
  public:
   double position() const { return position_; }
@@ -18,11 +18,11 @@ class HandAxis {
     position_ = position;
     rate_ = 0.0;
   }
-  // One kTick. Brakes in time to stop at the goal.
+  // One kTick. Brakes early enough to stop at the goal.
   void move(double goal, const AxisLimits& limits);
-  // One kTick towards the goal and through it: no braking before it is reached.
+  // One kTick towards the goal and through it, without braking before it.
   void swing(double goal, const AxisLimits& limits);
-  // One kTick of slowing down to rest.
+  // One kTick of braking to rest.
   void brake(const AxisLimits& limits) { accelerate(0.0, limits); }
 
  private:

@@ -39,7 +39,8 @@ void ComputerHands::want(int first, int second, const std::array<bool, 4>& busy)
   if (count_ > 1 && second != kNone && !going_to(second)) send(second, busy, first);
 }
 
-// The nearest hand that is free: without a rod, or on one that neither is wanted nor busy.
+// Sends the nearest available hand: one without a rod, or one on a line that is neither requested
+// nor busy.
 void ComputerHands::send(int line, const std::array<bool, 4>& busy, int other) {
   Hand* best = nullptr;
   int nearest = 100;

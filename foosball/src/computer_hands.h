@@ -1,5 +1,5 @@
-// Two hands on four rods: a hand lets go of one rod and grips another only after the time that the
-// way takes. A rod without a hand stays where it was left.
+// Two hands for four rods. A hand that changes rods needs a travel time. A rod without a hand stays
+// where it was left.
 #pragma once
 
 #include <array>
@@ -13,14 +13,14 @@ class ComputerHands {
 
   ComputerHands(int hands, int travel_ticks) : count_(hands), travel_(travel_ticks) {}
 
-  // Brings hands to the lines first and second (0..3, or kNone), first before second. A hand whose
-  // line is busy, a stroke under way, stays.
+  // Sends hands to the lines first and second (0..3, or kNone); first has priority. A hand stays on
+  // a busy line (a stroke in progress).
   void want(int first, int second, const std::array<bool, 4>& busy);
   // One tick.
   void pass_time();
   bool holds(int line) const;
-  void leave(int line);  // whoever held it or was on the way to it is nowhere
-  void let_go();         // both hands at rest, nowhere
+  void leave(int line);  // the hand that holds it or travels to it becomes free
+  void let_go();         // both hands become free, at rest
 
  private:
   struct Hand {

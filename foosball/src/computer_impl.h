@@ -1,4 +1,4 @@
-// The kinds of computer players behind ComputerPlayer.
+// The implementations behind ComputerPlayer.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 namespace foosball {
 
 inline constexpr std::uint8_t kAllLines = 0xF;
-// The team's lines among the rods, by bit.
+// The team's lines among the rods, as bits.
 std::uint8_t lines_of(Layout layout, int team, std::uint8_t rods);
 
 struct ComputerPlayer::Impl {

@@ -6,10 +6,10 @@
 namespace foosball {
 namespace {
 
-constexpr double kFeetUp = 0.9;  // |swing| from which a rolling ball passes below the sole [rad]
+constexpr double kFeetUp = 0.9;  // |swing| beyond which a rolling ball passes below the sole [rad]
 
-// Probability that something of this spread [m] stays below the margin [m]; a straight line in
-// place of the normal distribution's.
+// Probability that an error with this spread [m] stays below the margin [m]. A linear approximation
+// of the normal distribution.
 double within(double margin, double spread) {
   return std::clamp(0.5 + margin / (3.0 * spread), 0.0, 1.0);
 }
@@ -20,7 +20,7 @@ LanePassage pass_men(const TableSpec& table, const Sighting& now, const LaneView
                      double slope, double run) {
   const double goal_line = 0.5 * table.length;
   LanePassage passage;
-  // The rods in the order in which the ball meets them.
+  // In the order in which the ball passes the rods.
   for (int k = 0; k < kRods; ++k) {
     const int rod = view.team == 0 ? k : kRods - 1 - k;
     const RodSpec& spec = table.rods[rod];
@@ -37,7 +37,7 @@ LanePassage pass_men(const TableSpec& table, const Sighting& now, const LaneView
     double free = within(gap, 0.004 + view.slope_error * way);
     if (up) free += view.feet_stay_up * (1.0 - free);
     const double blocked = passage.free * (1.0 - free);
-    // It comes back the faster and the less expected, the nearer that man stands.
+    // The nearer the man, the faster and the less expected the rebound.
     const double near = std::clamp(1.0 - way / 0.5, 0.0, 1.0);
     const double to_own_goal = now.ball.x + goal_line;
     const double danger = std::clamp(1.2 - to_own_goal, 0.1, 1.0);

@@ -1,35 +1,37 @@
-// Where a ball would go that is played at a slope: past which men, and what comes of it. Plain
-// geometry of what the player sees, in its team's frame (computer_sight.h); no simulation.
+// Evaluates lanes: where a ball goes that is played along a slope, past which men, and what that is
+// worth. Plain geometry of what the player sees, in its team's frame (computer_sight.h); no
+// simulation.
 #pragma once
 
 #include "computer_sight.h"
 
 namespace foosball {
 
-// What a player thinks of a lane.
+// The player's assumptions about a lane.
 struct LaneView {
   int team = 0;
-  int from_rod = 0;                        // index into TableSpec::rods; not in its own way
+  int from_rod = 0;                        // index into TableSpec::rods; it does not block itself
   std::array<double, kTeams> half_foot{};  // [m]
   double slope_error = 0.05;               // standard deviation of the ball's slope
-  bool hops = false;                       // the ball, which then meets men whose feet are up
+  bool hops = false;                       // the ball hops, and then meets men whose feet are up
   // As in Judgment.
   double risk_cost = 1.0, feet_stay_up = 0.2, far_worth = 0.10;
 };
 
-// Past the men in the way of a ball that is sent along dy/dx = slope, as far as run [m].
+// Passage of a ball along dy/dx = slope past the men in its path, up to the distance run [m].
 struct LanePassage {
-  double free = 1.0;  // probability that none of them meets it
-  double cost = 0.0;  // of those who may: below 0 the nearer its own goal it would come back
+  double free = 1.0;  // probability that no man meets it
+  double cost = 0.0;  // of the men who may meet it: the closer to its own goal it would come back,
+                      // the further below 0
 };
 LanePassage pass_men(const TableSpec& table, const Sighting& now, const LaneView& view,
                      double slope, double run);
 
-// Probability that a ball that nobody meets on its way along dy/dx = slope ends in the goal.
+// Probability that a ball along dy/dx = slope ends in the goal if no man meets it.
 double scoring(const TableSpec& table, const Sighting& now, const LaneView& view, double slope);
 
-// Expected worth of a ball that is sent from where it is along dy/dx = slope: 1 a goal; less where
-// men are in the way, and below 0 where it would come back towards the own goal.
+// Expected value of a ball played from its current position along dy/dx = slope: 1 for a goal, less
+// with men in the way, below 0 if it would come back towards the player's own goal.
 double lane_worth(const TableSpec& table, const Sighting& now, const LaneView& view, double slope);
 
 }  // namespace foosball

@@ -6,8 +6,8 @@
 namespace foosball {
 namespace {
 
-// By level. Delay: simple reactions to what is seen take 0.18 to 0.25 s; practised players act on
-// what they expect, which the sight's guess of the ball stands for.
+// By level. Delay: the time of simple visual reactions is 0.18 to 0.25 s. Practised players act on
+// expectation, which the extrapolation of the ball models.
 struct LevelRow {
   double delay, hand_travel, aim_error;
   AxisLimits slide, swing, strike;
@@ -66,7 +66,7 @@ Judgment judgment_of(int level, PlayStyle style) {
       j.feint = 0.5;
       break;
   }
-  if (level == kLevels) {  // found by screening with its forecast (decision 0052)
+  if (level == kLevels) {  // from screening with the forecast (decision 0052)
     j.tame_approach = 0.40;
     j.turn_wait = 0.24;
     j.hands_attack = 0.26;

@@ -1,4 +1,4 @@
-// What level and style make of a computer player: a person's limits, and what it prefers.
+// Parameters of a computer player by level and style: a person's limits, and preferences.
 #pragma once
 
 #include <cstdint>
@@ -11,27 +11,27 @@ namespace foosball {
 
 struct Temperament {
   // A person's limits.
-  double delay;        // from sight to hand [s]
-  double hand_travel;  // to let go of a rod and grip another [s]
-  double aim_error;    // standard deviation of a foot's place at the hit [m]
+  double delay;        // reaction time [s]
+  double hand_travel;  // time to change from one rod to another [s]
+  double aim_error;    // standard deviation of the foot's position at the hit [m]
   AxisLimits slide, swing;
   AxisLimits strike;  // of the foot at full power
 
-  // Thought.
-  double pause_low, pause_high;  // thought spent with the foot drawn back [s]
+  // Thinking.
+  double pause_low, pause_high;  // time to think with the foot drawn back [s]
 
-  // World ticks for each tick of play that go into a forecast of the ball (computer_forecast.h);
-  // 0: a coarse model's guess instead.
+  // Steps of the forecast's worlds per tick of play (computer_forecast.h); 0: the estimate of the
+  // coarse model instead.
   int forecast_ticks;
 
   // Style.
-  bool stays_home;  // both hands at the goal whenever the ball is the opponent's
+  bool stays_home;  // both hands stay at the goal while the opponent has the ball
 
   Judgment judgment;
 };
 
 Temperament temperament_of(int level, PlayStyle style);
-// Differs where one of its numbers does.
+// Changes if any of its numbers changes.
 std::uint64_t digest(const Temperament& t);
 
 }  // namespace foosball

@@ -1,4 +1,4 @@
-// The computer player of levels and styles: sight, screens and mind, put together.
+// The computer player with levels and styles: combines sight, screens and mind.
 #include <cmath>
 #include <optional>
 
@@ -40,7 +40,7 @@ class LevelPlayer final : public ComputerPlayer::Impl {
   ComputerSight sight_;
   ComputerMind mind_;
   std::optional<BallForecast> forecast_;
-  std::uint8_t lines_ = 0, before_ = 0;  // its own, now and in the tick before, by bit of Line
+  std::uint8_t lines_ = 0, before_ = 0;  // its lines now and in the previous tick, as bits by Line
   Screen screen_ = Screen::logo;
 };
 
@@ -87,7 +87,7 @@ void LevelPlayer::act(const MatchView& view, bool at_screen, RodTargets& targets
   }
 }
 
-// What it knew is no longer true when it has rods again.
+// Without rods, discards its knowledge: it would be out of date later.
 void LevelPlayer::let_go() {
   if (before_ == 0) return;
   before_ = 0;
@@ -96,7 +96,7 @@ void LevelPlayer::let_go() {
   if (forecast_) forecast_->forget();
 }
 
-// A new screen; with play, new characters.
+// Handles a new screen; at the start of play also new characters.
 void LevelPlayer::come_to(const MatchView& view) {
   const bool play_begins = screen_ != view.screen && view.screen == Screen::play;
   if (before_ == 0 || play_begins) mind_.set_table(view.layout, view.bodies);
@@ -106,8 +106,8 @@ void LevelPlayer::come_to(const MatchView& view) {
   before_ = lines_;
 }
 
-// Takes each rod over where it is: when it becomes its own, and when something else has moved it
-// far off.
+// Takes over a rod at its current position when it becomes its own, or when something else has
+// moved it far away.
 void LevelPlayer::hold_or_adopt(const MatchView& view) {
   for (int line = 0; line < 4; ++line) {
     ComputerRod& rod = mind_.rods()[line];

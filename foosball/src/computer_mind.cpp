@@ -56,14 +56,14 @@ void ComputerMind::play(const Sighting& seen, const Tuning& tuning, bool own_ser
                         const std::optional<BallGuess>& forecast) {
   own_serve_ = own_serve;
   Sighting now = seen;
-  for (int line = 0; line < 4; ++line) {  // of its own hands it knows more than it sees
+  for (int line = 0; line < 4; ++line) {  // the state of its own hands is known without delay
     if (!may_hold(line)) continue;
     ComputerRod& rod = rods_[static_cast<std::size_t>(line)];
     now.slide[static_cast<std::size_t>(rod.index())] = rod.slide().position();
     now.swing[static_cast<std::size_t>(rod.index())] = rod.swing().position();
     now.slide_rate[static_cast<std::size_t>(rod.index())] = 0.0;
   }
-  constexpr double kFurther = 0.02;  // [s] beyond now
+  constexpr double kFurther = 0.02;  // [s], extrapolation beyond now
   for (std::size_t rod = 0; rod < kRods; ++rod) {
     const double limit = table_->rods[rod].slide_limit;
     const double there =
@@ -90,9 +90,9 @@ void ComputerMind::play(const Sighting& seen, const Tuning& tuning, bool own_ser
   note_strokes(now);
 }
 
-// Whether the ball is still at the midfield that served it: no second man has touched it.
+// True while the ball is still at the midfield that served it: no second man has touched it.
 bool ComputerMind::is_fresh_serve(const Sighting& now) {
-  constexpr double kAtFeet = 0.06, kLeft = 0.10;  // of the axis [m]
+  constexpr double kAtFeet = 0.06, kLeft = 0.10;  // distance from the axis [m]
   const double ahead = std::fabs(now.ball.x - rods_[kMidfield].x());
   if (!now.ball_in_play) return fresh_serve_ = false;
   if (!was_in_play_) fresh_serve_ = ahead < kAtFeet && vp::norm(now.velocity) < 0.1;
@@ -100,7 +100,7 @@ bool ComputerMind::is_fresh_serve(const Sighting& now) {
   return fresh_serve_;
 }
 
-// The ball as it is expected to be now. What a stroke does to it is known before it is seen.
+// Estimates the current ball. The effect of an own stroke is known before it is seen.
 void ComputerMind::guess_ball(Sighting& now, const Tuning& tuning,
                               const std::optional<BallGuess>& forecast) {
   BallGuess ball{now.ball, now.velocity};
@@ -122,7 +122,7 @@ void ComputerMind::guess_ball(Sighting& now, const Tuning& tuning,
   now.velocity = ball.velocity;
 }
 
-// A ball that a foot has just sent off: where it goes is known, and whom it is for.
+// Records the ball that a foot has just sent off: its velocity and the receiver are known.
 void ComputerMind::note_strokes(const Sighting& now) {
   passed_ = {};
   for (const ComputerRod& rod : rods_) {
@@ -139,7 +139,7 @@ void ComputerMind::note_strokes(const Sighting& now) {
   }
 }
 
-// The two rods that matter most.
+// The two most important lines.
 ComputerMind::Lines ComputerMind::wanted_lines(const Sighting& now) const {
   if (!now.ball_in_play) {
     return own_serve_ ? Lines{kMidfield, kDefence} : Lines{kDefence, kGoalie};
@@ -173,7 +173,7 @@ ComputerMind::Lines ComputerMind::wanted_lines(const Sighting& now) const {
   return t_.stays_home ? Lines{kDefence, kGoalie} : Lines{kAttack, kDefence};
 }
 
-// Those of the wanted lines that it may hold; in place of a team mate's the nearest to it.
+// The requested lines that it may hold. A team mate's line is replaced by the nearest own one.
 ComputerMind::Lines ComputerMind::own_lines(const Lines& wanted) const {
   Lines own{ComputerHands::kNone, ComputerHands::kNone};
   std::size_t count = 0;
@@ -194,7 +194,7 @@ ComputerMind::Lines ComputerMind::own_lines(const Lines& wanted) const {
   return own;
 }
 
-// Where a man should stand: in the path of a ball that comes, else where he covers the goal
+// Where a man should stand: in the path of an approaching ball, otherwise where he covers the goal
 // (goalie, defence) or level with the ball.
 double ComputerMind::guard_y(int line, const Sighting& now) const {
   const double way = now.ball.x - rods_[static_cast<std::size_t>(line)].x();
@@ -206,21 +206,21 @@ double ComputerMind::guard_y(int line, const Sighting& now) const {
   return cover_y(line, now);
 }
 
-// Of the way from the ball to the goal line, how much lies before the line's rod [1].
+// Fraction of the distance from the ball to the goal line that is in front of the line's rod [1].
 double ComputerMind::to_goal(int line, const Sighting& now) const {
   const double run = now.ball.x + 0.5 * table_->length;
   return (now.ball.x - rods_[static_cast<std::size_t>(line)].x()) / run;
 }
 
-// Of what the team mate's man, goalie or defence, leaves open of the mouth, the middle of the
-// larger part.
+// The team mate's man (goalie or defence) covers a part of the goal mouth. This is the centre of
+// the larger remaining part, projected to the rod.
 double ComputerMind::beside_mate(int line, const Sighting& now) const {
   const ComputerRod& mate = rods_[static_cast<std::size_t>(line == kDefence ? kGoalie : kDefence)];
   const double mouth = 0.5 * table_->goal_width - table_->ball_radius;
   const double share = to_goal(mate.spec().line == Line::goalie ? kGoalie : kDefence, now);
   double target = 0.0;
   if (share > 0.02) {
-    double shadow = 1e9;  // on the goal line, of the man who hides most [m]
+    double shadow = 1e9;  // on the goal line, of the man who covers the most central part [m]
     for (int man = 0; man < mate.spec().men; ++man) {
       const double y =
           man_offset(mate.spec(), man) + now.slide[static_cast<std::size_t>(mate.index())];
@@ -237,13 +237,13 @@ double ComputerMind::beside_mate(int line, const Sighting& now) const {
   return now.ball.y + (target - now.ball.y) * to_goal(line, now);
 }
 
-// Defence and goalie each cover a part of the mouth as the ball sees it: side by side from one post
-// if that is enough, else about its middle.
+// Defence and goalie each cover a part of the goal mouth as seen from the ball: side by side from
+// one post if that covers it all, otherwise around its centre.
 double ComputerMind::cover_y(int line, const Sighting& now) const {
   if (!may_hold(kDefence) || !may_hold(kGoalie)) return beside_mate(line, now);
   const double mouth = 0.5 * table_->goal_width - table_->ball_radius;
   const auto share = [&](int l) { return to_goal(l, now); };
-  // Half of what a man hides of the mouth.
+  // Half the width on the goal line that a man covers.
   const double half_foot = model_.half_foot[static_cast<std::size_t>(team_)];
   const auto hides = [&](int l) {
     return share(l) > 0.02 ? (half_foot + 0.9 * table_->ball_radius) / share(l) : 0.0;

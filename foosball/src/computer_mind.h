@@ -1,5 +1,5 @@
-// A computer player of a level: which rods its two hands hold, and where each guards. All in the
-// team's frame (computer_sight.h).
+// A computer player of a level: decides which rods its two hands hold and where each guards.
+// Everything is in the team's frame (computer_sight.h).
 #pragma once
 
 #include <array>
@@ -21,22 +21,22 @@ class ComputerMind {
  public:
   ComputerMind(int team, const Temperament& t, std::uint64_t seed);
 
-  // Before the first play(), and when other characters are on the table.
+  // Call before the first play(), and when the characters on the table change.
   void set_table(Layout layout, const TeamBodies& bodies);
   // One tick of play: moves the axes of the rods that the hands hold.
-  // own_serve: the next serve, or the last, is the own team's.
-  // forecast: of the ball now, if there is one better than the mind's own guess.
+  // own_serve: the team serves next, or served last.
+  // forecast: of the current ball, if one is available that is better than the own estimate.
   void play(const Sighting& seen, const Tuning& tuning, bool own_serve,
             const std::optional<BallGuess>& forecast = {});
-  // The lines that its hands may hold, by bit, from now on; at first all. Rods of the others are a
-  // team mate's: it knows no more of them than it sees.
+  // The lines that its hands may hold from now on, as bits; initially all. The other rods belong to
+  // a team mate: it knows only what it sees of them.
   void keep_to(std::uint8_t lines);
   bool may_hold(int line) const { return (lines_ >> line & 1) != 0; }
-  // The hands leave the rods as they are: another screen.
+  // The hands leave the rods as they are: another screen is shown.
   void rest();
   bool holds(int line) const { return hands_.holds(line); }
   std::vector<ComputerRod>& rods() { return rods_; }  // by Line
-  // A pass that its foot has sent off in this tick; to_rod < 0: none.
+  // The pass that its foot made in this tick; to_rod < 0: none.
   const PlayedPass& passed() const { return passed_; }
 
  private:
@@ -59,11 +59,11 @@ class ComputerMind {
   std::uint8_t lines_ = 0xF;
   const TableSpec* table_ = nullptr;
   GuessModel model_;
-  BallGuess sent_;       // the ball as a stroke has just sent it off, not yet seen
-  int sent_ticks_ = -1;  // since then; -1: what is seen is newer
+  BallGuess sent_;       // the ball as its stroke has just sent it off, not yet seen
+  int sent_ticks_ = -1;  // ticks since then; -1: the view is newer
   std::vector<ComputerRod> rods_;
   PlayedPass passed_;
-  double side_ = 1.0;  // of the mouth that the defence covers
+  double side_ = 1.0;  // side of the goal mouth that the defence covers
   bool fresh_serve_ = false;
   bool was_in_play_ = false;
   bool own_serve_ = false;

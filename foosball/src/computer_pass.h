@@ -1,5 +1,5 @@
-// A pass: which man of the team's next rod can meet a ball that is played softly along a slope, and
-// what that is worth. Plain geometry of what the player sees, in its team's frame
+// Evaluates passes: which man of the team's next rod can meet a ball that is played softly along a
+// slope, and what that is worth. Plain geometry of what the player sees, in its team's frame
 // (computer_sight.h).
 #pragma once
 
@@ -8,9 +8,9 @@
 namespace foosball {
 
 struct PassPlan {
-  int rod = -1, man = -1;  // who is meant to have the ball; index into TableSpec::rods; -1: nobody
+  int rod = -1, man = -1;  // the receiver; rod: index into TableSpec::rods; -1: none
   double y = 0.0;          // where he meets it [m]
-  double worth = -1e9;     // as lane_worth()'s
+  double worth = -1e9;     // in the units of lane_worth()
 };
 
 struct PassView {
@@ -18,7 +18,7 @@ struct PassView {
   int to_rod = -1;     // index into TableSpec::rods, ahead of lanes.from_rod
   double speed = 2.0;  // of the ball [m/s]
   double hand = 1.0;   // speed of the receiver's hand [m/s]
-  double sure = 0.75;  // probability from which nobody in between is thought to reach it
+  double sure = 0.75;  // probability from which the lane counts as free
   double value = 0.3;  // of the ball at the receiver's foot
 };
 

@@ -12,7 +12,6 @@ std::unique_ptr<ComputerPlayer::Impl> make(const ComputerPlayerDesc& desc) {
 
 }  // namespace
 
-// The team's lines among the rods, by bit.
 std::uint8_t lines_of(Layout layout, int team, std::uint8_t rods) {
   const auto indices = rods_of_team(table_spec(layout), team);
   unsigned lines = 0;

@@ -6,12 +6,12 @@
 namespace foosball {
 namespace {
 
-// Swings [rad] from the hanging foot, forward positive.
-constexpr double kLifted = -1.57;    // back, out of the way of a ball from behind
-constexpr double kSoleAbove = 1.05;  // |swing| from which the sole is above a ball on the field
+// Swings [rad] relative to the hanging foot, forward positive.
+constexpr double kLifted = -1.57;    // back, clear of a ball from behind
+constexpr double kSoleAbove = 1.05;  // |swing| at which the sole is above a ball on the field
 constexpr double kFoot = 0.073;      // axis to sole [m]
 
-// A hand that follows a ball that comes soon holds still for less than this [m].
+// While a hand follows an approaching ball, it ignores smaller errors [m].
 constexpr double kClose = 0.004;
 
 }  // namespace
@@ -97,7 +97,7 @@ void ComputerRod::watch(const Sighting& now, double guard_y, const Temperament& 
   if (can_control(now)) return begin_control(now, t, random);
   if (receives_ > 0 && ahead(now) < 0.02) return receive(now, t);
   if (pinches(now)) return step_aside(now);
-  // The nearer in time a ball that comes, the closer it is followed.
+  // The sooner an approaching ball arrives, the more closely the rod follows it.
   const bool comes =
       now.velocity.x < -(spec().line == Line::goalie ? 0.08 : 0.3) && ahead(now) > 0.0;
   const bool soon = comes && ahead(now) < -judgment_.soon * now.velocity.x + 0.03;
@@ -118,13 +118,14 @@ void ComputerRod::watch(const Sighting& now, double guard_y, const Temperament& 
   }
 }
 
-// A ball that rests above the field is held between a man and a wall.
+// A ball at rest above the field is pinned between a man and a wall.
 bool ComputerRod::pinches(const Sighting& now) const {
   constexpr double kHigh = 0.045, kNear = 0.060;  // [m]
   return now.ball.z > kHigh && std::fabs(ahead(now)) < kNear && vp::norm(now.velocity) < 0.05;
 }
 
-// Feet that came to such a ball from the side would push it home: they go up first.
+// Feet that touched such a ball from the side would push it towards the own goal: they swing up
+// first.
 bool ComputerRod::is_behind_feet(const Sighting& now) const {
   constexpr double kFarthest = -0.075, kNearest = -0.012, kLow = 0.06;  // [m]
   return ahead(now) > kFarthest && ahead(now) < kNearest && now.ball.z < kLow;
@@ -145,8 +146,8 @@ double ComputerRod::slide_for(double y, int* man_out) const {
   return best;
 }
 
-// Brings the rod to where it is wanted as a calm hand does: not for a few millimetres, and not to
-// and fro.
+// Moves the rod to its goal as a calm hand does: ignores errors of a few millimetres, and limits
+// reversals.
 void ComputerRod::follow(double goal) {
   const double position = slide_.position();
   const double off = goal - position;
@@ -160,9 +161,9 @@ void ComputerRod::follow(double goal) {
 
 // --- the foot and the ball -----------------------------------------------------------------------
 
-// Swings back to the goal, but only while no ball is in the sweep: else the men step aside first.
-// After a stroke the foot stays where it is until the player has seen what became of the ball: one
-// that was missed would be taken home.
+// Swings back to the goal while no ball is in the sweep; otherwise the men step aside first. After
+// a stroke the foot stays where it is until the player has seen the result: a swing back could
+// drive a missed ball towards the own goal.
 void ComputerRod::swing_back(double goal, const Sighting& now, const AxisLimits& limits) {
   if (now.guessed && stroke_ago_ < now.age) return swing_.move(swing_.position(), limits);
   if (!ball_in_sweep(goal, now)) {
@@ -172,14 +173,14 @@ void ComputerRod::swing_back(double goal, const Sighting& now, const AxisLimits&
   step_aside(now);
 }
 
-// Where the ball is in doubt, a foot on its way back may meet it yet: so gently that it does not
-// send it home [rad/s].
+// Limit of the swing's rate [rad/s]. While the ball's position is uncertain, a foot that swings
+// back may meet it: the rate is low enough not to drive it towards the own goal.
 double ComputerRod::safe_rate(const Sighting& now) const {
   constexpr double kSure = 0.01, kReach = 0.09, kHigh = 0.10;  // [m]
   constexpr double kGently = 3.0, kFreely = 1e3;
-  // A slow ball may have turned round. Before a fast one feet must be up in time.
+  // A slow ball may have reversed. For a fast ball the feet must be up in time.
   constexpr double kSlow = 1.5;                               // [m/s]
-  constexpr double kDoubtOfSlow = 0.20, kDoubtOfFast = 0.05;  // at most [m]
+  constexpr double kDoubtOfSlow = 0.20, kDoubtOfFast = 0.05;  // upper bounds [m]
   const bool slow = vp::norm(now.velocity) < kSlow;
   const double doubt = std::min(now.doubt, slow ? kDoubtOfSlow : kDoubtOfFast);
   const double foot = kFoot * std::clamp(angle(), 0.0, 1.0);  // ahead of the axis [m]
@@ -187,16 +188,16 @@ double ComputerRod::safe_rate(const Sighting& now) const {
   return doubt > kSure && may_meet && now.ball.z < kHigh ? kGently : kFreely;
 }
 
-// Whether a foot on its way back to the goal could meet the ball from before it.
+// True if a foot that swings back to the goal could meet the ball from the front.
 bool ComputerRod::ball_in_sweep(double goal, const Sighting& now) const {
   constexpr double kHigh = 0.10;  // [m]
   if (!now.ball_in_play || now.ball.z > kHigh) return false;
   const double hang = level();
-  const auto foot =
-      [&](double swing) {  // ahead of the axis; the sine's series, the same everywhere
-        const double s = std::clamp(swing - hang, -kSoleAbove, kSoleAbove);
-        return kFoot * s * (1.0 - s * s / 6.0 * (1.0 - s * s / 20.0));
-      };
+  // Distance of the foot ahead of the axis. The sine is a series, identical on all platforms.
+  const auto foot = [&](double swing) {
+    const double s = std::clamp(swing - hang, -kSoleAbove, kSoleAbove);
+    return kFoot * s * (1.0 - s * s / 6.0 * (1.0 - s * s / 20.0));
+  };
   const double front = foot(swing_.position()) + 0.012;
   const double back = foot(goal) - table_->ball_radius - 0.012;
   for (const double lead : {0.0, 0.03, 0.06}) {  // [s]
@@ -210,7 +211,7 @@ bool ComputerRod::ball_in_sweep(double goal, const Sighting& now) const {
   return false;
 }
 
-// Beside a ball by this, a foot passes it [m].
+// Distance beside the ball at which a foot can pass it [m].
 double ComputerRod::clear(const Sighting& now) const {
   return lanes_.half_foot[team_] + table_->ball_radius + 0.008 + 0.02 * std::fabs(now.velocity.y);
 }
@@ -222,7 +223,8 @@ void ComputerRod::step_aside(const Sighting& now) {
   }
   const double aside = lanes_.half_foot[team_] + table_->ball_radius + 0.018;  // [m]
   const double off = man_y(man) - now.ball.y;
-  // A ball that rolls along behind the feet is let past: before it, they would never be clear.
+  // A ball that rolls along behind the feet may pass first: otherwise the feet would not get clear
+  // of it.
   constexpr double kRolls = 0.15, kMargin = 0.004;  // [m/s], [m]
   const bool passes_behind = ahead(now) < -(foot_.half_depth + table_->ball_radius + kMargin);
   const bool lets_past = passes_behind && std::fabs(now.velocity.y) > kRolls;
@@ -230,7 +232,7 @@ void ComputerRod::step_aside(const Sighting& now) {
   const double side = aside * side_of(to);
   double goal = slide_.position() - off + side;
   if (std::fabs(goal) > spec().slide_limit) {
-    // To the other side, but not through the ball, unless nothing else will come of it.
+    // Goes to the other side, but not through the ball unless it has waited long enough.
     constexpr double kWaits = 0.5;  // [s]
     goal = passes_behind || since_ > kWaits ? goal - 2.0 * side : slide_.position();
   }

@@ -1,9 +1,9 @@
-// How a computer player works one rod that it holds: guards, takes a ball under control, chooses a
-// lane and strikes. All in the team's frame (computer_sight.h).
+// How a computer player works one rod that it holds: it guards, takes a ball under control, chooses
+// a lane and strikes. Everything is in the team's frame (computer_sight.h).
 //
-// Whatever swings forward can only send the ball forward. So the feet go out of the way of a ball
-// from behind by swinging back, not forward, and no foot swings back while a ball may lie in its
-// sweep: it steps aside first.
+// A forward swing can only send the ball forward. So the feet clear the way of a ball from behind
+// by swinging back, not forward. A foot does not swing back while a ball may be in its sweep: it
+// steps aside first.
 #pragma once
 
 #include "computer_hand.h"
@@ -26,30 +26,32 @@ class ComputerRod {
   const RodSpec& spec() const { return table_->rods[static_cast<std::size_t>(index_)]; }
   HandAxis& slide() { return slide_; }
   HandAxis& swing() { return swing_; }
-  double angle() const;  // swing from the nearest hanging foot [rad]
+  double angle() const;  // swing relative to hanging straight down, modulo full turns [rad]
 
-  // One tick with a hand on it. guard_y: where a man is wanted while there is no ball to play.
+  // One tick with a hand on the rod. guard_y: where a man should stand while there is no ball to
+  // play.
   void play(const Sighting& now, double guard_y, const Temperament& t, Random& random);
-  // One tick without a hand: at rest where it was left.
+  // One tick without a hand: the rod rests where it was left.
   void rest();
-  // Whatever it was about to do, it will look anew.
+  // Aborts the current action and observes again.
   void give_up() { enter(Act::watch); }
-  // The hand takes the rod where it is, whoever moved it there.
+  // Takes over the rod at its current position, which another hand may have set.
   void adopt(double slide, double swing);
 
   bool has_ball() const { return act_ == Act::draw || act_ == Act::strike || act_ == Act::scoop; }
   bool busy() const { return act_ == Act::strike || act_ == Act::brake; }
-  // Its foot has just met the ball, and sent it off so.
+  // Its foot met the ball in this tick, and sent it off with sent_velocity().
   bool struck() const { return struck_; }
   vp::Vec3 sent_velocity() const { return sent_; }
-  // Whom that ball is meant for: rod < 0, nobody.
+  // The receiver of that ball: rod < 0, none.
   const PassPlan& sent_to() const { return pass_; }
-  // A ball is on its way to this man of the rod, who meets it at y after a time [s].
+  // Announces a pass to this man of the rod, who meets the ball at y after a time [s].
   void expect_pass(int man, double y, double time);
   bool expects_pass() const { return receives_ > 0; }
-  // A ball that this rod can take under control.
+  // True for a ball that this rod can take under control.
   bool can_control(const Sighting& now) const;
-  // The slide that brings the best man to y: nearest to it, then least moved.
+  // The slide that brings a man to y: the man who comes nearest to it, then the one with the
+  // shortest slide.
   double slide_for(double y, int* man = nullptr) const;
 
  private:
@@ -92,7 +94,7 @@ class ComputerRod {
   double clear(const Sighting& now) const;
   void step_aside(const Sighting& now);
   void follow(double goal);
-  double level() const;  // the full turn nearest to the swing, where the feet hang down
+  double level() const;  // full turn nearest to the swing, at which the feet hang down
   double ahead(const Sighting& now) const { return now.ball.x - x_; }
   double man_y(int man) const { return man_offset(spec(), man) + slide_.position(); }
 
@@ -103,28 +105,28 @@ class ComputerRod {
   Judgment judgment_;
   LaneView lanes_;
   HandAxis slide_, swing_;
-  double goal_ = 0.0;        // where the hand brings the slide [m]
-  double turned_ = 0.0;      // since the slide last turned round [s]
+  double goal_ = 0.0;        // target of the slide [m]
+  double turned_ = 0.0;      // since the slide last reversed [s]
   double stroke_ago_ = 1e9;  // since a foot last swung at the ball [s]
   Act act_ = Act::watch;
   double since_ = 0.0;                // in this act [s]
-  int man_ = 0;                       // with the ball
+  int man_ = 0;                       // who has the ball
   bool over_ = false;                 // his foot is behind the ball
-  bool planted_ = false;              // the foot waits for the ball where it will strike
+  bool planted_ = false;              // the foot waits at the place where it will strike the ball
   bool feints_ = false;               // before this strike
   double pause_ = 0.0;                // before this strike [s]
   double noise_ = 0.0;                // of this strike's aim [m]
-  double slope_ = 0.0, worth_ = 0.0;  // of the lane chosen
+  double slope_ = 0.0, worth_ = 0.0;  // of the chosen lane
   double power_ = 1.0;
-  double sends_ = 0.0;    // the ball, of this stroke [m/s]
-  double through_ = 0.0;  // swing at which the stroke is braked [rad]
+  double sends_ = 0.0;    // speed of the ball after this stroke [m/s]
+  double through_ = 0.0;  // swing at which the stroke begins to brake [rad]
   vp::Vec3 sent_;
   double scoop_side_ = 0.0;    // 0: not chosen yet
   double scoop_rate_ = 0.0;    // [rad/s]
-  double scoop_beside_ = 0.0;  // the foot's edge, beyond the ball's middle [m]
+  double scoop_beside_ = 0.0;  // from the foot's edge to the ball's centre [m]
   bool struck_ = false;        // in this tick
-  PassPlan pass_;              // what the stroke is for, if it is a pass
-  int receives_ = 0;           // ticks left to wait for a pass
+  PassPlan pass_;              // the pass that the stroke plays, if any
+  int receives_ = 0;           // ticks that remain to wait for a pass
   double receive_at_ = 0.0;    // slide [m]
 };
 

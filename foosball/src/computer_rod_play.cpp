@@ -1,5 +1,5 @@
-// The rod with the ball: it draws a foot behind it, waits for a lane, aims and strikes, passes, or
-// scoops forward what lies behind its feet.
+// The rod with the ball: it draws a foot behind the ball, waits for a lane, aims and strikes,
+// passes, or scoops a ball forward from behind its feet.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,42 +9,42 @@
 namespace foosball {
 namespace {
 
-// Swings [rad] from the hanging foot, forward positive.
-constexpr double kDrawn = -0.95;      // behind the ball; the sole is then above it
-constexpr double kDrawnOver = -1.25;  // ... and clear of a ball that lies under it
+// Swings [rad] relative to the hanging foot, forward positive.
+constexpr double kDrawn = -0.95;      // behind the ball, with the sole above it
+constexpr double kDrawnOver = -1.25;  // ... and clear of a ball under it
 
-// Where a ball can be played, ahead of the axis [m]: from just behind the hanging foot to as far as
-// the foot still meets the ball below its top.
+// Range in which a ball can be played, ahead of the axis [m]: from just behind the hanging foot to
+// where the foot can still meet the ball below its top.
 constexpr double kFrom = -0.030, kTo = 0.058;
 constexpr double kScoopFrom = -0.062;    // a ball at rest behind the foot is scooped forward:
-constexpr double kScoopTo = -0.030;      // struck from above it would only be pinned, or fly back
-constexpr double kScoopBeside = 0.0115;  // by the foot's edge, so far beyond the foot [m],
-constexpr double kScoopLeast = 2.0, kScoopMost = 4.0;  // and so gently [rad/s];
-constexpr double kHookFrom = -0.042;  // one not so far behind goes off at a known slope
+constexpr double kScoopTo = -0.030;      // a strike from above would pin it, or send it back
+constexpr double kScoopBeside = 0.0115;  // distance of the ball's centre beyond the foot's edge [m]
+constexpr double kScoopLeast = 2.0, kScoopMost = 4.0;  // rate of the swing [rad/s]
+constexpr double kHookFrom = -0.042;  // a ball less far behind leaves at a known slope
 struct Hook {
   double beside, rate;  // [m], [rad/s]
   double slope, speed;  // of the ball; [m/s]
 };
-// Measured on the simulated table, both layouts, a ball 30 to 40 mm behind the axis.
+// Measured on the simulated table, both layouts, with a ball 30 to 40 mm behind the axis.
 constexpr std::array<Hook, 2> kHooks{{{0.005, 20.0, 0.48, 1.6}, {0.008, 35.0, 0.72, 2.4}}};
 
 constexpr double kPassSpeed = 2.2;   // [m/s]
-constexpr double kCatch = 0.6;       // a foot leant forward holds a ball that comes from behind
-constexpr double kPassRate = 24.4;   // [rad/s], for that
-constexpr double kHookPower = 0.11;  // ball's speed [m/s] for the foot's [rad/s]
+constexpr double kCatch = 0.6;       // a foot tilted forward holds a ball from behind
+constexpr double kPassRate = 24.4;   // [rad/s], gives kPassSpeed
+constexpr double kHookPower = 0.11;  // ball speed [m/s] per swing rate [rad/s]
 
 constexpr double kBesideFoot = 0.032;  // [m] ahead of the axis
 
 constexpr double kResting = 0.15;  // [m/s]
-constexpr double kSettled = 0.05;  // [rad] off the swing it is drawn to
+constexpr double kSettled = 0.05;  // [rad], tolerance of the drawn swing
 
 }  // namespace
 
 // --- playing the ball ----------------------------------------------------------------------------
 
-// The fastest ball from the front [m/s] that is played without being stopped first: a foot that is
-// drawn back lets it roll on beneath. Nobody stands behind the goalie; hinged men strike a rolling
-// ball less surely.
+// The fastest ball from the front [m/s] that is played without stopping it first: it can roll
+// through under a foot that is drawn back. The goalie has nobody behind; hinged men strike a
+// rolling ball less reliably.
 double ComputerRod::approach() const {
   const bool careful =
       spec().line == Line::goalie || (spec().line == Line::defence && hinged_men(table_->layout));
@@ -85,10 +85,10 @@ bool ComputerRod::lost(const Sighting& now) const {
          vp::norm(now.velocity) > 1.5 * judgment_.tame_speed;
 }
 
-// Where and when a stroke that begins now meets the ball.
+// Where and when a stroke that starts now meets the ball.
 Meeting ComputerRod::meeting(const Sighting& now, double rate, const Temperament& t) const {
   Meeting m{0.0, ahead(now), now.ball.y, rate};
-  for (int step = 0; step < 2; ++step) {  // the time depends on where, and where on the time
+  for (int step = 0; step < 2; ++step) {  // time and position depend on each other
     m.time = stroke_time(std::min(angle(), kDrawn + kSettled),
                          contact_swing(*table_, foot_, m.ahead), {m.rate, t.strike.acceleration});
     m.ahead = ahead(now) + m.time * now.velocity.x;
@@ -97,14 +97,14 @@ Meeting ComputerRod::meeting(const Sighting& now, double rate, const Temperament
   return m;
 }
 
-// Of the pass or shot that is chosen; a ball that is only cleared is not played at full strength.
+// Rate of the chosen pass or shot. A clearance is played with reduced power.
 double ComputerRod::chosen_rate(const Temperament& t) const {
   if (pass_.rod >= 0) return kPassRate;
   const bool clears = worth_ > -1e8 && worth_ < judgment_.clear_below;
   return t.strike.rate * (clears ? judgment_.clear_power : 1.0);
 }
 
-// The slide that brings the man with the ball there; another man, if he cannot reach it.
+// The slide that brings the man with the ball to it, or another man if he cannot reach it.
 double ComputerRod::square_to(const Meeting& m) {
   constexpr double kBeyond = 0.004;  // [m]
   if (std::fabs(m.y - man_offset(spec(), man_)) > spec().slide_limit + kBeyond) {
@@ -113,7 +113,7 @@ double ComputerRod::square_to(const Meeting& m) {
   return m.y - man_offset(spec(), man_);
 }
 
-// The foot goes back behind the ball; then it waits for a lane, follows the ball and strikes.
+// The foot moves behind the ball. Then it waits for a lane, follows the ball and strikes.
 void ComputerRod::draw(const Sighting& now, const Temperament& t, Random& random) {
   if (lost(now)) return enter(Act::watch);
   const Meeting m = meeting(now, chosen_rate(t), t);
@@ -125,12 +125,12 @@ void ComputerRod::draw(const Sighting& now, const Temperament& t, Random& random
   if (ahead(now) < kScoopTo) return prepare_scoop(now, square, t, random);
   scoop_side_ = 0.0;
   consider_lanes(now, t);
-  // A ball at the wall is met with a part of the foot.
+  // At the wall only a part of the foot meets the ball.
   const double limit = spec().slide_limit;
   const double turn = slope_ - natural_slope(foot_, *table_, m, now.velocity.y);
   const double aim =
       std::clamp(square + noise_ + foot_offset(foot_, *table_, m, turn), -limit, limit);
-  constexpr double kFeintStep = 0.035, kFeintFor = 0.15;  // [m], [s]: as if to play it elsewhere
+  constexpr double kFeintStep = 0.035, kFeintFor = 0.15;  // [m], [s]: offset in another direction
   if (feints_ && since_ < pause_ + kFeintFor) {
     goal_ = aim - side_of(slope_) * kFeintStep;
   } else {
@@ -138,14 +138,14 @@ void ComputerRod::draw(const Sighting& now, const Temperament& t, Random& random
   }
 }
 
-// Where a foot that still slides will meet the ball is uncertain: it comes to rest ahead of a ball
-// that rolls along the rod, and strikes when the ball is there.
+// A sliding foot meets the ball at an uncertain place. So it stops ahead of a ball that rolls along
+// the rod, and strikes when the ball arrives.
 void ComputerRod::wait_for_ball(const Sighting& now, const Meeting& m, double aim,
                                 const Temperament& t) {
   constexpr double kLead = 0.020;                     // [s]
   constexpr double kNear = 0.0005, kSurely = 0.0015;  // [m]
   const double vy = now.velocity.y;
-  const double left = (goal_ - aim) * side_of(vy);  // until the ball is there
+  const double left = (goal_ - aim) * side_of(vy);  // remaining distance of the ball [m]
   const bool over = left < -kSurely || left > 2.0 * kLead * std::fabs(vy) + kSurely;
   if (planted_ && over) planted_ = false;
   if (!planted_) {
@@ -157,7 +157,7 @@ void ComputerRod::wait_for_ball(const Sighting& now, const Meeting& m, double ai
   strike_if_ready(now, m, there, t);
 }
 
-// A foot that hangs beside the ball would push it away: it goes up before it comes near.
+// A hanging foot beside the ball would push it away: it swings up before it comes near.
 void ComputerRod::go_behind(const Sighting& now, double square, double drawn,
                             const Temperament& t) {
   const bool beside =
@@ -179,7 +179,7 @@ void ComputerRod::prepare_scoop(const Sighting& now, double square, const Temper
   if (std::fabs(goal_ - slide_.position()) < 0.002 && since_ >= pause_) enter(Act::scoop);
 }
 
-// The slide at which the chosen edge of the foot passes the ball.
+// The slide at which the chosen edge of the foot meets the ball.
 double ComputerRod::beside_ball(double square) const {
   return square + noise_ + scoop_side_ * (lanes_.half_foot[team_] + scoop_beside_);
 }
@@ -189,8 +189,8 @@ bool ComputerRod::can_stand_beside(double square, double side, double beside) co
          spec().slide_limit;
 }
 
-// How a ball behind the foot is played on: to a man further ahead, along one of the slopes at which
-// the foot's edge sends it off, or gently.
+// Chooses how to play a ball behind the foot: as a pass to a man further ahead, along one of the
+// slopes of the foot's edge, or softly.
 void ComputerRod::choose_hook(const Sighting& now, double square, const Temperament& t,
                               Random& random) {
   scoop_side_ = random.unit() < 0.5 ? -1.0 : 1.0;
@@ -201,7 +201,7 @@ void ComputerRod::choose_hook(const Sighting& now, double square, const Temperam
   slope_ = 0.0;
   if (ahead(now) < kHookFrom || vp::norm(now.velocity) > kResting) return;
   const double error = slope_error(false, t);
-  constexpr double kWorthIt = 0.03;  // else gently
+  constexpr double kWorthIt = 0.03;  // minimum value; below it, softly
   double best = kWorthIt;
   const double first = scoop_side_;
   for (const double side : {first, -first}) {
@@ -221,7 +221,7 @@ void ComputerRod::choose_hook(const Sighting& now, double square, const Temperam
   }
 }
 
-// It goes with a ball that rolls along the rod: one that rolled beneath the foot would be pinned.
+// The foot follows a ball that rolls along the rod, which would otherwise get pinned under it.
 void ComputerRod::scoop(const Sighting& now, const Temperament& t) {
   const bool hooks = pass_.rod >= 0;
   goal_ = beside_ball(now.ball.y - man_offset(spec(), man_));
@@ -239,13 +239,13 @@ void ComputerRod::scoop(const Sighting& now, const Temperament& t) {
 // --- passes --------------------------------------------------------------------------------------
 
 void ComputerRod::expect_pass(int man, double y, double time) {
-  constexpr double kWaits = 0.30;  // [s] longer than it should need
+  constexpr double kWaits = 0.30;  // [s], margin on the expected time
   receives_ = static_cast<int>(std::lround((time + kWaits) / kTick));
   man_ = man;
   receive_at_ = y - man_offset(spec(), man);
 }
 
-// The man stands where the ball was sent, leant forward over it.
+// The man stands where the ball will arrive, tilted forward over it.
 void ComputerRod::receive(const Sighting& now, const Temperament& t) {
   constexpr double kComes = 0.2;  // [m/s]
   if (now.velocity.x > kComes && ahead(now) < -0.03) {
@@ -260,7 +260,7 @@ void ComputerRod::receive(const Sighting& now, const Temperament& t) {
 PassPlan ComputerRod::pass_worth(const Sighting& now, double slope, double speed,
                                  double slope_error, const Temperament& t) const {
   const Line line = spec().line;
-  constexpr double kAtRest = 0.45;  // [m/s]; a faster ball keeps too much of its way
+  constexpr double kAtRest = 0.45;  // [m/s]; a faster ball keeps too much of its velocity
   if (line == Line::goalie || line == Line::attack || vp::norm(now.velocity) > kAtRest) return {};
   PassView view;
   view.lanes = lanes_;
@@ -270,12 +270,12 @@ PassPlan ComputerRod::pass_worth(const Sighting& now, double slope, double speed
   view.speed = speed;
   view.hand = t.slide.rate;
   view.sure = judgment_.pass_sure;
-  constexpr double kFromServe = 0.4;  // where no shot may score yet
+  constexpr double kFromServe = 0.4;  // when no shot may score yet
   view.value = now.goal_counts ? judgment_.pass_value : std::max(kFromServe, judgment_.pass_value);
   return pass_along(*table_, now, view, slope);
 }
 
-// The ball as it will be met, past men who are where they are now.
+// The sighting with the ball at the meeting point; the men stay where they are now.
 Sighting ComputerRod::met(const Sighting& now, const Meeting& m) const {
   Sighting then = now;
   then.ball.x = x_ + m.ahead;
@@ -283,7 +283,7 @@ Sighting ComputerRod::met(const Sighting& now, const Meeting& m) const {
   return then;
 }
 
-// All lanes now and then; whether the chosen one closes, more often.
+// Evaluates all lanes at intervals, and the chosen one more often: it may close.
 void ComputerRod::consider_lanes(const Sighting& now, const Temperament& t) {
   const int ticks = static_cast<int>(since_ / kTick);
   if (worth_ < -1e8 || ticks % 20 == 0) {
@@ -299,11 +299,11 @@ void ComputerRod::consider_lanes(const Sighting& now, const Temperament& t) {
 
 void ComputerRod::strike_if_ready(const Sighting& now, const Meeting& m, bool aligned,
                                   const Temperament& t) {
-  if (m.ahead > kTo - 0.004 && now.velocity.x > -0.05) return;  // the foot would miss it
+  if (m.ahead > kTo - 0.004 && now.velocity.x > -0.05) return;  // the foot would miss the ball
   const double bar = judgment_.shot_bar * (1.0 - (since_ - pause_) / judgment_.patience);
   if (!(aligned && worth_ >= bar) && since_ <= pause_ + judgment_.patience + judgment_.late) return;
   power_ = m.rate / t.strike.rate;
-  // It swings on to the ball and beyond, less what it needs to come to rest.
+  // The stroke goes through the ball and a little beyond; the braking distance is subtracted.
   constexpr double kLeast = 0.08, kBeyond = 0.20;  // [rad]
   const double rest = 0.5 * m.rate * m.rate / t.strike.acceleration;
   through_ = std::max(kLeast, contact_swing(*table_, foot_, m.ahead) + kBeyond - rest);
@@ -311,9 +311,9 @@ void ComputerRod::strike_if_ready(const Sighting& now, const Meeting& m, bool al
   enter(Act::strike);
 }
 
-// Of a ball played with the flat of the foot or with its edge [1].
+// Error of the slope with the flat of the foot or with its edge [1].
 double ComputerRod::slope_error(bool flat, const Temperament& t) const {
-  constexpr double kFlatError = 0.012, kEdge = 50.0;  // slope for a metre beside where it should be
+  constexpr double kFlatError = 0.012, kEdge = 50.0;  // kEdge: per metre of lateral error
   return flat ? kFlatError : kFlatError + kEdge * std::min(t.aim_error, judgment_.aim_belief);
 }
 
@@ -326,16 +326,16 @@ double ComputerRod::shot_worth(const Sighting& then, const Meeting& m, double sl
   return lane_worth(*table_, then, lanes, slope);
 }
 
-// Whether the rod can stand so, and the ball gets off the wall.
+// True if the rod can reach the offset, and the ball leaves the wall.
 bool ComputerRod::can_turn(const Meeting& m, double slope, double natural) const {
-  const double wall = 0.5 * table_->width - table_->ball_radius - 0.02;  // it would only rub along
+  const double wall = 0.5 * table_->width - table_->ball_radius - 0.02;  // it would rub along
   if (std::fabs(slope - natural) > kSteepest) return false;
   const double offset = foot_offset(foot_, *table_, m, slope - natural);
   if (std::fabs(m.y - man_offset(spec(), man_) + offset) > spec().slide_limit) return false;
   return !(slope * m.y > 0.0 && std::fabs(m.y) > wall);
 }
 
-// The best shot, or the best pass if that is worth more.
+// Chooses the best shot, or the best pass if its value is higher.
 void ComputerRod::choose_lane(const Sighting& now, const Temperament& t) {
   constexpr double kStep = 0.05;
   const double keep = judgment_.keep_lane;

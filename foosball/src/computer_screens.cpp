@@ -8,11 +8,11 @@ namespace {
 constexpr AxisLimits kCalmSlide{0.5, 8.0};
 constexpr AxisLimits kCalmSwing{8.0, 80.0};
 
-// Draws the rod back, pushes, and lets it return; again every two seconds until it is heard.
+// Pushes the rod and lets it return, every two seconds until the screen changes.
 void push(HandAxis& slide, double seconds) {
   const double phase = std::fmod(seconds, 2.0);
   const double goal = phase < 0.3 ? 0.0 : phase < 0.7 ? 0.06 : 0.0;
-  // In the team's frame a push is towards +y for either team.
+  // In the team's frame a push is towards +y for both teams.
   slide.move(goal, kCalmSlide);
 }
 
@@ -44,7 +44,7 @@ bool ComputerScreens::work(const MatchView& view, HandAxis& slide, HandAxis& swi
 
 void ComputerScreens::work_selection(const MatchView& view, HandAxis& slide, HandAxis& swing) {
   constexpr double kLookAround = 0.4;                       // [s]
-  constexpr double kOneChoice = 2.0 * vp::kPi / 3.0 + 0.1;  // a little beyond a third of a turn
+  constexpr double kOneChoice = 2.0 * vp::kPi / 3.0 + 0.1;  // a little more than a third of a turn
   if (view.confirmed[team_] || view.screen_seconds < kLookAround) {
     slide.move(0.0, kCalmSlide);
     return;

@@ -1,5 +1,5 @@
-// How a computer player works the screens before a match: pushes at the logo, turns to the
-// character that it wants and confirms it. One rod does it all.
+// How a computer player operates the screens before a match: it pushes at the logo, rotates to its
+// character and confirms it. One rod does all of it.
 #pragma once
 
 #include "computer_hand.h"
@@ -10,18 +10,18 @@ namespace foosball {
 
 class ComputerScreens {
  public:
-  // The rod that works the screens: the midfield, in the middle of what the player sees.
+  // The rod that operates the screens: the midfield, at the centre of the player's view.
   static constexpr int kRod = static_cast<int>(Line::midfield);
 
   ComputerScreens(int team, bool opens_match) : team_(team), opens_match_(opens_match) {}
 
-  // Call once a tick before work(): draws a character when the selection comes up.
+  // Call once per tick before work(): draws a character when the selection appears.
   void see(const MatchView& view, double swing, Random& random);
-  // Screens that are worked with a rod; the others are play, or go on by themselves.
+  // True for screens that a rod operates; the others are play, or continue by themselves.
   static bool worked_at(Screen screen) {
     return screen == Screen::logo || screen == Screen::selection;
   }
-  // Moves the rod on the logo and the selection. False on the other screens.
+  // Moves the rod on the logo and the selection. Returns false on the other screens.
   bool work(const MatchView& view, HandAxis& slide, HandAxis& swing);
 
  private:

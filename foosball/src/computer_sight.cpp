@@ -10,7 +10,7 @@ ComputerSight::ComputerSight(int team, int delay_ticks)
 
 void ComputerSight::look(const MatchView& view) {
   const Sighting fresh = in_team_frame(view);
-  if (fresh.ball_in_play != now_.ball_in_play) count_ = 0;  // a serve or a goal: look anew
+  if (fresh.ball_in_play != now_.ball_in_play) count_ = 0;  // a serve or a goal: start again
   seen_[next_] = fresh;
   next_ = (next_ + 1) % seen_.size();
   count_ = std::min(count_ + 1, seen_.size());

@@ -1,4 +1,4 @@
-// Computer players by name.
+// Conversion of computer players from and to text.
 #include <algorithm>
 #include <charconv>
 #include <utility>
@@ -25,7 +25,7 @@ auto unknown(std::string_view text) {
   return tl::unexpected(vp::Error{vp::Errc::invalid_argument, std::move(message)});
 }
 
-// Digits with at most one point: no sign, exponent, space or locale.
+// Digits with at most one point; no sign, exponent, space or locale.
 bool read_skill(std::string_view text, double& skill) {
   double value = 0.0, unit = 1.0;
   bool point = false, digits = false;
@@ -58,7 +58,7 @@ PlayStyle style_of_level(int level) {
 }
 
 PlayerSpec challenge_opponent(std::uint64_t challenge) {
-  Random random(challenge ^ 0x6f70706f6e656e74u);  // not as the match's own dice fall: "opponent"
+  Random random(challenge ^ 0x6f70706f6e656e74u);  // "opponent": unlike the match's sequence
   const int level = 1 + random.below(kLevels);
   return {.level = level, .style = static_cast<PlayStyle>(random.below(kPlayStyles))};
 }

@@ -6,8 +6,8 @@
 namespace foosball {
 namespace {
 
-// How far the ball is behind where a hanging foot would meet it [m]. The further, the more the
-// stroke comes from above and presses the ball on the field.
+// Distance of the ball behind the point where a hanging foot would meet it [m]. The larger it is,
+// the more the stroke comes from above and presses the ball onto the field.
 double behind(const Foot& foot, const TableSpec& table, double ahead) {
   return std::clamp(foot.half_depth + table.ball_radius - ahead, 0.0, 0.055);
 }
@@ -19,8 +19,8 @@ Foot foot_of(const CharacterBody& body) {
 }
 
 double contact_swing(const TableSpec& table, const Foot& foot, double ahead) {
-  // ahead * cos(s) - height * sin(s) = half_depth + radius, by Newton's steps on the series of sine
-  // and cosine, which are the same everywhere.
+  // Solves ahead * cos(s) - height * sin(s) = half_depth + radius by Newton's method. Sine and
+  // cosine are series, identical on all platforms.
   const double height = table.rod_height - table.ball_radius;
   const double away = foot.half_depth + table.ball_radius;
   double s = (ahead - away) / height;
@@ -34,8 +34,8 @@ double contact_swing(const TableSpec& table, const Foot& foot, double ahead) {
 }
 
 double stroke_time(double from, double contact, const AxisLimits& stroke) {
-  constexpr double kLag = 0.0013;  // [s]: a tick until the hand moves, and the foot's own
-  constexpr double kEarly = 0.04;  // [rad]: the ball is off before the foot is all there
+  constexpr double kLag = 0.0013;  // [s]: a tick until the hand moves, and the foot's delay
+  constexpr double kEarly = 0.04;  // [rad]: the ball leaves before the contact swing is reached
   const double way = std::max(0.0, contact - kEarly - from);
   const double gathering = 0.5 * stroke.rate * stroke.rate / stroke.acceleration;
   if (way < gathering) return kLag + std::sqrt(2.0 * way / stroke.acceleration);
@@ -48,7 +48,7 @@ bool lifts_ball(const Foot& foot, const TableSpec& table, const Meeting& meeting
 }
 
 double stroke_speed(const Foot& foot, const TableSpec& table, const Meeting& meeting) {
-  constexpr double kSpeed = 0.110, kSoft = 0.090;  // [m/s] for the stroke's [rad/s]
+  constexpr double kSpeed = 0.110, kSoft = 0.090;  // [m/s] per [rad/s] of the stroke
   constexpr double kSoftRate = 30.0;               // [rad/s]
   constexpr double kPressed = 120.0;               // [1/m^2]
   const double d = behind(foot, table, meeting.ahead);
@@ -62,8 +62,8 @@ double natural_slope(const Foot& foot, const TableSpec& table, const Meeting& me
 }
 
 double foot_offset(const Foot& foot, const TableSpec& table, const Meeting& meeting, double slope) {
-  // An edge u beside the centre turns the ball off by 49/m u + 6.1e4/m^3 u^3, times more from
-  // above.
+  // An edge at distance u from the centre deflects the ball by the slope 49/m u + 6.1e4/m^3 u^3;
+  // more if the stroke comes from above.
   constexpr double kTurn = 49.0, kCubic = 6.1e4;
   const double d = behind(foot, table, meeting.ahead);
   const double steeper = 1.0 + d * d * (120.0 + 29000.0 * d * d);

@@ -5,12 +5,12 @@
 namespace foosball {
 namespace {
 
-// A stroke no one makes by chance while only turning a rod, and that every rod has room for from
-// the middle of its slide (the shortest limit is 76 mm).
+// Too long to occur by chance while turning a rod, and possible on every rod from the centre of its
+// slide (the shortest limit is 76 mm).
 constexpr double kPushStroke = 0.035;  // [m]
-// A slower hand is settling, not pushing.
+// A slower hand is coming to rest, not pushing.
 constexpr double kPushRate = 0.08;  // [m/s]
-// Three choices to a revolution: what a wrist turns without changing its grip.
+// Three choices per revolution: a wrist can turn this far without changing its grip.
 constexpr double kTurn = 2.0 * vp::kPi / 3.0;
 
 }  // namespace
@@ -18,7 +18,7 @@ constexpr double kTurn = 2.0 * vp::kPi / 3.0;
 void RodGestures::reset(const RodState& state) {
   stroke_from_ = state.slide;
   turn_from_ = state.angle;
-  armed_ = false;  // a stroke that crosses a change of screen counts on the old one only
+  armed_ = false;  // a stroke across a change of screen counts only on the previous screen
 }
 
 Gesture RodGestures::update(int team, const RodState& state) {
@@ -31,7 +31,7 @@ Gesture RodGestures::update(int team, const RodState& state) {
     gesture.push = true;
     armed_ = false;
   }
-  // Forward is a negative angle for the team that attacks +x.
+  // Feet forward is a negative angle for the team that attacks +x.
   const double forward = -attack_sign(team) * (state.angle - turn_from_);
   if (forward >= kTurn || forward <= -kTurn) {
     gesture.turn = forward > 0.0 ? 1 : -1;

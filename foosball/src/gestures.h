@@ -1,5 +1,5 @@
-// What a rod says on the screens: a push (a stroke away from its player) and a turn (a third of a
-// revolution, the feet going forward or back).
+// Gestures of a rod on the screens: a push (a stroke away from its player) and a turn (a third of a
+// revolution, feet forward or back).
 #pragma once
 
 #include "foosball/match.h"
@@ -13,7 +13,7 @@ struct Gesture {
 
 class RodGestures {
  public:
-  // Forgets the stroke and the turn under way.
+  // Discards the current stroke and turn.
   void reset(const RodState& state);
   // One tick of a rod of the team.
   Gesture update(int team, const RodState& state);
@@ -26,9 +26,9 @@ class RodGestures {
   }
 
  private:
-  double stroke_from_ = 0.0;  // slide at which the stroke under way began [m]
-  double turn_from_ = 0.0;    // angle at the last turn counted [rad]
-  bool armed_ = true;         // one push a stroke
+  double stroke_from_ = 0.0;  // slide at the start of the current stroke [m]
+  double turn_from_ = 0.0;    // angle at the last counted turn [rad]
+  bool armed_ = true;         // allows one push per stroke
 };
 
 }  // namespace foosball

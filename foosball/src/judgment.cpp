@@ -24,7 +24,7 @@ std::string quoted(std::string_view text) {
   return result.append(text.substr(0, 40)).append("\"");
 }
 
-// Whatever the program's locale; libc++ has no std::from_chars of a double.
+// Independent of the program's locale. libc++ has no std::from_chars for double.
 bool read_number(std::string_view text, double& value) {
   std::istringstream stream{std::string(text)};
   stream.imbue(std::locale::classic());

@@ -1,4 +1,4 @@
-// The match: one step is commands, rods, world, ball, screen.
+// One step of the match: commands, rods, world, ball, screen.
 #include "foosball/match.h"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ bool usable(const RodTarget& target) {
          std::isfinite(target.angle_rate) && std::fabs(target.angle) <= kMaxAngle;
 }
 
-// Both teams begin with the second character, or the only one.
+// Both teams start with the second character, or the only one.
 MatchState first_state(const MatchDesc& desc) {
   MatchState state;
   const int first = std::min(1, static_cast<int>(desc.characters.size()) - 1);
@@ -76,7 +76,7 @@ void Match::Impl::step(const TickInput& input) {
   if (!(world->tuning() == state.tuning)) rebuild_world();
   watch_hands(input.rods, !input.commands.empty());
   if (!state.paused) {
-    // What hands wanted before a try of a challenge began is none of it.
+    // Targets from before the start of a challenge do not affect it.
     const bool begins = !played && state.screen == Screen::play && state.play_ticks == 0;
     if (!(begins && mode() == Mode::challenge)) drive_rods(input.rods);
     if (state.ball_parked) world->park_ball();
@@ -131,7 +131,7 @@ void Match::Impl::apply(const Command& command) {
   }
 }
 
-// Takes effect in this tick: the world is built anew.
+// Takes effect in this tick: step() rebuilds the world.
 void Match::Impl::tune(int index, double value) {
   const bool challenge = state.game.mode == Mode::challenge || state.next.mode == Mode::challenge;
   if (index >= kTuningValues || challenge) return;
@@ -139,7 +139,7 @@ void Match::Impl::tune(int index, double value) {
   if (in_range(field, value)) state.tuning.*field.value = value;
 }
 
-// A rod that no hand moves stays where it was when the hand left it.
+// A rod that no hand moves stays where its hand left it.
 void Match::Impl::drive_rods(const RodTargets& targets) {
   for (int rod = 0; rod < kRods; ++rod) {
     RodTarget& hold = state.hold[rod];
@@ -156,8 +156,8 @@ void Match::Impl::drive_rods(const RodTargets& targets) {
   }
 }
 
-// Absence shows in the targets: a ball may push a rod that nobody holds. Of a person who has left
-// the table, and of a side that lets the ball lie.
+// Detects absence: of a person who has left the table, and of a team that does not play the ball.
+// It uses the hands' targets, because the ball can move a free rod.
 void Match::Impl::watch_hands(const RodTargets& hands, bool commanded) {
   RodTargets held = hands;
   for (RodTarget& rod : held) rod.live = usable(rod);
@@ -180,7 +180,8 @@ void Match::Impl::watch_hands(const RodTargets& hands, bool commanded) {
   leave_idle_screen();
 }
 
-// Where nobody is: at the logo a match is shown, every other screen returns to the logo.
+// When nobody is present, the logo starts a demonstration match, and every other screen returns to
+// the logo.
 void Match::Impl::leave_idle_screen() {
   const bool logo = state.screen == Screen::logo;
   const double limit = logo ? rules().attract_seconds : rules().idle_seconds;
@@ -190,7 +191,7 @@ void Match::Impl::leave_idle_screen() {
   enter(Screen::logo);
 }
 
-// --- what is seen --------------------------------------------------------------------------------
+// --- view ----------------------------------------------------------------------------------------
 
 void Match::Impl::refresh_view() {
   const BallState ball = world->ball();
@@ -262,7 +263,7 @@ vp::Expected<void> Match::Impl::restore(std::span<const std::byte> bytes) {
   return {};
 }
 
-// --- the public face -----------------------------------------------------------------------------
+// --- public interface ----------------------------------------------------------------------------
 
 vp::Expected<Match> Match::create(const MatchDesc& desc) {
   if (!plausible(desc)) {

@@ -1,5 +1,5 @@
-// The match's insides, shared by its three files: match.cpp (one step), match_play.cpp (ball and
-// referee) and match_screens.cpp (screens, modes).
+// Implementation of the match, shared by three files: match.cpp (one step), match_play.cpp (ball
+// and referee) and match_screens.cpp (screens, modes).
 #pragma once
 
 #include <cmath>
@@ -91,8 +91,8 @@ struct Match::Impl {
   int rod_of(int team, Line line) const {
     return rods_of_team(table(), team)[static_cast<std::size_t>(line)];
   }
-  // Before whom the ball is served where no man is named: the middle one, of two the one at the
-  // team's right hand.
+  // The man who gets the serve if none is named: the middle one; of two, the one to the team's
+  // right.
   int middle_man(int rod) const {
     const RodSpec& spec = table().rods[rod];
     return spec.team == 0 ? spec.men / 2 : spec.men - 1 - spec.men / 2;

@@ -1,5 +1,5 @@
-// The ball and the referee: touches, shots, goals, fouls, and where the ball is put back. Articles
-// are those of the ITSF rule book (2016); docs/rules.md says what is judged and what differs.
+// The ball and the referee: touches, shots, goals, fouls, and restarts of play. Article numbers
+// refer to the ITSF rule book (2016). docs/rules.md says what is judged and what differs.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -10,11 +10,12 @@
 namespace foosball {
 namespace {
 
-// A change of the ball's motion by less than about 0.1 m/s is neither heard nor felt.
+// Below this impulse the ball's velocity changes by less than about 0.1 m/s: too little to hear or
+// feel.
 constexpr double kLeastHit = 0.003;  // [N s]
-// A ball that a defender touches so soon after an attacker goes on as a deflected shot.
+// A ball that a defender touches within this time after an attacker is a deflected shot.
 constexpr double kDeflection = 0.3;  // [s]
-// A hand that reaches the rod's stop faster slams it (16.3).
+// A hand that is faster at the rod's stop jars the table (16.3).
 constexpr double kSlam = 2.5;           // [m/s]
 constexpr int kJarsUntilTechnical = 2;  // (16.4)
 
@@ -37,7 +38,7 @@ Shot shot_by(const TableSpec& table, const Touch& touch, const vp::Vec3& velocit
 
 }  // namespace
 
-// --- what the ball meets -------------------------------------------------------------------------
+// --- contacts of the ball ------------------------------------------------------------------------
 
 void Match::Impl::watch_ball(const vp::Vec3& velocity_before) {
   if (!state.ball_in_play) return;
@@ -47,7 +48,7 @@ void Match::Impl::watch_ball(const vp::Vec3& velocity_before) {
 }
 
 void Match::Impl::note_contacts(const vp::Vec3& velocity_before) {
-  // A ball pressed against something has contacts without end, and none of them is a hit.
+  // A ball pressed against an object has repeated contact events; they are not hits.
   const vp::Vec3 change = world->ball().velocity - velocity_before;
   const bool felt = state.tuning.ball_mass * vp::norm(change) >= kLeastHit;
   for (const vp::ContactEvent& event : world->contacts()) {
@@ -82,7 +83,7 @@ void Match::Impl::note_touch(int rod, int man) {
   state.shot_pending = true;
 }
 
-// Once no man touches the ball any more, its speed tells a shot.
+// After the last man has lost contact, the ball's speed decides whether it is a shot.
 void Match::Impl::note_shot() {
   if (!state.shot_pending || state.touching.any()) return;
   state.shot_pending = false;
@@ -103,9 +104,9 @@ void Match::Impl::watch_rods(const RodTargets& hands) {
   }
 }
 
-// (16, 17) The table does not shake here: what is judged is the hand that drives a rod against its
-// stop while the opponent has the ball. His time of possession begins anew; from the third time on
-// he has a shot.
+// (16, 17) The simulated table does not shake. The referee judges the hand that drives a rod
+// against its stop while the opponent has the ball. The opponent's time of possession restarts;
+// from the third offence on, the opponent gets a shot.
 void Match::Impl::judge_jarring(int rod, const RodTarget& hand) {
   const RodSpec& spec = table().rods[rod];
   const auto holder = state.watch.rod();
@@ -138,7 +139,7 @@ void Match::Impl::foul(Foul reason, int team) {
 void Match::Impl::judge_ball() {
   const vp::Vec3 ball = world->ball().pose.position();
   if (const auto scorer = goal_by(table(), ball)) return judge_goal(*scorer);
-  if (state.ball_in_goal) return;     // reviewed, and held in the goal
+  if (state.ball_in_goal) return;     // under review; the ball stays in the goal
   if (out_of_table(table(), ball)) {  // (7.3)
     emit(EventKind::ball_out, state.last_toucher);
     if (mode() == Mode::training) return serve_again();
@@ -148,7 +149,8 @@ void Match::Impl::judge_ball() {
   judge_possession();
 }
 
-// (15.1) Play stops when a spin has struck the ball; the opponent, who may choose, always serves.
+// (15.1) Play stops when a spinning rod has struck the ball. The opponent could choose, and here
+// always serves.
 bool Match::Impl::judge_spin() {
   if (rules().spin != SpinRule::loss || !state.touch.any) return false;
   if (!state.spins[state.touch.rod].spun()) return false;
@@ -179,8 +181,8 @@ void Match::Impl::judge_possession() {
   serve_from(rod_after_possession(table(), holder.team, holder.line), kServeDelay);
 }
 
-// The man to whom a goal of the team is credited: its last, where a defender only deflected his
-// shot; else whoever touched the ball last.
+// The man who gets the credit for a goal of the team: its last toucher, if a defender only
+// deflected his shot; otherwise the last toucher of the ball.
 Touch Match::Impl::credited(int scorer) const {
   const Touch& last = state.touch;
   const Touch& theirs = state.touch_of[scorer];
@@ -189,7 +191,7 @@ Touch Match::Impl::credited(int scorer) const {
   return deflected ? theirs : last;
 }
 
-// A ball in the goal: a goal at once, unless it may have come from a spin (15).
+// A ball in the goal scores at once, unless it may come from a spin (15).
 void Match::Impl::judge_goal(int scorer) {
   if (state.served && std::popcount(state.touched) < 2) {  // (4.2.2)
     foul(Foul::serve, state.last_server);
@@ -214,7 +216,7 @@ void Match::Impl::score_goal(int scorer, const Touch& by) {
   goals = std::min(goals + 1, kMaxScore);
   state.last_scorer = scorer;
   state.last_goal = shot_by(table(), by, ball.velocity);
-  // While the goal was reviewed the ball came to rest: then its shot tells the speed.
+  // The ball came to rest during the review: use the shot's speed.
   if (state.review_ticks > 0) state.last_goal.speed = state.last_shot.speed;
   state.last_goal_own = by.any && state.last_goal.team != scorer;
   state.ball_in_play = false;
@@ -250,7 +252,7 @@ void Match::Impl::finish_undecided() {
 // --- putting the ball in play --------------------------------------------------------------------
 
 void Match::Impl::serve_from(int rod, double delay, int man) {
-  if (mode() == Mode::training) {  // always to the man who was asked for
+  if (mode() == Mode::training) {  // always to the chosen man
     rod = state.feed_rod;
     man = state.feed_man;
   }
@@ -263,13 +265,13 @@ void Match::Impl::serve_from(int rod, double delay, int man) {
   state.serve_waits = 0;
 }
 
-// Training: to the man who was asked for.
+// Training: serves to the chosen man.
 void Match::Impl::serve_again() {
   serve_from(state.feed_rod, kServeDelay, state.feed_man);
 }
 
-// Puts the ball in front of a man, as soon as there is a place that no man fills. A side that
-// leaves none loses the ball.
+// Puts the ball in front of a man once a place is free of men. A team that blocks every place loses
+// the ball.
 void Match::Impl::put_in_play() {
   const RodSpec& rod = table().rods[state.serve_rod];
   const int man = state.serve_man >= 0 && state.serve_man < rod.men ? state.serve_man
@@ -303,7 +305,7 @@ void Match::Impl::put_in_play() {
 
 bool Match::Impl::find_place(int rod_index, int man, vp::Vec3& place) {
   const RodSpec& rod = table().rods[rod_index];
-  // Then further off, then beside.
+  // Offsets to try: first further from the rod, then to the side.
   constexpr double kFurther[] = {0.0, 0.008, 0.016};
   constexpr double kBeside[] = {0.0, 0.03, -0.03, 0.06, -0.06};
   const double first =

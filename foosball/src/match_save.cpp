@@ -19,7 +19,7 @@ void visit_head(Archive& archive, Magic& magic, Digest& characters, Desc& desc, 
   MatchState::visit(archive, state);
 }
 
-// What no match is ever in, though each field by itself is in its range.
+// Rejects combinations of fields that no match can have, although each field is in its range.
 bool consistent(const MatchDesc& desc, const MatchState& s) {
   const Rules& rules = s.game.rules;
   const TableSpec& table = table_spec(desc.layout);
@@ -29,14 +29,14 @@ bool consistent(const MatchDesc& desc, const MatchState& s) {
     return touch.tick <= s.tick && man_of(touch.rod, touch.man);
   };
   if (!playable(rules) || !playable(s.next.rules)) return false;
-  // Counts of what began with the match.
+  // Counters that started with the match.
   bool ok = s.screen_ticks <= s.tick && s.play_ticks <= s.tick &&
             s.tally.set_ticks <= s.play_ticks && s.idle_ticks <= s.tick &&
             s.absent_ticks[0] <= s.tick && s.absent_ticks[1] <= s.tick;
   ok = ok && touch_ok(s.touch) && touch_ok(s.touch_of[0]) && touch_ok(s.touch_of[1]);
-  // The ball is in one place, and in play where there is play.
+  // The ball has one location, and it is in play only on the play screen.
   ok = ok && !(s.ball_in_play && (s.ball_parked || !plays)) && (plays || !s.paused);
-  // Stops that have a time of their own.
+  // Limits of time-outs and sets.
   ok = ok && s.time_out_left <= ticks_of(rules.time_out_seconds) &&
        (s.time_out_left == 0 || (plays && !s.attract));
   for (int team = 0; team < kTeams; ++team) {
@@ -97,7 +97,7 @@ vp::Expected<void> load_match(const MatchDesc& desc, std::span<const std::byte> 
   return {};
 }
 
-// Over the head's bytes and those of the world's hash.
+// Hash of the header's bytes and the world's hash.
 std::uint64_t hash_match(const MatchDesc& desc, const MatchState& state, const TableWorld& world) {
   ByteHash hash;
   ByteWriter writer(hash);

@@ -1,5 +1,5 @@
-// A match as bytes: description, state and world. What Match::snapshot() writes and restore()
-// reads.
+// A match as bytes: description, state and world. Match::snapshot() writes them, restore() reads
+// them.
 #pragma once
 
 #include <cstddef>
@@ -16,9 +16,9 @@ namespace foosball {
 void save_match(const MatchDesc& desc, const MatchState& state, const TableWorld& world,
                 std::vector<std::byte>& bytes);
 
-// Refuses bytes that are not a saved match, or one of another table, other rules or characters than
-// desc; state and world are then as they were. A world of the same men is restored where it is; for
-// others another takes its place.
+// Fails if the bytes are not a saved match, or one with another table, rules or characters than
+// desc; state and world then stay unchanged. Restores a world of the same men in place; otherwise
+// replaces it by a new one.
 vp::Expected<void> load_match(const MatchDesc& desc, std::span<const std::byte> bytes,
                               MatchState& state, std::unique_ptr<TableWorld>& world);
 

@@ -1,4 +1,4 @@
-// The screens and the modes: what leads from one to the next.
+// The screens and the modes, and the transitions between them.
 #include <algorithm>
 #include <utility>
 
@@ -8,7 +8,7 @@
 namespace foosball {
 namespace {
 
-// A push in the same breath as the goal is the end of the shot, not a request to go on.
+// A push right after the goal is the end of the shot, not a request to continue.
 constexpr double kCeremonyAtLeast = 0.5;  // [s]
 
 }  // namespace
@@ -54,21 +54,21 @@ void Match::Impl::run_play() {
   }
 }
 
-// For whoever pushed, unless a computer did.
+// Serves to the team that pushed; if a computer plays it, to the person's team.
 void Match::Impl::begin_training(int team) {
   state.confirmed = {true, true};
   if (state.feed_man < 0)
     state.feed_rod = rod_of(state.computer[team] ? person() : team, Line::attack);
 }
 
-// (9.1) Ends after its time, or as soon as both sides push.
+// (9.1) A time-out ends after its time, or when both teams have pushed.
 void Match::Impl::run_time_out() {
   --state.time_out_left;
   if (state.ready[0] && state.ready[1]) state.time_out_left = 0;
 }
 
-// (9) Between balls either side may, else the one that has the ball. (10) The ball is then put in
-// play again at the rod that had it.
+// (9) Between balls either team may request a time-out; during play only the team with the ball.
+// (10) Afterwards the rod that had the ball restarts play.
 void Match::Impl::ask_time_out(int team) {
   if (state.screen != Screen::play || state.time_out_left > 0 || state.attract ||
       state.ball_in_goal) {
@@ -107,8 +107,9 @@ void Match::Impl::feed_to(int rod, int man) {
   if (state.screen == Screen::play) serve_again();
 }
 
-// By the rods alone: whoever spins a rod after a goal has the ball served there, forward to the
-// next man, back to the one before. The end of a shot's swing is no choice.
+// Chooses the man who is served in training with the rods alone: turning a rod after a goal moves
+// the serve there; forward to the next man, back to the previous one. The end of a shot's swing
+// does not count.
 void Match::Impl::feed_by_turn(int rod, int turn) {
   const bool between =
       state.screen == Screen::ceremony && state.screen_ticks >= to_ticks(kCeremonyAtLeast);
@@ -121,7 +122,7 @@ void Match::Impl::read_gestures() {
   for (int rod = 0; rod < kRods; ++rod) {
     const int team = table().rods[rod].team;
     const Gesture gesture = state.gestures[rod].update(team, world->rod(rod));
-    if (state.attract) continue;  // the computers' rods; a hand is told by the server
+    if (state.attract) continue;  // the computers' rods; the server reports a person's hand
     if (gesture.turn != 0) {
       choose(team, (state.character[team] + gesture.turn + characters()) % characters());
       feed_by_turn(rod, gesture.turn);
@@ -129,7 +130,7 @@ void Match::Impl::read_gestures() {
     if (gesture.push) {
       const bool chooses = mode() == Mode::training && state.screen == Screen::selection;
       push(team);
-      // Who begins with a rod has the ball there.
+      // The rod that starts training gets the ball.
       if (chooses && state.screen != Screen::selection) feed_to(rod, middle_man(rod));
     }
   }
@@ -143,7 +144,7 @@ void Match::Impl::push(int team) {
       if (mode() == Mode::challenge) start_match();
       break;
     case Screen::selection:
-      // In training a computer waits until the person has chosen.
+      // In training a computer waits until the person has confirmed.
       if (mode() == Mode::training && state.computer[team] && !state.computer[opponent(team)])
         break;
       state.confirmed[team] = true;
@@ -182,7 +183,7 @@ void Match::Impl::enter(Screen screen) {
   }
   if (screen == Screen::ceremony || screen == Screen::end) {
     state.ball_in_play = false;
-    state.ball_parked = !state.ball_in_goal;  // else it stays to be seen where it scored
+    state.ball_parked = !state.ball_in_goal;  // after a goal it stays visible there
   }
   if (screen == Screen::logo) {
     state.game = state.next;
@@ -205,7 +206,7 @@ int Match::Impl::dice(int n) {
   return result;
 }
 
-// From the selection: a new match, the serve decided by lot (3).
+// From the selection: starts a new match; the random generator decides the serve (3).
 void Match::Impl::start_match() {
   if (mode() == Mode::challenge) state.random = Random(state.game.challenge).state();
   if (mode() == Mode::challenge || state.attract) {
@@ -223,14 +224,14 @@ void Match::Impl::start_match() {
   start_play(server);
 }
 
-// A challenge draws from the built-in ones, which come first where there are others.
+// A challenge draws only built-in characters; they come first in a longer list.
 int Match::Impl::characters_to_draw() const {
   if (mode() != Mode::challenge) return characters();
   return std::min(characters(), static_cast<int>(built_in_characters().size()));
 }
 
-// In play, rules do not change under the players' hands: at the next logo. The selection stays, but
-// where another mode leads elsewhere.
+// The rules of a running match do not change: the new setup applies at the next logo. On the
+// selection screen it applies at once, unless the mode changes: then the logo follows.
 void Match::Impl::set_up(const GameSetup& setup) {
   if (!playable(setup)) return;
   if (setup.mode == Mode::challenge && !(state.tuning == Tuning{})) return;
@@ -241,14 +242,15 @@ void Match::Impl::set_up(const GameSetup& setup) {
   if (state.screen == Screen::logo || state.screen == Screen::selection) state.game = state.next;
 }
 
-// Nobody is there: two computers play until a hand touches a rod.
+// Nobody is present: two computers play until a hand touches a rod.
 void Match::Impl::show_match() {
   enter(Screen::selection);
   state.attract = true;
   start_match();
 }
 
-// From the ceremony: the side that conceded serves (5), in a new set the one that lost the last.
+// From the ceremony: the team that conceded serves (5); in a new set, the team that lost the
+// previous one.
 void Match::Impl::start_play(int server) {
   if (state.tally.set_over) {
     new_set();
@@ -260,7 +262,7 @@ void Match::Impl::start_play(int server) {
   serve_from(rod_of(server, Line::midfield), kServeDelay);
 }
 
-// (13) Where sides are changed the players walk round the table: what belongs to them goes along.
+// (13) When the teams change sides, their characters, sets and counts of jarring move with them.
 void Match::Impl::new_set() {
   Tally next;
   next.sets = state.tally.sets;
@@ -275,7 +277,7 @@ void Match::Impl::new_set() {
   state.tally = next;
 }
 
-// The side that people play; the first, where it is not told.
+// The team that people play; team 0 if it is unknown.
 int Match::Impl::person() const {
   return state.computer[0] && !state.computer[1] ? 1 : 0;
 }
@@ -289,12 +291,13 @@ void Match::Impl::go_on_after_end() {
   enter(Screen::selection);
 }
 
-// As state.built, first and tuning say. Rods and ball stay as they are; but each try of a challenge
-// begins at rest, whatever was played before.
+// Builds the world for state.built, first and tuning. Rods and ball keep their states. A challenge
+// always begins at rest instead.
 void Match::Impl::rebuild_world() {
   auto rebuilt =
       std::make_unique<TableWorld>(desc.layout, bodies_of(desc, state), state.first, state.tuning);
-  state.touching.clear();  // the new world tells of no contact that ends, those that last begin
+  // The new world reports no end of old contacts, but a begin of those that continue.
+  state.touching.clear();
   if (mode() == Mode::challenge && state.screen != Screen::play) {
     world = std::move(rebuilt);
     return;

@@ -1,4 +1,4 @@
-// All of a match that is not the world: what is saved, hashed and restored beside it.
+// The state of a match without its world: saved, hashed and restored together with it.
 #pragma once
 
 #include <array>
@@ -13,18 +13,19 @@
 
 namespace foosball {
 
-// A score that fits a byte and no match reaches.
+// Fits a byte, and no match reaches it.
 inline constexpr int kMaxScore = 99;
 static_assert(kMostGoals <= kMaxScore);
 inline constexpr int kMostSetsToWin = (kMostSets + 1) / 2;
-inline constexpr int kMaxCount = 250;           // of fouls and time-outs; counted no further
+inline constexpr int kMaxCount = 250;           // of fouls and time-outs; counting stops there
 inline constexpr double kMaxDuration = 3600.0;  // [s]
-// A rod turned further than this [rad] has been held by nobody: two million revolutions.
+// Bound on a rod's angle [rad]: no hand reaches two million revolutions.
 inline constexpr double kMaxAngle = 1e7;
-inline constexpr double kServeDelay = 0.5;  // [s] for the eye to find the new ball
-// So long men may fill every place for the ball before the other side has it.
+inline constexpr double kServeDelay = 0.5;  // [s], so that the eye finds the new ball
+// Maximum time for which a team's men may block every place of the ball. Then the other team gets
+// it.
 inline constexpr double kServeWait = 5.0;  // [s]
-// A goal waits so long at most for the rod that shot to stop or to have gone round (15).
+// Maximum time for which a goal waits until the rod that shot stops or completes a spin (15).
 inline constexpr double kReview = 0.3;  // [s]
 // Bit rod * kMaxMenOnRod + man.
 inline constexpr std::uint64_t kAllMen = (std::uint64_t{1} << (kRods * kMaxMenOnRod)) - 1;
@@ -33,7 +34,7 @@ inline constexpr std::uint64_t kAllMen = (std::uint64_t{1} << (kRods * kMaxMenOn
 struct Touch {
   int rod = 0, man = 0;
   std::uint64_t tick = 0;  // MatchState::tick at its beginning
-  bool any = false;        // since the ball was put in play
+  bool any = false;        // true: there was a touch since the ball was put in play
 
   template <class Archive, class Self>
   static void visit(Archive& archive, Self& self) {
@@ -44,11 +45,11 @@ struct Touch {
   }
 };
 
-// What is played, and by what.
+// The mode and the rules of a match.
 struct Game {
   Mode mode = Mode::match;
   Rules rules;
-  std::uint64_t challenge = 0;  // what a challenge is drawn from, again at each start; else 0
+  std::uint64_t challenge = 0;  // seed of a challenge, used again at each start; otherwise 0
 
   bool operator==(const Game&) const = default;
 
@@ -56,10 +57,10 @@ struct Game {
   static void visit(Archive& archive, Self& self);
 };
 
-// Each number in its range, and together a match that can end.
+// Each number is in its range, and such a match can end.
 bool playable(const Rules& rules);
 
-// What the score is made of.
+// The counts behind the score.
 struct Tally {
   std::array<int, kTeams> score{};      // goals in this set
   std::array<int, kTeams> sets{};       // won
@@ -85,65 +86,66 @@ struct Tally {
 
 struct MatchState {
   std::uint64_t tick = 0;
-  Game game, next;  // in hand; from the next logo on
+  Game game, next;  // current; from the next logo on
   Screen screen = Screen::logo;
   bool paused = false;
   Tally tally;
-  std::array<int, kTeams> character{1, 1};  // where there are two to choose from
-  std::array<int, kTeams> built{1, 1};      // the characters that the world was made with
-  int first = 0;  // the team whose side the world was made from: who served first (table_world.h)
+  std::array<int, kTeams> character{1, 1};  // if there are at least two to choose from
+  std::array<int, kTeams> built{1, 1};      // characters of the current world
+  int first = 0;  // team whose side the world was built from: the first server (table_world.h)
   std::array<bool, kTeams> confirmed{};
-  std::array<bool, kTeams> computer{};  // plays the team
+  std::array<bool, kTeams> computer{};  // a computer plays the team
   bool attract = false;
   int rung = 0;  // of the ladder
   std::uint64_t screen_ticks = 0;
   std::uint64_t play_ticks = 0;
   int last_scorer = 0;
 
-  // The hands.
+  // Hands.
   MovedRods moved_rods;
   std::uint64_t idle_ticks = 0;                      // since a person last moved a rod
   std::array<std::uint64_t, kTeams> absent_ticks{};  // with the ball in play, since a hand of the
-                                                     // team, a person's or not, last moved a rod
+                                                     // team (a person's or not) last moved a rod
 
-  // The ball.
+  // Ball.
   bool ball_in_play = false;
-  bool ball_parked = true;        // else it lies where it is: in play, or in the goal it went into
-  bool ball_in_goal = false;      // it has scored, or is about to (review_ticks)
-  int serve_rod = 0;              // the rod at which the ball is to be put in play,
-  int serve_man = -1;             // the man, or -1: the middle one; and
-  std::uint64_t serve_in = 0;     // after how many ticks; counts while the ball is not in play
-  std::uint64_t serve_waits = 0;  // ticks for which men have filled the place
+  bool ball_parked = true;        // false: it is in play, or in the goal after it scored
+  bool ball_in_goal = false;      // it has scored, or a goal is under review (review_ticks)
+  int serve_rod = 0;              // rod of the next serve
+  int serve_man = -1;             // man of the next serve; -1: the middle one
+  std::uint64_t serve_in = 0;     // ticks until the serve; counts while the ball is not in play
+  std::uint64_t serve_waits = 0;  // ticks for which men have blocked the place
   int last_server = 0;            // team
   int last_toucher = 0;           // team
-  bool served = false;            // from a midfield: two men must touch before a goal counts
-  std::uint64_t touched = 0;  // men that touched since the ball was put in play: bit rod * 5 + man
-  BallTouches touching;       // the parts of men in contact with the ball now
-  Touch touch;                // the last
-  std::array<Touch, kTeams> touch_of{};  // the last of each team
-  bool shot_pending = false;             // it has not been told whether that was a shot
+  bool served = false;            // from a midfield: a goal counts after touches by two men
+  std::uint64_t touched = 0;      // men who touched it since it was put in play: bit rod * 5 + man
+  BallTouches touching;           // parts of men that touch the ball now
+  Touch touch;                    // the latest
+  std::array<Touch, kTeams> touch_of{};  // the latest of each team
+  bool shot_pending = false;             // not yet decided whether the touch was a shot
   BallWatch watch;
-  std::uint64_t review_ticks = 0;  // for so long the goal waits for the rod that shot to stop
+  std::uint64_t review_ticks = 0;  // waiting time of a goal for the rod that shot
 
   // Stops.
   std::uint64_t time_out_left = 0;  // ticks; 0: none
   int time_out_team = 0;
-  std::array<bool, kTeams> ready{};  // in a time-out: wants to go on
+  std::array<bool, kTeams> ready{};  // in a time-out: requests to continue
   bool fouled = false;
   Foul last_foul{};
   int last_foul_team = 0;
 
-  // What was last seen.
+  // Last goal and shot.
   Shot last_goal, last_shot;
   bool last_goal_own = false;
-  // Training: where the ball is served. No man: nobody has asked, and it is whose push began.
+  // Training: where the ball is served. feed_man -1: not requested; then it is decided by the team
+  // whose push began.
   int feed_rod = 0, feed_man = -1;
 
-  // The rods: where each is held while no hand is on it.
+  // Rods: targets of those without a hand.
   std::array<RodTarget, kRods> hold{};
   std::array<RodGestures, kRods> gestures{};
   std::array<SpinWatch, kRods> spins{};
-  std::array<bool, kRods> beyond{};  // the hand has pushed the rod against its stop
+  std::array<bool, kRods> beyond{};  // the hand presses the rod against its stop
 
   std::uint64_t random = 0;
   Tuning tuning;
@@ -158,7 +160,7 @@ struct MatchState {
   static void visit_stops(Archive& archive, Self& self);
 };
 
-// Of the men that the world is made with.
+// Bodies of the men in the world.
 inline TeamBodies bodies_of(const MatchDesc& desc, const MatchState& state) {
   return {desc.characters[static_cast<std::size_t>(state.built[0])].body,
           desc.characters[static_cast<std::size_t>(state.built[1])].body};

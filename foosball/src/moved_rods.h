@@ -1,4 +1,4 @@
-// Which rods their hands move.
+// Detects which rods are moved by their hands.
 #pragma once
 
 #include <array>
@@ -12,8 +12,8 @@ namespace foosball {
 
 class MovedRods {
  public:
-  // One tick of the hands' targets, of which those that are not live count for nothing. Bit i: rod
-  // i has been moved since it was last said to be.
+  // One tick of the hands' targets; ignores targets that are not live. Bit i of the result: rod i
+  // has moved since it was last reported.
   std::uint8_t update(const RodTargets& hands) {
     unsigned moved = 0;
     for (int rod = 0; rod < kRods; ++rod) {

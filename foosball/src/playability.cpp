@@ -6,7 +6,7 @@
 namespace foosball {
 namespace {
 
-// 1 from `good` on, in proportion below.
+// 1 from `good` on, proportional below.
 double rising(double value, double good) {
   return std::clamp(value / good, 0.0, 1.0);
 }

@@ -1,5 +1,5 @@
-// All numbers of all computer players, as one. The structured bindings name every member: a new one
-// does not compile until it counts here.
+// Digest of all numbers of all computer players. The structured bindings name every member: a new
+// member does not compile until the digest includes it.
 #include <bit>
 #include <cstdint>
 #include <initializer_list>
@@ -12,7 +12,7 @@ namespace foosball {
 namespace {
 
 struct NumbersDigest {
-  std::uint64_t value = 14695981039346656037u;  // FNV-1a of the numbers' bits
+  std::uint64_t value = 14695981039346656037u;  // FNV-1a over the numbers' bits
   void add(double number) {
     const auto bits = std::bit_cast<std::uint64_t>(number);
     for (int byte = 0; byte < 8; ++byte) {

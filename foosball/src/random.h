@@ -1,5 +1,6 @@
-// A small generator whose output is the same everywhere (the standard's distributions are not).
-// PCG-XSH-RR 64/32, O'Neill 2014; seeded through SplitMix64, so that neighbouring seeds differ.
+// A small random generator with the same output on every platform (the standard's distributions
+// differ). PCG-XSH-RR 64/32, O'Neill 2014. SplitMix64 seeds it, so that neighbouring seeds give
+// different sequences.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +23,7 @@ class Random {
   int below(int n) {
     return static_cast<int>((std::uint64_t{next()} * static_cast<std::uint32_t>(n)) >> 32);
   }
-  // Bell-shaped, mean 0, deviation 1, within +-3: the sum of three uniforms.
+  // Approximately normal: mean 0, standard deviation 1, within +-3. The sum of three uniforms.
   double bell() { return 2.0 * (unit() + unit() + unit() - 1.5); }
 
   std::uint64_t state() const { return state_; }

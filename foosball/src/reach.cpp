@@ -19,7 +19,7 @@ bool can_reach(const TableSpec& table, int rod, const CharacterBody& c, const vp
   const double foot = std::sqrt(squared(c.foot_reach) + squared(0.5 * c.foot_depth));
   const double in_plane = dx * dx + dz * dz;
   if (in_plane > squared(foot + r)) return false;
-  // The nearest man, slid as far towards the ball as he can.
+  // The nearest man, at the slide that brings him closest to the ball.
   const double beside = std::fabs(ball.y - man_offset(spec, man_nearest(spec, ball.y)));
   const double gap = std::max(0.0, beside - spec.slide_limit - 0.5 * c.foot_width);
   if (gap >= r) return false;

@@ -6,11 +6,11 @@
 namespace foosball {
 namespace {
 
-// A ball that stays within this distance is almost at rest, or rocks to and fro between two men.
+// A ball that stays within this distance is nearly at rest, or rocks between two men.
 constexpr double kHere = 0.08;  // [m]
-// A ball slower than this out of everybody's reach has stopped its motion (8).
+// A slower ball that no man can reach has stopped (8).
 constexpr double kStopped = 0.02;        // [m/s]
-constexpr double kStoppedSeconds = 1.0;  // so long, that the eye has seen it
+constexpr double kStoppedSeconds = 1.0;  // long enough to see it
 
 double seconds(std::uint64_t ticks) {
   return static_cast<double>(ticks) * kTick;
@@ -20,13 +20,13 @@ bool in_goal(const TableSpec& table, const vp::Vec3& ball) {
   return std::fabs(ball.y) < 0.5 * table.goal_width && ball.z < table.goal_height && ball.z > 0.0;
 }
 
-// The goalie's rod and the defence are one place of possession (24).
+// The goalie's rod and the defence count as one area of possession (24).
 int place_of(const RodSpec& rod) {
   const Line line = rod.line == Line::goalie ? Line::defence : rod.line;
   return rod.team * 4 + static_cast<int>(line);
 }
 
-// Between the goal of the team and its defence, whence a ball has not been advanced (24.1).
+// True between the team's goal and its defence: a ball there has not been advanced (24.1).
 bool behind_defence(const TableSpec& table, int team, double x) {
   const int rod = rods_of_team(table, team)[static_cast<std::size_t>(Line::defence)];
   return attack_sign(team) * (x - table.rods[rod].x) < 0.0;
@@ -71,7 +71,7 @@ int rod_after_possession(const TableSpec& table, int team, Line line) {
   return rods_of_team(table, opponent(team))[static_cast<std::size_t>(to)];
 }
 
-// Where the reaches of two rods overlap, the ball is the nearer one's.
+// If two rods can reach the ball, it belongs to the nearer one.
 int nearest_in_reach(const TableSpec& table, std::uint8_t rods_in_reach, double ball_x) {
   int nearest = kRods;
   double least = table.length;

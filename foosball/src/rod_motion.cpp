@@ -2,7 +2,7 @@
 // implicitly over h (Catto, "Soft constraints", 2011):
 //   gain = h (h k + d),  target = h (k (p - q) + d u) / gain,  softness = 1 / gain
 //   impulse = clamp((target - v) / (1 / m + softness), +-h F),  v+ = v + impulse / m
-//   stops:   v+ limited so that q + h v+ stays within them,     q+ = q + h v+
+//   stops:   v+ clamped so that q + h v+ stays within them,     q+ = q + h v+
 #include "foosball/rod_motion.h"
 
 #include <algorithm>
@@ -13,9 +13,9 @@
 namespace foosball {
 namespace {
 
-// A critically damped drive of the inertia, towards where the hand will be at the end of the tick.
-// The way there is cut so that the speed v which the drive comes to stays within the bound: there
-// stiffness * way + damping * (rate - v) = 0.
+// A drive that is critically damped for the inertia, towards the hand's position at the end of the
+// tick. It limits the displacement so that the drive's terminal speed v, at which stiffness *
+// displacement + damping * (rate - v) = 0, stays within max_rate.
 AxisDrive drive_towards(double target, double target_rate, double now, double inertia,
                         double max_force, double max_rate, double frequency) {
   const double stiffness = inertia * frequency * frequency;
@@ -76,7 +76,7 @@ AxisDrive man_drive(const RodInertia& inertia, double angle, double hand_angle,
 RodInertia rod_inertia(const TableSpec& table, const RodSpec& rod, const CharacterBody& c,
                        const Tuning& tuning) {
   const double men = rod.men * c.mass;
-  // A man's mass sits in torso and foot: 60 % of the reach is his radius of gyration.
+  // The mass of a man is in torso and foot: his radius of gyration is 60 % of the foot's reach.
   const double gyration = 0.6 * c.foot_reach;
   const double man_axial = c.mass * gyration * gyration;
   const double mass = table.rod_mass + men;

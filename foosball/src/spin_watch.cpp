@@ -8,7 +8,7 @@ namespace foosball {
 namespace {
 
 constexpr double kRevolution = 2.0 * vp::kPi;
-// A rod that springs back by less still turns the same way [rad].
+// A rod that rotates back by less keeps its direction of rotation [rad].
 constexpr double kBack = 0.3;
 
 }  // namespace
@@ -28,7 +28,7 @@ void SpinWatch::update(double angle, bool touches) {
   } else {
     count_tick(still_ticks_);
   }
-  // Turned back, or stopped: a new turn begins.
+  // The direction reversed, or the rod stopped: a new rotation begins.
   if (ahead < -kBack || still_ticks_ >= kStopTicks) {
     from_ = ahead < -kBack ? furthest_ : angle;
     furthest_ = angle;

@@ -1,5 +1,5 @@
-// How far a rod has turned in one go before and after it last struck the ball (ITSF 15: more than
-// 360 degrees before or after the strike is a spin; the two are not added).
+// Measures the rotation of a rod before and after it last struck the ball. ITSF 15: more than 360
+// degrees before or after the strike is spinning; the two are not added.
 #pragma once
 
 #include <cstdint>
@@ -12,14 +12,15 @@ namespace foosball {
 
 class SpinWatch {
  public:
-  // Forgets the strike and the turn under way.
+  // Discards the strike and the current rotation.
   void reset(double angle);
-  // One tick: the rod's angle [rad], and whether one of its men touches the ball.
+  // One tick. angle: of the rod [rad]. touches: one of its men touches the ball.
   void update(double angle, bool touches);
 
-  // The last strike was a spin, as far as is known now.
+  // The last strike was a spin, as far as known now.
   bool spun() const { return spun_; }
-  // The rod goes on turning the way it struck, so that the last strike may yet become one.
+  // The rod continues to rotate in the direction of its strike: the last strike may still become a
+  // spin.
   bool follows_through() const { return struck_ && still_ticks_ < kStopTicks; }
 
   template <class Archive, class Self>
@@ -33,11 +34,11 @@ class SpinWatch {
   }
 
  private:
-  // So long without progress [ticks], and the hand has stopped the rod.
+  // Without progress for this long [ticks], the rod has stopped.
   static constexpr std::uint64_t kStopTicks = 60;
 
-  double from_ = 0.0;       // where the turn under way began [rad]
-  double furthest_ = 0.0;   // and how far it has come [rad]
+  double from_ = 0.0;       // angle at the start of the current rotation [rad]
+  double furthest_ = 0.0;   // furthest angle of the current rotation [rad]
   double struck_at_ = 0.0;  // angle at the last strike [rad]
   std::uint64_t still_ticks_ = 0;
   bool struck_ = false;

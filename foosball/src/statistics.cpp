@@ -7,30 +7,30 @@
 namespace foosball {
 namespace {
 
-// --- what counts as what (docs/match-runner.md) --------------------------------------------------
+// --- definitions (docs/match-runner.md) ----------------------------------------------------------
 
-constexpr double kMovingSlide = 0.05;       // a rod moves if faster than this [m/s] ...
-constexpr double kMovingSwing = 1.0;        // ... or this [rad/s]
-constexpr double kSlideHysteresis = 0.005;  // a reversal of the hand goes back this far [m]
+constexpr double kMovingSlide = 0.05;       // a faster rod counts as moving [m/s] ...
+constexpr double kMovingSwing = 1.0;        // ... or one that rotates faster [rad/s]
+constexpr double kSlideHysteresis = 0.005;  // smallest reversal of a hand [m]
 constexpr double kSwingHysteresis = 0.1;    // [rad]
-// A spin ends when the rod turns back by this much [rad].
+// A spin ends when the rod rotates back by this much [rad].
 constexpr double kSpinHysteresis = 0.5;
-// A foot this near the ball touches it: the engine's contacts have about a millimetre of air.
-constexpr double kTouchGap = 0.0015;                  // [m]
-constexpr std::uint64_t kTouchPause = 50;             // ticks between two touches of one man
-constexpr double kOwnDrive = 0.3;                     // foot towards its own goal [m/s]
-constexpr double kStroke = 0.2;                       // foot along the ball's way out [m/s]
-constexpr std::uint64_t kPassControl = 300;           // ticks to bring a pass under control
-constexpr double kPassSlowed = 0.4, kPassRest = 0.3;  // of the arrival speed; [m/s]
-constexpr std::uint64_t kShotFrom = 50;               // ticks since the touch
+// A foot closer to the ball touches it: the engine's contacts have a margin of about a millimetre.
+constexpr double kTouchGap = 0.0015;       // [m]
+constexpr std::uint64_t kTouchPause = 50;  // maximum pause within one touch of a man [ticks]
+constexpr double kOwnDrive = 0.3;  // foot towards its own goal, for an own goal by swing [m/s]
+constexpr double kStroke = 0.2;    // foot along the ball's direction of departure [m/s]
+constexpr std::uint64_t kPassControl = 300;  // time limit to bring a pass under control [ticks]
+constexpr double kPassSlowed = 0.4, kPassRest = 0.3;  // fraction of the arrival speed; [m/s]
+constexpr std::uint64_t kShotFrom = 50;               // maximum delay after the touch [ticks]
 constexpr double kShotOver = 0.75 * kShotSpeed;
-constexpr std::uint64_t kSaveHolds = 500;  // ticks without a goal
-constexpr double kHop = 0.002;             // the ball has left the ground [m]
-constexpr double kDrop = 0.020;            // from here on a bounce is compared [m]
-constexpr double kNearGround = 0.010;      // a bounce between two ticks [m]
-constexpr std::uint64_t kNoRebound = 60;   // ticks on the ground after a bounce
+constexpr std::uint64_t kSaveHolds = 500;  // time without a goal [ticks]
+constexpr double kHop = 0.002;             // height at which the ball has left the ground [m]
+constexpr double kDrop = 0.020;            // minimum height from which a bounce is compared [m]
+constexpr double kNearGround = 0.010;      // maximum height of a bounce between two ticks [m]
+constexpr std::uint64_t kNoRebound = 60;   // time on the ground after a bounce [ticks]
 
-// From a man's boxes to the ball's surface, or more than kTouchGap.
+// True if the distance from the man's boxes to the ball's surface is at most kTouchGap.
 bool touches(const TableSpec& table, int rod, int man, const CharacterBody& body,
              const RodState& state, const vp::Vec3& ball) {
   const vp::SE3 T_table_man = man_pose(table, rod, man, state);
@@ -102,7 +102,7 @@ void StatisticsObserver::observe(const MatchView& view, std::span<const Event> e
   } else {
     for (Rod& rod : rods_) rod.followed = false;
   }
-  // In the tick of a goal the ball is in play no more, but lies where it went.
+  // In the tick of a goal the ball is no longer in play, but still at its last position.
   if (in_play_) watch_ball(view, events);
   note_events(view, events);
   in_play_ = view.ball_in_play;
@@ -204,7 +204,7 @@ void StatisticsObserver::note_goal(int scorer) {
     const double home = -attack_sign(toucher);
     const bool sped_up = home * touch_.departure_vx > home * touch_.arrival_vx;
     const bool swing = touch_.drive >= kOwnDrive && sped_up;
-    // A shot on target that goes in off a defender is the shooter's goal.
+    // A shot on target that a defender deflects into the goal is not an own goal.
     if (swing) {
       ++totals_.own_goals_swing[toucher];
     } else if (!touch_.faced_shot) {
@@ -292,7 +292,7 @@ void StatisticsObserver::watch_ball(const MatchView& view, std::span<const Event
   }
 }
 
-// By the match's hits, and by how near the men are for what is too soft to be a hit.
+// Uses the match's hits, and for contacts too soft for a hit the distance of the men.
 void StatisticsObserver::find_touches(const MatchView& view, std::span<const Event> events) {
   const TableSpec& table = table_spec(view.layout);
   touched_now_ = false;
@@ -320,14 +320,14 @@ void StatisticsObserver::touch(const MatchView& view, int rod, int man) {
   const bool same = touch_.rod == rod && touch_.man == man && now_ - touch_.last <= kTouchPause;
   if (!same) begin_touch(view, rod, man);
   touch_.last = now_;
-  // The foot's velocity where the ball is.
+  // Velocity of the foot at the ball's position.
   const RodState state = with_man(view.rods[rod], view.men[rod][man]);
   const double dx = view.ball_position.x - table.rods[rod].x;
   const double dz = view.ball_position.z - table.rod_height;
   const vp::Vec3 foot{state.angle_rate * dz, state.slide_rate, -state.angle_rate * dx};
   const double speed = vp::norm(view.ball_velocity);
   touch_.departure_vx = view.ball_velocity.x;
-  // What the ball does to a foot that stands is no swing.
+  // The ball's impact on a resting foot does not count as a swing.
   const double swung = same ? rods_[rod].hand_angle_rate : men_before_[rod][man].angle_rate;
   touch_.drive = std::max(touch_.drive, -attack_sign(touch_.team) * swung * dz);
   if (speed > 0.0) touch_.stroke = std::max(touch_.stroke, dot(foot, view.ball_velocity) / speed);
@@ -372,7 +372,7 @@ void StatisticsObserver::begin_touch(const MatchView& view, int rod, int man) {
       from.team == team && other_man && from.stroke >= kStroke && now_ - from.last >= kTouchPause;
 }
 
-// A pass has arrived when its receiver has the ball under control, or plays it on.
+// A pass has arrived when its receiver controls the ball, or plays it on.
 void StatisticsObserver::watch_pass(const MatchView& view) {
   if (!pass_open_) return;
   const double slow = std::max(kPassSlowed * touch_.arrival_speed, kPassRest);
@@ -409,7 +409,8 @@ void StatisticsObserver::end_shot() {
   shot_ = {};
 }
 
-// Hops, and how high the ball comes back from the ground after a fall through nothing but air.
+// Counts hops, and compares the heights before and after a bounce on the ground without other
+// contacts.
 void StatisticsObserver::watch_height(const MatchView& view, std::span<const Event> events) {
   const TableSpec& table = table_spec(view.layout);
   const vp::Vec3& ball = view.ball_position;
@@ -456,7 +457,8 @@ void StatisticsObserver::watch_reach(const MatchView& view) {
       std::max(totals_.longest_unreachable_ticks, ++unreachable_ticks_);
 }
 
-// As the referee sees it (BallWatch): a touch begins the time again, not the place.
+// The same criterion as the referee's (BallWatch): a touch restarts the time, but keeps the
+// reference point.
 void StatisticsObserver::watch_stuck(const MatchView& view) {
   if (vp::norm(view.ball_position - stuck_at_) > kStuckDistance) {
     stuck_at_ = view.ball_position;

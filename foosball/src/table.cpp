@@ -1,4 +1,4 @@
-// The figures of the table; each says where it comes from.
+// The dimensions of the table and their sources.
 #include "foosball/table.h"
 
 #include <algorithm>
@@ -7,18 +7,20 @@
 namespace foosball {
 namespace {
 
-// Rods 150 mm apart, 11 mm under the foot of the average man (notes on a German table).
+// Rods 150 mm apart; 11 mm of clearance under the foot of the average man (notes on a German
+// table).
 constexpr double kRodPitch = 0.150;
 constexpr double kRodHeight = 0.084;
 constexpr double kLength = 1.200;
 constexpr double kWidth = 0.680;
 
-// Half of the widest man and 2 mm of air: slide limits are those of the widest character, so that a
-// choice of character never changes what a hand can reach or how a cabinet is calibrated.
+// Half the width of the widest man and 2 mm of clearance. The slide limits are those of the widest
+// character, so that the choice of a character does not change a rod's travel or a cabinet's
+// calibration.
 constexpr double kWallClearance = 0.022 + 0.002;
 
-// A goalie alone on his rod would reach every corner; a stop holds him here. What he cannot reach
-// beyond lies on the raised corner and rolls back to him.
+// Without a stop, a single goalie would reach every corner. A ball beyond his reach lies on the
+// raised corner and rolls back to him.
 constexpr double kLoneGoalieLimit = 0.270;
 
 constexpr RodSpec rod_spec(int index, int team, Line line, int men, double spacing) {
@@ -34,12 +36,13 @@ struct LinePlan {
 };
 using TeamPlan = std::array<LinePlan, 4>;  // by Line
 
-// 1-2-5-3 with the spacings of real rods. Four men 155 mm apart just reach every y between the
+// 1-2-5-3 with the spacings of real rods. Four men 155 mm apart can just reach every y between the
 // walls.
 constexpr TeamPlan kTournament{{{1, 0.0}, {2, 0.239}, {5, 0.120}, {3, 0.190}}};
 constexpr TeamPlan kPaper{{{4, 0.155}, {4, 0.155}, {4, 0.155}, {4, 0.155}}};
 
-// From -x to +x, as on every real table: each midfield faces the other, each attack the defence.
+// From -x to +x, as on every real table: the midfields face each other, and each attack faces a
+// defence.
 struct Post {
   int team;
   Line line;
@@ -58,7 +61,7 @@ constexpr TableSpec describe(Layout layout) {
   table.layout = layout;
   table.length = kLength;
   table.width = kWidth;
-  table.wall_height = 0.150;  // rods pass through at 84 mm; a ball that hops stays inside
+  table.wall_height = 0.150;  // rods pass through at 84 mm; hopping balls stay inside
   table.rod_height = kRodHeight;
   table.goal_width = 0.205;
   table.goal_height = 0.080;
@@ -83,8 +86,8 @@ constexpr std::array<TableSpec, kLayouts> kTables{describe(Layout::paper),
 
 }  // namespace
 
-// The foot's lower front edge leads as the man swings; what counts is where the ball's surface is
-// at the height of that edge.
+// The lower front edge of the foot leads the swing. The reach is limited by the ball's surface at
+// the height of this edge.
 double field_reach(const TableSpec& table, const CharacterBody& c) {
   const double r = table.ball_radius, half_depth = 0.5 * c.foot_depth;
   double reach = 0.0;
@@ -92,7 +95,7 @@ double field_reach(const TableSpec& table, const CharacterBody& c) {
     const double sine = 0.001 * i, cosine = std::sqrt(1.0 - sine * sine);
     const double edge = table.rod_height - c.foot_reach * cosine + half_depth * sine;  // height
     if (edge >= 2.0 * r) continue;
-    const double above = std::max(0.0, edge - r);  // the ball's centre
+    const double above = std::max(0.0, edge - r);  // of the edge above the ball's centre
     reach = std::max(reach, c.foot_reach * sine + half_depth * cosine +
                                 std::sqrt(std::max(0.0, r * r - above * above)));
   }

@@ -18,18 +18,18 @@ constexpr std::uint32_t kBallCategory = 1;
 constexpr std::uint32_t kTableCategory = 2;
 constexpr std::uint32_t kManCategory = 4;
 
-// The goal swallows: a scored ball stays in the box, so that everyone sees it lie there.
+// Absorbs the ball: a ball that scored stays visible in the box.
 constexpr vp::Material kGoalBox{0.60, 0.0, 0.010};
 
-// Thick enough that no depth of penetration ever has its way out on the far side.
+// Thick enough that a penetrating ball is always pushed out on the inner side.
 constexpr double kWallThickness = 0.20;  // [m]
 
-// A joint's axis is its z; a rod's is the table's y. Columns: the joint's axes in the world.
+// A joint's axis is its z; a rod's axis is the table's y. Columns: the joint's axes in the world.
 constexpr Mat3 kRodAxes{{1, 0, 0}, {0, 0, -1}, {0, 1, 0}};
 
-// Ids and sizes here are the table's own: nothing of what is made or moved can be refused. Where it
-// is all the same, it is a fault in this file: VP_ASSERT tells in Debug; in Release what was to be
-// moved stays as it is, and what was to be made has the null id, which the world refuses in turn.
+// All ids and sizes here come from the table, so that no call of the engine can fail. A failure is
+// a defect of this file: VP_ASSERT reports it in Debug. In Release a failed update has no effect,
+// and a failed creation returns the null id, which the world then rejects.
 template <class T>
 T must(vp::Expected<T> result) {
   VP_ASSERT(result.has_value());
@@ -39,25 +39,25 @@ void must([[maybe_unused]] const vp::Expected<void>& result) {
   VP_ASSERT(result.has_value());
 }
 
-// A rod with its men, which are balanced about the axis as on tournament tables, so that a rod let
-// go stays as it is. Link frame: z along the rod.
+// Inertia of a rod and its men. They are balanced about the axis as on tournament tables, so that a
+// released rod stays at its angle. Link frame: z along the rod.
 vp::Inertia link_inertia(const RodInertia& rod) {
   constexpr double kHalfLength = 0.55;
   const double across = rod.rod_and_men * kHalfLength * kHalfLength / 3.0;
   return {rod.rod_and_men, Vec3{across, across, rod.axial}};
 }
 
-// Where the i-th man from the player's left stands on his row.
+// Index of the i-th man from the player's left.
 int man_from_left(const RodSpec& rod, int i) {
   return rod.team == 0 ? i : rod.men - 1 - i;
 }
 
 // Links. A row slides as one; the slide has no mass of its own.
-// On a rod (tournament) its men are parts of the link that turns.
-// Hinged men (paper, section 5.1) are links of their own, each balanced about the rod's axis; there
-// is no pipe, and the link that turns is the hand alone, which nothing touches. A man is as heavy
-// to the ball as a row on a rod, by the armature of his hinge: so a character strikes alike on both
-// tables, and without an obstacle he moves as the hand does.
+// On a rod (tournament) its men belong to the rotating link.
+// Hinged men (paper, section 5.1) are separate links, each balanced about the rod's axis. There is
+// no rod between them: the rotating link is the hand alone, without colliders. The armature of his
+// hinge gives each man the effective inertia of a row on a rod. So a character strikes alike on
+// both tables, and without an obstacle a man moves exactly as the hand does.
 constexpr int kSlide = 0, kTurn = 1, kFirstMan = 2;
 vp::Model rod_model(const TableSpec& table, const RodSpec& rod, const RodInertia& inertia,
                     const Tuning& tuning) {
@@ -73,7 +73,7 @@ vp::Model rod_model(const TableSpec& table, const RodSpec& rod, const RodInertia
   turn.joint = vp::RevoluteJoint{};
   if (!hinged) turn.inertia = link_inertia(inertia);
   const double man_armature = inertia.turn - inertia.man_axial;
-  // The sum as a man's hinge has it: else hand and men would differ in its last bit.
+  // The same sum as for a man's hinge: otherwise hand and men would differ in the last bit.
   turn.armature = hinged ? inertia.man_axial + man_armature : tuning.hand_inertia;
   must(builder.add(turn));
   for (int i = 0; hinged && i < rod.men; ++i) {
@@ -141,7 +141,7 @@ void TableWorld::build_part() {
   ++parts_;
   if (!is_built()) return;
   park_ball();
-  (void)free_for_ball({});  // the first question of a world takes memory
+  (void)free_for_ball({});  // the first query of a world allocates
 }
 
 void TableWorld::add_fixed(const vp::Shape& shape, const SE3& T_world_shape,
@@ -157,7 +157,7 @@ void TableWorld::add_fixed(const vp::Shape& shape, const SE3& T_world_shape,
 
 vp::Material TableWorld::field() const {
   return {tuning_.field_friction, 0.0,
-          tuning_.rolling_resistance};  // bounce: see exaggerate_bounce
+          tuning_.rolling_resistance};  // restitution: see exaggerate_bounce
 }
 vp::Material TableWorld::wall() const {
   return {tuning_.wall_friction, tuning_.wall_restitution, 0.0};
@@ -173,9 +173,9 @@ void TableWorld::add_field_and_walls() {
     add_fixed(side, SE3(Vec3{0.0, s * (0.5 * table_.width + t), h}), wall(), Tag::What::wall);
   }
   for (const double s : ends()) add_goal(s);
-  // A pane from wall to wall over the table: lift_ball() ends a hop at the ceiling, but a foot that
-  // is under the ball there would carry it on. Where tuning lets balls hop above the walls, they
-  // leave between walls and pane.
+  // A pane above the table, from wall to wall. lift_ball() ends a hop at the ceiling, but a foot
+  // under the ball could carry it higher. If the tuning allows hops above the walls, balls leave
+  // between the walls and the pane.
   constexpr double kCarried = 0.020;
   constexpr double kHalfThickness = 0.0025;
   const double under = tuning_.hop_ceiling + kCarried + 2.0 * table_.ball_radius;
@@ -200,8 +200,8 @@ void TableWorld::add_goal(double side) {
   const double t = 0.5 * kWallThickness;
   add_fixed(Box{{t, 0.5 * table_.width, h}},
             SE3(Vec3{side * (front + table_.goal_depth + t), 0.0, h}), kGoalBox, Tag::What::wall);
-  // A mat that stops a scored ball. It begins where the ball has wholly passed the line, so that no
-  // rolling ball is turned by its edge before the goal counts.
+  // A mat that stops a ball that scored. It begins where the whole ball has passed the line, so
+  // that its edge deflects no rolling ball before the goal counts.
   const double mat = 0.5 * table_.goal_depth - table_.ball_radius;
   constexpr double kMatHeight = 0.0005;
   add_fixed(Box{{mat, post, 0.01}},
@@ -209,15 +209,15 @@ void TableWorld::add_goal(double side) {
             Tag::What::field);
 }
 
-// Each corner is the top face of a slab: the plane through two points of the field's edges, a leg
-// away from the corner, and the point corner_rise above the corner itself.
+// Each corner is the top face of a slab. Its plane passes through two points on the field's edges,
+// one leg away from the corner, and the point corner_rise above the corner.
 void TableWorld::add_corners() {
   const double leg = table_.corner_size;
   const double half_thickness = 0.03;
   for (const double sx : ends()) {
     for (const double sy : ends()) {
       const Vec3 corner{sx * 0.5 * table_.length, sy * 0.5 * table_.width, 0.0};
-      const Vec3 foot = corner - 0.5 * leg * Vec3{sx, sy, 0.0};  // middle of the ramp's lower edge
+      const Vec3 foot = corner - 0.5 * leg * Vec3{sx, sy, 0.0};  // centre of the ramp's lower edge
       const Vec3 rise = corner + Vec3{0.0, 0.0, table_.corner_rise} - foot;
       const Vec3 up = (1.0 / vp::norm(rise)) * rise;
       const Vec3 along = (1.0 / std::sqrt(2.0)) * Vec3{-sx, sy, 0.0};
@@ -257,7 +257,7 @@ void TableWorld::add_rod(int rod) {
   for (int i = 0; i < spec.men; ++i) {
     const int man = man_from_left(spec, i);
     const vp::BodyId body = world_.link_body(rods_[rod], hinged ? kFirstMan + i : kTurn);
-    const Vec3 place{0.0, hinged ? 0.0 : man_offset(spec, man), 0.0};  // on the link
+    const Vec3 place{0.0, hinged ? 0.0 : man_offset(spec, man), 0.0};  // in the link's frame
     const auto boxes = boxes_of(c);
     for (std::size_t part = 0; part < boxes.size(); ++part) {
       const Vec3 centre = boxes[part].centre + place;
@@ -285,8 +285,8 @@ vp::JointDrive joint_drive(const AxisDrive& d) {
 
 }  // namespace
 
-// The drives of a row whose men are all at their hand stay as they are until those of slide or hand
-// change, which follow from where the row is and its target.
+// If all men of a row match their hand, its drives are unchanged unless the drives of slide or hand
+// change. Those depend only on the row's state and its target.
 void TableWorld::drive(int rod, const RodTarget& target) {
   const RodInertia& inertia = inertias_[rod];
   const RodState& now = this->rod(rod);
@@ -300,7 +300,7 @@ void TableWorld::drive(int rod, const RodTarget& target) {
   row = {target, now.slide, now.angle, slide, angle, at_hand_[rod]};
   if (same) return;
   const std::span<const double> q = world_.coordinates(rods_[rod]);
-  std::array<vp::JointDrive, kFirstMan + kMaxMenOnRod> drives;  // q.size() of them
+  std::array<vp::JointDrive, kFirstMan + kMaxMenOnRod> drives;  // uses q.size() of them
   const vp::JointDrive hand = joint_drive(row.hand);
   drives[kSlide] = joint_drive(row.slide);
   drives[kTurn] = hand;
@@ -311,7 +311,7 @@ void TableWorld::drive(int rod, const RodTarget& target) {
   must(world_.set_drives(rods_[rod], std::span(drives).first(q.size())));
 }
 
-// All joints have one coordinate, so that a link's index is its coordinate's.
+// Every joint has one coordinate, so a link's index is also the index of its coordinate.
 void TableWorld::read_rods() {
   const bool hinged = hinged_men(table_.layout);
   for (int rod = 0; rod < kRods; ++rod) {
@@ -335,9 +335,9 @@ void TableWorld::read_rods() {
   }
 }
 
-// A man who has been held comes back to his hand ever more slowly. Once nobody could tell them
-// apart he is at it: then they move alike to the bit, and are computed once. So he is, whole turns
-// behind or not.
+// A man who was blocked approaches his hand exponentially. Below the tolerances this function sets
+// him to the hand's state, modulo full turns. From then on they move identically to the bit, and
+// are computed once.
 void TableWorld::join_hands() {
   constexpr double kAngle = 1e-9, kRate = 1e-7;  // [rad], [rad/s]; at the foot less than an atom
   bool joined = false;
@@ -414,23 +414,23 @@ void TableWorld::keep_ball_in_goal() {
 bool TableWorld::free_for_ball(const Vec3& position) const {
   constexpr double kAir = 0.001;
   found_.clear();
-  // Walls and corners are kept away from by whoever chooses the place; the field is always touched.
+  // The caller keeps clear of walls and corners; the field is always touched.
   must(world_.overlapping(vp::Sphere{table_.ball_radius + kAir}, SE3(position), found_,
                           {.collision = {kBallCategory, kManCategory}}));
   return found_.empty();
 }
 
-// --- time ----------------------------------------------------------------------------------------
+// --- step ----------------------------------------------------------------------------------------
 
-// Midway between two rods lies a strip that feet hardly reach. There the field falls towards the
-// nearer rod, as if it sagged by a millimetre: a ball that stops rolls on to where it can be
-// played. A shot crosses the strip and feels nothing.
+// Midway between two rods is a strip that feet hardly reach. There a force towards the nearer rod
+// acts on the ball, as if the field sagged by a millimetre: a ball at rest rolls to where it can be
+// played. The effect on a shot is negligible.
 void TableWorld::let_field_sag() {
   const Vec3 ball = ball_state_.pose.position();
   const bool on_field =
       ball.z < table_.ball_radius + 0.001 && std::fabs(ball.y) < 0.5 * table_.width;
   if (!on_field) return;
-  double nearest = table_.length;  // from ball to rod
+  double nearest = table_.length;  // from ball to rod, signed
   for (const RodSpec& rod : table_.rods) {
     if (std::fabs(rod.x - ball.x) < std::fabs(nearest)) nearest = rod.x - ball.x;
   }
@@ -450,7 +450,7 @@ vp::Expected<void> TableWorld::restore(std::span<const std::byte> bytes) {
   return restored;
 }
 
-// Gives the ball this upward speed, but none that takes it over the ceiling.
+// Gives the ball this upward speed, limited so that the hop stays below the ceiling.
 void TableWorld::lift_ball(double speed) {
   const vp::Vec3 position = ball().pose.position();
   const double up = ball().velocity.z;
@@ -462,13 +462,14 @@ void TableWorld::lift_ball(double speed) {
   read_ball();
 }
 
-// The paper (section 5) exaggerates how the ball bounces off characters and ground, for the eye.
-// Ground: a ball that falls faster than hop_from comes back with field_restitution of its speed;
-// below that no bounce can be seen, and one that dies makes the ball playable.
-// Men: what they give the ball upwards counts hop_gain times; and a ball that came fast leaves them
-// with a hop. There it counts how fast the ball came, not the foot: a shot from rest stays low, a
-// blocked one flies up.
-// All of it is bounded by bounce_most and hop_ceiling, and nothing is added along the field.
+// The paper (section 5) exaggerates the bounces of the ball off characters and ground for
+// visibility.
+// Ground: a ball that falls faster than hop_from rebounds with field_restitution of its speed. A
+// slower bounce would be invisible; without it the ball becomes playable.
+// Men: the upward speed that they give the ball is multiplied by hop_gain. A ball that arrives fast
+// also hops. This depends on the ball's speed, not the foot's: a shot from rest stays low, a
+// blocked one flies up. bounce_most and hop_ceiling bound the result. Nothing is added along the
+// field.
 void TableWorld::exaggerate_bounce(const Vec3& velocity_before) {
   const Tuning& t = tuning_;
   const double up = ball().velocity.z;

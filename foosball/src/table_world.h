@@ -1,6 +1,6 @@
-// The table as a physical world: field, walls, goals, corners, ball, and eight rows of men, each
-// row an articulation driven by bounded forces: men on a rod, or each hinged at his shoulder
-// (hinged_men()). Knows nothing of scores and screens.
+// The table as a physical world: field, walls, goals, corners, ball, and eight rows of men. Each
+// row is an articulation driven by bounded forces: men on a rod, or each man on a hinge at his
+// shoulder (hinged_men()). It does not know scores and screens.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@
 
 namespace foosball {
 
-// What a collider of the table is; travels through the world as its user data.
+// The role of a collider on the table; stored as the collider's user data.
 struct Tag {
   enum class What : std::uint8_t { ball, field, wall, man } what;
   std::uint8_t rod = 0, man = 0, part = 0;  // of a man; part indexes boxes_of()
@@ -29,7 +29,7 @@ struct BallState {
   vp::Vec3 velocity, spin;  // world
 };
 
-// A contact as the ball sees it.
+// A contact from the ball's point of view.
 struct BallContact {
   Tag other;
   vp::ContactEvent::Kind kind;
@@ -43,16 +43,17 @@ class TableWorld {
   TableWorld(const TableWorld&) = delete;
   TableWorld& operator=(const TableWorld&) = delete;
 
-  // All rods at slide 0, angle 0; the ball parked. Each body is in its ranges.
+  // All rods at slide 0, angle 0; the ball is parked. Preconditions: each body is in its ranges.
   //
-  // Symmetry: the engine solves contacts in the order in which their colliders were made, and that
-  // shows in the last bits when the ball touches two things at once. So the world is made in the
-  // order of the team that is first: its side before the other's, its rods from its goal outwards,
-  // each rod's men from the player's left. A world of the other team first, with characters,
-  // targets and ball turned by half a revolution about z, then moves exactly turned.
+  // Symmetry: the engine solves contacts in the order in which their colliders were created. This
+  // affects the last bits when the ball touches two things at once. So the world is built in the
+  // order of the team `first`: its side before the other's, its rods in order from its goal, the
+  // men of each rod from the player's left. A world with the other team as `first`, and with
+  // characters, targets and ball rotated by half a turn about z, moves exactly like this one,
+  // rotated.
   TableWorld(Layout layout, const TeamBodies& bodies, int first = 0, const Tuning& tuning = {});
-  // The same made in kParts parts, for whoever may not spend the time of the whole at once: a call
-  // of build_part() each. Precondition of every other call: is_built().
+  // Builds the same world in kParts parts, one per call of build_part(), for callers that cannot
+  // spend the total time at once. Precondition of every other call: is_built().
   struct InParts {};
   TableWorld(InParts, Layout layout, const TeamBodies& bodies, int first, const Tuning& tuning);
   static constexpr int kParts = 1 + kRods;  // the table, and each row of men
@@ -63,27 +64,27 @@ class TableWorld {
   int first() const { return first_; }
   const Tuning& tuning() const { return tuning_; }
 
-  // Drives a rod towards a target: finite, within the slide limit.
+  // Drives a rod towards a target. Preconditions: finite, within the slide limit.
   void drive(int rod, const RodTarget& target);
   const RodState& rod(int rod) const { return rod_states_[rod]; }
   const ManStates& men() const { return man_states_; }
-  // With all its men; at its stop a rod that was pressed a little past it.
+  // Sets a rod and all its men. Clamps a slide that is slightly beyond the stop.
   void set_rod(int rod, const RodState& state);
-  void set_man(int rod, int man, const ManState& state);  // one alone, if he is hinged
+  void set_man(int rod, int man, const ManState& state);  // one man alone, if he is hinged
 
   const BallState& ball() const { return ball_state_; }
   void set_ball(const vp::Vec3& position, const vp::Vec3& velocity);
   void set_ball(const BallState& state);
-  // Out of everything's way, at rest, for this step.
+  // Moves the ball away from all objects, at rest, for this step.
   void park_ball();
-  // A ball that has passed the goal line comes back to it no further than its own radius.
+  // Keeps the centre of a ball in the goal at least one radius beyond the goal line.
   void keep_ball_in_goal();
-  // Nothing but the field would touch a ball here.
+  // True if no man would touch a ball here. The caller keeps clear of walls and corners.
   bool free_for_ball(const vp::Vec3& position) const;
 
-  // One kTick. False if the world had to stop something that had left the range of numbers.
+  // One kTick. Returns false if the world had to stop a body whose values were out of range.
   bool step();
-  // All that the ball met in the last step, read where the world keeps it: none can be left out.
+  // All contacts of the ball in the last step, read in place, so none is lost.
   std::span<const vp::ContactEvent> contacts() const { return world_.contact_events(); }
   const vp::StepStatus& status() const { return status_; }
   const vp::StepCounters& counters() const { return world_.counters(); }
@@ -99,7 +100,7 @@ class TableWorld {
   vp::Material wall() const;
   void add_field_and_walls();
   void add_goal(double side);
-  // Signs of x or y, first the side where the team that was made first stands.
+  // Signs of x or y; first the side of the team `first`.
   std::array<double, 2> ends() const { return {-attack_sign(first_), attack_sign(first_)}; }
   void add_corners();
   void add_ball();
@@ -114,7 +115,7 @@ class TableWorld {
 
   const TableSpec& table_;
   int first_;
-  int parts_ = 0;  // built
+  int parts_ = 0;  // number built
   Tuning tuning_;
   TeamBodies bodies_;
   vp::World world_;
@@ -122,17 +123,17 @@ class TableWorld {
   vp::BodyId ball_;
   std::array<vp::ArticulationId, kRods> rods_{};
   std::array<RodInertia, kRods> inertias_{};
-  std::array<RodState, kRods> rod_states_{};  // read once a step: all ask for them
+  std::array<RodState, kRods> rod_states_{};  // cached once per step
   ManStates man_states_{};
-  std::array<bool, kRods> at_hand_{};  // all men turn as the hand does, to the bit
+  std::array<bool, kRods> at_hand_{};  // all men rotate exactly like the hand, to the bit
   struct RowDrive {
     RodTarget target;
     double now_slide, now_angle;
     AxisDrive slide, hand;
-    bool at_hand = false;  // and the men have the hand's; false: not known, as after restore()
+    bool at_hand = false;  // the men have the hand's drive; false also: not known, after restore()
   };
-  std::array<RowDrive, kRods> driven_{};  // as the world has them
-  BallState ball_state_;                  // read after each change
+  std::array<RowDrive, kRods> driven_{};  // as set in the world
+  BallState ball_state_;                  // cached after each change
   mutable std::vector<vp::ColliderId> found_;
   vp::StepStatus status_;
 };

@@ -1,5 +1,5 @@
-// A tick of play allocates nothing; only a change of screen or of the tuning may. Stands apart,
-// since it replaces the global operator new.
+// A tick of play does not allocate; only a change of screen or of the tuning may. In a program of
+// its own, because it replaces the global operator new.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,17 +32,17 @@ void operator delete(void* p, std::size_t) noexcept {
 namespace foosball {
 namespace {
 
-// What a tick of play took, by what happened shortly before.
+// Allocations in ticks of play, by the latest event.
 struct Taken {
-  long in_play = 0;       // nothing but play, all ticks together
-  long at_tuning = 0;     // the most of a tick: the match makes its table anew
-  long after_tuning = 0;  // the most of the ticks in which a player makes its own anew
-  long whole_worlds = 0;  // all those ticks together
-  long by_stand_in = 0;   // a third player comes, goes and comes, all ticks together
+  long in_play = 0;       // undisturbed play, total
+  long at_tuning = 0;     // maximum per tick: the match rebuilds its world
+  long after_tuning = 0;  // maximum per tick in which a player rebuilds its own worlds
+  long whole_worlds = 0;  // total of those ticks
+  long by_stand_in = 0;   // a third player joins, leaves and rejoins, total
   int tuned = 0, stood_in = 0;
 };
 
-// Longer than two worlds are in the making, for a player that has them.
+// Longer than a player takes to build its two worlds.
 constexpr int kMaking = 2 * (2 + TableWorld::kParts);
 
 Taken play(const char* player) {
@@ -58,7 +58,7 @@ Taken play(const char* player) {
   int since_tuning = 1000;
   for (int tick = 0, warm = 0; tick < 60'000; ++tick) {
     const Screen screen = match.view().screen;
-    // The engine's arrays have met their size.
+    // The engine's arrays have reached their size.
     warm = screen == Screen::play && match.view().play_seconds > 2.0 ? warm + 1 : 0;
     commands.clear();
     ++since_tuning;
@@ -85,7 +85,7 @@ Taken play(const char* player) {
     } else if (since_tuning <= kMaking) {
       taken.after_tuning = std::max(taken.after_tuning, now);
       taken.whole_worlds += now;
-    } else if (since_tuning > 300) {  // the new worlds' arrays have met their size
+    } else if (since_tuning > 300) {  // the new worlds' arrays have reached their size
       (changes ? taken.by_stand_in : taken.in_play) += now;
     }
   }
@@ -105,8 +105,8 @@ TEST(Allocation, NoneInATickOfPlayNorWhenAPlayerTakesRodsOver) {
   }
 }
 
-// A live change of the tuning is the one thing that takes memory in play: the match makes its world
-// anew in that tick, the players theirs in parts.
+// Only a change of the tuning allocates during play: the match rebuilds its world in that tick, the
+// players theirs in parts.
 TEST(Allocation, AChangeOfTheTuningIsSpreadOverTicks) {
   const Taken taken = play("5");
   ASSERT_GT(taken.tuned, 3);

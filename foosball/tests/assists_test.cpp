@@ -1,4 +1,4 @@
-// Help for a person with one hand free: what it does, and that it does no more.
+// The assists for a person who plays with one hand, and their limits.
 #include "foosball/assists.h"
 
 #include <gtest/gtest.h>
@@ -50,7 +50,7 @@ bool same(const RodTarget& a, const RodTarget& b) {
 
 TEST(AutomaticRod, TakesTheRodThatTheBallFliesToNotTheNearest) {
   const Assists assists = assists_with({.automatic_rod = true});
-  // Just behind the midfield's reach, on its way to the goal: the midfield is nearest.
+  // Just behind the midfield's reach, moving towards the goal: the midfield is nearest.
   const AssistView view = ball_at(-0.20, 0.0, -3.0);
   EXPECT_EQ(assists.rod_to_take(view, hand_on(kMidfield), kMidfield), kDefence);
   EXPECT_EQ(assists.rod_to_take(ball_at(0.32, 0.0, 0.0), hand_on(kGoalie), kGoalie), kAttack);
@@ -86,8 +86,8 @@ TEST(AutomaticRod, LeavesARodThatStrikesAndRodsOfOthersAlone) {
 
 // --- goalie follows ------------------------------------------------------------------------------
 
-// Where the ball crosses the goal line of a shot from the opponent's attack: within the mouth, all
-// speeds that a hand can follow. Share of them that a man of goalie or defence stands before.
+// Shots from the opponent's attack cross the goal line within the goal mouth, with speeds that a
+// hand can follow. Returns the fraction of shots with a man of goalie or defence in their path.
 double share_covered(const AssistChoice& choice) {
   Random random(5);
   int covered = 0;
@@ -96,7 +96,7 @@ double share_covered(const AssistChoice& choice) {
     Assists assists = assists_with(choice);
     const double from = random.between(-0.2, 0.2), to = random.between(-0.08, 0.08);
     const double x0 = -0.12, run = x0 + 0.6, speed = random.between(1.0, 4.0);
-    // The ball was before the shooter for half a second.
+    // The ball lay in front of the shooter for half a second.
     AssistHand hand = hand_on(kAttack);
     std::array<RodTarget, kRods> targets = hand.targets;
     for (int tick = 0; tick < 500; ++tick) targets = assists.steer(ball_at(x0, from), hand, 1);
@@ -166,7 +166,8 @@ TEST(GoalieFollows, DoesNotSweepABallAsideThatLiesAtTheFeet) {
   EXPECT_EQ(targets[kDefence].slide, 0.0);
 }
 
-// Lifted feet let every ball through; let down beside the ball they would drive it home.
+// Lifted feet let every ball pass. Lowered beside the ball, they would drive it towards their own
+// goal.
 TEST(GoalieFollows, LetsTheMenHangDownWhileTheBallIsFar) {
   AssistHand hand = hand_on(kAttack);
   hand.targets[kGoalie].angle = 2.0 * vp::kPi + 1.2;
@@ -185,7 +186,7 @@ TEST(Aim, BringsAFootThatStrikesBesideTheBallBeforeIt) {
   hand.targets[kAttack].slide = 0.012;  // the middle man; half a foot is 10 mm
   AssistView view = ball_at(table().rods[kAttack].x + 0.02, 0.0);
   view.rods[7].slide = 0.2;                                         // nobody stands straight ahead
-  EXPECT_EQ(assists.steer(view, hand, 100)[kAttack].slide, 0.012);  // does not strike
+  EXPECT_EQ(assists.steer(view, hand, 100)[kAttack].slide, 0.012);  // not striking
   hand.strikes = true;
   const double helped = assists.steer(view, hand, 1000)[kAttack].slide;
   EXPECT_LT(std::fabs(helped), 0.0101);
@@ -225,7 +226,7 @@ TEST(Aim, PrefersTheLessGuardedOfTwoPlacesThatAreNear) {
     Assists assists = assists_with({.aim = true});
     AssistHand hand = hand_on(kAttack);
     hand.strikes = true;
-    // The edge of the foot is at the ball's middle; goalie and defence leave one side free.
+    // The edge of the foot is at the ball's centre; goalie and defence leave one side free.
     hand.targets[kAttack].slide = side == 0 ? 0.013 : -0.013;
     AssistView view = ball_at(x, 0.0);
     view.rods[6].slide = side == 0 ? 0.12 : -0.12;
@@ -236,7 +237,7 @@ TEST(Aim, PrefersTheLessGuardedOfTwoPlacesThatAreNear) {
   EXPECT_GT(place[0], 0.013);  // further on the edge: the ball goes to -y, away from both
 }
 
-// --- all -----------------------------------------------------------------------------------------
+// --- all assists ---------------------------------------------------------------------------------
 
 TEST(Assists, ThatAreOffChangeNothing) {
   Assists assists = assists_with({});
@@ -259,7 +260,7 @@ TEST(Assists, DoTheSameInOneCallAsTickByTick) {
     EXPECT_NEAR(at_once[rod].slide, ticked[rod].slide, 1e-12) << rod;
 }
 
-// Turned by half a revolution about z with the teams exchanged: the same, turned, to the bit.
+// Rotated by half a turn about z with exchanged teams: the same result, rotated, bit for bit.
 TEST(Assists, DoForTeam1WhatTheyDoForTeam0) {
   const AssistChoice all{true, true, true};
   Assists home = assists_with(all, 0), away = assists_with(all, 1);

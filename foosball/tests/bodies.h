@@ -1,5 +1,4 @@
-// Bodies for tests: those of the built-in characters, and of men at the bounds of what a file may
-// say.
+// Bodies for tests: those of the built-in characters, and of men at the limits of the valid ranges.
 #pragma once
 
 #include <cmath>
@@ -19,7 +18,8 @@ inline TeamBodies built_in(int character0, int character1) {
   return {built_in(character0), built_in(character1)};
 }
 
-// Every number at its least or at its most; the reach gives way where the foot's corner would not.
+// Every number at its minimum or maximum. The reach is reduced where the foot's corner would be too
+// far from the axis.
 inline CharacterBody body_at_bound(bool most) {
   CharacterBody body;
   for (const auto& field : kBodyFields) body.*field.value = most ? field.most : field.least;
@@ -28,7 +28,8 @@ inline CharacterBody body_at_bound(bool most) {
   return body;
 }
 
-// The built-in ones, then the least and the most, and a thin and a deep one that reach furthest.
+// The built-in bodies, the minimum and the maximum, and a thin and a deep body with the largest
+// reach.
 inline std::vector<CharacterBody> bodies_of_all_kinds() {
   std::vector<CharacterBody> all;
   for (const Character& c : built_in_characters()) all.push_back(c.body);

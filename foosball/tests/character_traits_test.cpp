@@ -1,5 +1,5 @@
-// What sets the built-in characters apart, measured on the table: docs/characters.md has the table
-// that this prints.
+// The differences between the built-in characters, measured on the table. It prints the table of
+// docs/characters.md.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,10 +16,10 @@ constexpr int kRod = 5;  // team 0's front row, in both layouts
 
 struct Strike {
   double speed = 0.0;   // of the ball, 20 ms after the hit [m/s]
-  double height = 0.0;  // of its underside, at most in 300 ms [m]
+  double height = 0.0;  // maximum height of its underside in 300 ms [m]
 };
 
-// The foot comes through at foot_speed; the ball lies before it.
+// The foot strikes at foot_speed; the ball lies in front of it.
 Strike strike(const CharacterBody& body, double foot_speed) {
   TableWorld world(Layout::tournament, {body, body});
   const TableSpec& table = world.table();
@@ -45,7 +45,7 @@ Strike strike(const CharacterBody& body, double foot_speed) {
   return result;
 }
 
-// Of a ball that comes at 4 m/s at a man who stands still: its speed 30 ms later over that before.
+// A ball at 4 m/s hits a man who stands still: ratio of its speed 30 ms later to that before.
 double returned(const CharacterBody& body) {
   TableWorld world(Layout::tournament, {body, body});
   const RodSpec& spec = world.table().rods[kRod];
@@ -60,7 +60,7 @@ double returned(const CharacterBody& body) {
   return std::max(0.0, forward * world.ball().velocity.x) / 4.0;
 }
 
-// Of a row that its hand wants 80 mm aside [s].
+// Time for a row to slide by 80 mm [s].
 double slide_time(const CharacterBody& body) {
   TableWorld world(Layout::tournament, {body, body});
   int tick = 0;

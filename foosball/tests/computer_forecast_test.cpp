@@ -1,4 +1,4 @@
-// The forecast of where the ball is now, from what a player sees late.
+// The forecast of the current ball from a delayed view.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace foosball {
 namespace {
 
 constexpr int kDelay = 80;  // ticks
-constexpr int kMost = 8;    // world ticks for a tick of play
+constexpr int kMost = 8;    // world steps per tick of play
 
 double percentile(std::vector<double>& values, double share) {
   const auto at =
@@ -23,7 +23,7 @@ double percentile(std::vector<double>& values, double share) {
   return *at;
 }
 
-// Somebody who watches two computer players over the shoulder of the first.
+// An observer of a match between two computer players, with the view of the first.
 struct Watched {
   explicit Watched(Layout layout, std::uint64_t seed = 1)
       : match(*Match::create({.layout = layout, .seed = seed, .rules = {}})),
@@ -55,8 +55,8 @@ class ComputerForecast : public testing::TestWithParam<Layout> {};
 INSTANTIATE_TEST_SUITE_P(Layouts, ComputerForecast,
                          testing::Values(Layout::paper, Layout::tournament));
 
-// Half of all moments the ball does what the simulation expects of it, dribbles and strokes of the
-// own feet included; what the opponent's feet do is not known.
+// In half of all ticks the ball does what the simulation predicts, including dribbles and strokes
+// by own feet. The actions of the opponent's feet are not known.
 TEST_P(ComputerForecast, IsCloserToTheBallThanACoarseModel) {
   Watched game(GetParam());
   const TableSpec& table = table_spec(GetParam());

@@ -1,4 +1,4 @@
-// The coarse model of where the ball is now.
+// The coarse model of the current ball.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kStep = 0.002;  // of the model [s]
 
-// The model goes over free ways at once. Guesses of one step each leave nothing to go over.
+// The model takes many collision-free steps at once. Calls of one step each never do.
 TEST(ComputerGuess, OfALongTimeIsThatOfItsStepsOneByOne) {
   std::mt19937_64 bits(7);
   const auto between = [&](double low, double high) {
@@ -43,7 +43,7 @@ TEST(ComputerGuess, OfALongTimeIsThatOfItsStepsOneByOne) {
     for (int step = 0; step < 150; ++step) ball = advance(model, tuning, rods, ball, kStep);
     const double off = vp::norm(at_once.position - ball.position);
     moved += vp::norm(ball.position - from.position) > 0.05 ? 1 : 0;
-    // At the edge of a foot or a post the last bit decides which way the ball goes.
+    // At the edge of a foot or a post, the last bit decides the direction of the ball.
     off > 1e-6 ? void(++parted) : void(most = std::max(most, off));
   }
   std::printf("at most %.1e m off; %d of %d parted at an edge\n", most, parted, kTries);
@@ -52,7 +52,7 @@ TEST(ComputerGuess, OfALongTimeIsThatOfItsStepsOneByOne) {
   EXPECT_GT(moved, kTries / 2);
 }
 
-// Nothing pulls such a ball down.
+// Without downward gravity the ball does not fall.
 TEST(ComputerGuess, HoldsWithoutGravity) {
   for (const double gravity : {0.0, -12.0}) {
     const GuessModel model{&table_spec(Layout::tournament), 0, {0.012, 0.012}};

@@ -1,4 +1,4 @@
-// What a computer player sees and how its hand moves: no better than a person's.
+// The sight and the hand of a computer player stay within a person's limits.
 #include "../src/computer_hand.h"
 
 #include <gtest/gtest.h>

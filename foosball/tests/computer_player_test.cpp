@@ -1,4 +1,4 @@
-// Computer players by name, and that they keep to what a person with two hands can do.
+// Computer players by name, and their limits: those of a person with two hands.
 #include "foosball/computer_player.h"
 
 #include <gtest/gtest.h>
@@ -125,11 +125,11 @@ INSTANTIATE_TEST_SUITE_P(All, ComputerPlayers,
                                          Case{Layout::paper, "2:gambler", "3:wall"}),
                          case_name);
 
-// By its targets, which is what its hands do: a rod that moves, or has moved within the time that a
-// hand of the best level needs to another rod, has a hand on it.
+// Detected from the targets: a rod has a hand if it moves, or has moved within the time that a hand
+// of the best level needs to change rods.
 TEST_P(ComputerPlayers, HaveTwoHandsEachAndTurnThemRoundTwiceASecondAtMost) {
   constexpr int kSeconds = 90;
-  constexpr int kWay = 110;  // ticks; the quickest hand needs 120
+  constexpr int kWay = 110;  // ticks; the fastest hand needs 120
   Match match = *Match::create({.layout = GetParam().layout, .seed = 3, .rules = {}});
   ComputerPlayer home({.team = 0, .seed = 6, .player = *parse_player(GetParam().home)});
   ComputerPlayer away({.team = 1, .seed = 7, .player = *parse_player(GetParam().away)});
@@ -180,8 +180,8 @@ TEST_P(ComputerPlayers, HaveTwoHandsEachAndTurnThemRoundTwiceASecondAtMost) {
   }
 }
 
-// A ball at rest in front of the goal, before or behind the men of a rod: whatever the player does
-// with it, its own foot never drives it into its own goal.
+// A ball at rest in front of the goal, in front of or behind the men of a rod: the player's own
+// foot never drives it into its own goal.
 TEST(ComputerPlayer, NeverSwingsBackThroughABallIntoItsOwnGoal) {
   int own = 0, moved = 0;
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
@@ -205,8 +205,8 @@ TEST(ComputerPlayer, NeverSwingsBackThroughABallIntoItsOwnGoal) {
   EXPECT_GT(moved, 1000);
 }
 
-// A goal straight from a serve is a foul (ITSF 4.2.2), and a side that nobody plays is no reason to
-// try it: the ball goes to a second man first.
+// A goal straight from a serve is a foul (ITSF 4.2.2). Even against an absent team the ball must go
+// to a second man first.
 TEST(ComputerPlayer, ScoresAgainstAnAbsentSideWithoutFoulsFromItsServes) {
   for (const Layout layout : {Layout::paper, Layout::tournament}) {
     for (const char* level : {"3", "5"}) {
@@ -239,7 +239,7 @@ class RollingBall : public MatchTest {
   RollingBall() : MatchTest(Layout::paper) {}
 };
 
-// A foot that is drawn back to strike lets such a ball roll on beneath it, into the goal.
+// Under a foot that is drawn back to strike, such a ball would roll on into the goal.
 TEST_F(RollingBall, ThatCreepsToTheGoalIsStoppedByTheGoalie) {
   start_by_commands();
   int goals = 0;
@@ -261,7 +261,8 @@ TEST_F(RollingBall, ThatCreepsToTheGoalIsStoppedByTheGoalie) {
   EXPECT_LE(goals, 1) << "of " << kBalls;
 }
 
-// Men who came to it from the side with their feet down would push it home: the feet go up first.
+// Men who touched it from the side with their feet down would push it towards their own goal: the
+// feet must swing up first.
 TEST_F(RollingBall, BehindTheGoalieIsNotPushedHome) {
   int balls = 0, pushed = 0, goals = 0;
   for (const double behind : {0.020, 0.030, 0.040, 0.050}) {
@@ -278,7 +279,7 @@ TEST_F(RollingBall, BehindTheGoalieIsNotPushedHome) {
           const double before = view().ball_velocity.x;
           home.play(view(), input.rods);
           step();
-          // From 0.13 s on it has seen the ball, and a hand is on the rod.
+          // From 0.13 s on the player has seen the ball, and a hand is on the rod.
           if (tick < 130) continue;
           for (const Event& event : match->events()) {
             pushed += event.kind == EventKind::man_hit && view().ball_velocity.x < before - 0.1;
@@ -292,7 +293,7 @@ TEST_F(RollingBall, BehindTheGoalieIsNotPushedHome) {
   EXPECT_LT(pushed, balls / 5);
 }
 
-// A foot that comes down to scoop such a ball goes with it, and does not land on it.
+// A foot that comes down to scoop such a ball must move along with it, and not land on it.
 TEST_F(RollingBall, BehindTheFeetIsNotPinnedByTheFootThatScoopsIt) {
   int balls = 0, pinned = 0;
   for (const double behind : {0.035, 0.042, 0.049, 0.056}) {
@@ -305,7 +306,7 @@ TEST_F(RollingBall, BehindTheFeetIsNotPinnedByTheFootThatScoopsIt) {
         match = std::make_unique<Match>(*Match::create(desc));
         start_by_commands();
         shoot({table().rods[1].x - behind, y, 0.0174}, {0.0, vy, 0.0}, 1);
-        int held = 0;  // ticks in which the ball keeps a man from where his hand has him
+        int held = 0;  // ticks in which the ball blocks a man
         for (int tick = 0; tick < 1500; ++tick) {
           home.play(view(), input.rods);
           step();
@@ -323,8 +324,8 @@ TEST_F(RollingBall, BehindTheFeetIsNotPinnedByTheFootThatScoopsIt) {
   EXPECT_LE(pinned, balls / 8);
 }
 
-// A ball that has turned back behind the feet is elsewhere than those think who see it late: a foot
-// that is drawn back there must not send it home.
+// A ball that has reversed behind the feet is not where a player with a delayed view expects it: a
+// foot that is drawn back must not drive it towards its own goal.
 TEST(ComputerPlayer, HardlyEverSwingsBackThroughABallThatItSeesLate) {
   int swung = 0, minutes = 0;
   for (const char* level : {"2", "3", "4"}) {

@@ -1,4 +1,4 @@
-// What a computer player knows of its strokes, against the simulated table.
+// A computer player's model of its strokes, against the simulated table.
 #include "../src/computer_stroke.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ struct Sent {
   double slope = 0.0, speed = 0.0, rise = 0.0;
 };
 
-// A stroke as the player makes it: drawn, with the foot where it is to be when they meet.
+// A stroke as the player makes it: foot drawn back, at its offset for the meeting.
 class Table {
  public:
   Table(Layout layout, const CharacterBody& body) : world_(layout, {body, body}), body_(body) {}
@@ -42,7 +42,7 @@ class Table {
     HandAxis swing;
     swing.adopt(drawn(m.ahead));
     world_.set_rod(kRod, {offset, -swing.position(), 0.0, 0.0});
-    // The hand moves a tick after the decision.
+    // The hand moves one tick after the decision.
     const double time = m.time - kTick;
     const double r = table.ball_radius;
     world_.set_ball({vp::SE3(vp::Vec3{spec().x + m.ahead - time * vx, m.y - time * vy, r}),
@@ -92,13 +92,13 @@ class ComputerStroke : public testing::TestWithParam<Layout> {};
 INSTANTIATE_TEST_SUITE_P(Layouts, ComputerStroke,
                          testing::Values(Layout::paper, Layout::tournament));
 
-// Balls that roll along and across the rod, behind the axis and ahead of it.
+// Balls that roll along the rod and perpendicular to it, behind and ahead of the axis.
 TEST_P(ComputerStroke, SendsTheBallWhereItIsAimed) {
   for (const CharacterBody& body : {feet(0.024, 0.020), feet(0.036, 0.020), feet(0.024, 0.014)}) {
     Table table(GetParam(), body);
     std::vector<double> errors;
     for (const AxisLimits& stroke : {kFull, kSlow, kPass}) {
-      // Only a ball that is almost at rest and will not hop is passed.
+      // Passes only use a ball that is almost at rest and will not hop.
       const bool passes = stroke.rate == kPass.rate;
       const double across = passes ? 0.05 : 0.2, along = passes ? 0.2 : 0.4;
       for (const double ahead : {-0.015, 0.005, 0.02, 0.035, 0.045}) {

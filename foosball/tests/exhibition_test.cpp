@@ -1,4 +1,4 @@
-// Two computer players make a match worth watching; and what a tick of it costs.
+// Quality of a match between two computer players, and the cost of a tick.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,9 +16,9 @@ namespace foosball {
 namespace {
 
 struct Tally {
-  double minutes = 0.0;  // of play
+  double minutes = 0.0;  // of playing time
   std::array<int, kEventKinds> events{};
-  int shots = 0;  // the ball became faster than 4 m/s
+  int shots = 0;  // the ball's speed exceeded 4 m/s
   std::vector<double> tick_us;
 
   double per_minute(EventKind kind) const {
@@ -26,7 +26,7 @@ struct Tally {
   }
 };
 
-// Plays until the time is over or, if asked, until a match is won.
+// Plays until the time is over or, if until_won, until a match is won.
 void play(Layout layout, std::uint64_t seed, const char* player, int ticks, bool until_won,
           Tally& tally) {
   MatchDesc desc;
@@ -65,7 +65,7 @@ INSTANTIATE_TEST_SUITE_P(Layouts, Exhibition, testing::Values(Layout::paper, Lay
 TEST_P(Exhibition, OfTwoSharpPlayersHasShotsAndGoalsAndFewDeadBalls) {
   Tally tally;
   tally.tick_us.reserve(24 * 45000);
-  // 15 minutes of play: in half of that the goals a minute stray by 0.7 from their mean of 4.
+  // 15 minutes of play. In half of that, the goals per minute deviate by 0.7 from their mean of 4.
   for (std::uint64_t seed = 1; seed <= 24; ++seed) {
     play(GetParam(), seed, "5:shooter", 45000, false, tally);
   }
@@ -85,7 +85,7 @@ TEST_P(Exhibition, OfTwoSharpPlayersHasShotsAndGoalsAndFewDeadBalls) {
   EXPECT_LE(tally.per_minute(EventKind::ball_out), 1.0);
 }
 
-// Larger than life and bounded, as the paper has them: docs/match-runner.md.
+// Exaggerated and bounded, as in the paper: docs/match-runner.md.
 TEST_P(Exhibition, HasBouncesThatAreSeenAndABallThatStaysOnTheTable) {
   for (const char* player : {"3", "5"}) {
     StatisticsObserver observer;
@@ -119,7 +119,8 @@ TEST_P(Exhibition, HasBouncesThatAreSeenAndABallThatStaysOnTheTable) {
 }
 
 TEST_P(Exhibition, OfTwentySecondsShowsShots) {
-  constexpr int kExhibitions = 32;  // of eight, one code in twenty has three with a goal by chance
+  // Of eight exhibitions, three have a goal by chance in one program in twenty.
+  constexpr int kExhibitions = 32;
   int with_goal = 0, shots = 0, fewest = 1000;
   for (std::uint64_t seed = 1; seed <= kExhibitions; ++seed) {
     Tally tally;

@@ -1,5 +1,5 @@
-// Another game chosen while the match goes on: what a setup means, when it takes effect, and that a
-// match in which it changed is saved and replayed to the bit.
+// Changing the game while a match runs: the meaning of a setup, when it takes effect, and that such
+// a match is saved and replayed bit for bit.
 #include "foosball/game_setup.h"
 
 #include <set>
@@ -10,7 +10,7 @@
 namespace foosball {
 namespace {
 
-// --- what a setup says ---------------------------------------------------------------------------
+// --- meaning of a setup --------------------------------------------------------------------------
 
 TEST(GameSetup, ADateIsADayOfTheCalendar) {
   for (const std::uint32_t day : {20261122u, 20240229u, 20000229u, 20261231u, 10000101u})
@@ -213,9 +213,9 @@ TEST(Challenge, DrawsFromTheBuiltInCharactersAlone) {
   }
 }
 
-// --- to the bit ----------------------------------------------------------------------------------
+// --- determinism ---------------------------------------------------------------------------------
 
-// A match in which people change the game at every screen.
+// A match in which people change the game on every screen.
 std::vector<Command> commands_at(int tick) {
   using Kind = Command::Kind;
   switch (tick) {

@@ -1,4 +1,4 @@
-// Rods as the only buttons of the screens.
+// Rods as the only controls of the screens.
 #include "../src/gestures.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ class Gestures : public testing::Test {
  protected:
   Gestures() { gestures.reset(state); }
 
-  // Moves the rod by so much in so many seconds.
+  // Moves the rod by slide and angle in this time [s].
   Counted move(int team, double slide, double angle, double seconds) {
     Counted counted;
     const int ticks = static_cast<int>(std::lround(seconds / kTick));

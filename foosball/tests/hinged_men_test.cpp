@@ -1,5 +1,5 @@
-// Men of the paper's layout: each hinged at his own shoulder, following the hand with bounded
-// torque. Whoever is held holds up nobody else, passes through nothing, and comes back.
+// Men of the paper's layout. Each has a hinge at his shoulder and follows the hand with a bounded
+// torque. A blocked man does not block the others, penetrates nothing, and returns to the hand.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,15 +17,15 @@
 namespace foosball {
 namespace {
 
-constexpr int kGoalie = 0;       // team 0's row, before the end wall at -x
+constexpr int kGoalie = 0;       // row of team 0, in front of the end wall at -x
 constexpr int kHeldMan = 0;      // beside the goal
-constexpr double kDeep = 0.002;  // of the ball in anything [m]
+constexpr double kDeep = 0.002;  // maximum penetration of the ball [m]
 
 const TableSpec& table() {
   return table_spec(Layout::paper);
 }
 
-// Of the ball in the nearest man, and of its center below what lies on the field or in a wall.
+// Penetration of the ball into the nearest man, the field or a wall.
 double deepest(const TableWorld& world, int character) {
   const vp::Vec3 ball = world.ball().pose.position();
   const double r = table().ball_radius;
@@ -49,11 +49,11 @@ struct Seen {
   double deepest = 0.0;       // [m]
   double fastest_man = 0.0;   // [rad/s]
   double fastest_ball = 0.0;  // [m/s]
-  double apart = 0.0;         // a man from his hand [rad]
-  double others = 0.0;        // the men that nothing holds, from their hand [rad]
+  double apart = 0.0;         // largest angle between a man and his hand [rad]
+  double others = 0.0;        // the same for the men who are not blocked [rad]
 };
 
-// One tick, and what must hold in each.
+// One tick, and the properties that must hold in each.
 void step(TableWorld& world, int character, int rod, Seen& seen) {
   ASSERT_TRUE(world.step()) << "a number left its range";
   seen.deepest = std::max(seen.deepest, deepest(world, character));
@@ -85,7 +85,7 @@ class HingedMen : public testing::TestWithParam<int> {
 };
 INSTANTIATE_TEST_SUITE_P(Characters, HingedMen, testing::Range(0, built_in_count()));
 
-// Feet towards the wall behind them, a ball in the way of one.
+// Feet towards the wall behind them, with the ball in the way of one.
 TEST_P(HingedMen, OneWhoIsHeldByTheBallAtTheWallHoldsUpNobodyElse) {
   put_ball_behind_the_goalie();
   Seen seen;
@@ -93,7 +93,7 @@ TEST_P(HingedMen, OneWhoIsHeldByTheBallAtTheWallHoldsUpNobodyElse) {
   for (int tick = 0; tick < 1000; ++tick) {
     world.drive(kGoalie, {0.0, 1.0, 0.0, 0.0, true});
     step(world, character, kGoalie, seen);
-    // Later a stout man's foot rolls the ball out to the side.
+    // Later the wide foot of a man rolls the ball out to the side.
     if (tick == 45) held = world.men()[kGoalie][kHeldMan].angle;
   }
   std::printf("%s: held at %.2f of 1.00 rad, the others within %.1g; ball in anything %.3f mm\n",
@@ -106,8 +106,8 @@ TEST_P(HingedMen, OneWhoIsHeldByTheBallAtTheWallHoldsUpNobodyElse) {
   EXPECT_LT(seen.deepest, kDeep);
 }
 
-// The hand spins on, three turns at rates up to the fastest; then it stops and the ball is taken
-// away.
+// The hand spins on for three turns at rates up to the maximum. Then it stops, and the ball is
+// removed.
 TEST_P(HingedMen, OneWhoIsHeldWhileTheHandSpinsThreeTurnsSlipsAndComesBack) {
   for (const double rate : {20.0, 60.0, 120.0}) {
     for (const double way : {1.0, -1.0}) {
@@ -138,12 +138,12 @@ TEST_P(HingedMen, OneWhoIsHeldWhileTheHandSpinsThreeTurnsSlipsAndComesBack) {
   }
 }
 
-// A man far behind his hand, as one who has just been let go: the drive asks for five times the
-// torque that there is.
+// A man far from his hand, as after a release: the drive would need five times the available
+// torque.
 TEST_P(HingedMen, TheTorqueOfAManIsBounded) {
   const RodInertia inertia = rod_inertia(table(), table().rods[kGoalie], built_in(character));
   world.set_man(kGoalie, kHeldMan, {-2.5, 0.0});
-  const double most = inertia.limits.torque / inertia.turn * kTick;  // a tick's [rad/s]
+  const double most = inertia.limits.torque / inertia.turn * kTick;  // per tick [rad/s]
   double greatest = 0.0;
   for (int tick = 0; tick < 100; ++tick) {
     const double before = world.men()[kGoalie][kHeldMan].angle_rate;
@@ -156,7 +156,7 @@ TEST_P(HingedMen, TheTorqueOfAManIsBounded) {
   EXPECT_NEAR(world.men()[kGoalie][kHeldMan].angle, 0.0, 1e-3) << "and he has come back";
 }
 
-// The foot on top of a ball on the field, the hand pressing on as fast as there is one.
+// The foot on top of a ball on the field, pressed down by the hand at up to the maximum rate.
 TEST_P(HingedMen, AFootOnTheBallPressesItNeitherThroughTheFieldNorThroughItself) {
   const int rod = rods_of_team(table(), 0)[static_cast<int>(Line::midfield)];
   const RodSpec& spec = table().rods[rod];
@@ -174,7 +174,7 @@ TEST_P(HingedMen, AFootOnTheBallPressesItNeitherThroughTheFieldNorThroughItself)
   }
 }
 
-// Both midfields squeeze one ball between their feet, and tremble.
+// Both midfields squeeze one ball between their feet, and vibrate.
 TEST_P(HingedMen, TwoOpponentsJammedThroughTheBallStayApartAndSane) {
   const int home = 3, away = 4;
   ASSERT_NE(table().rods[home].team, table().rods[away].team);
@@ -204,7 +204,7 @@ TEST_P(HingedMen, TwoOpponentsJammedThroughTheBallStayApartAndSane) {
   EXPECT_LT(seen.fastest_ball, 25.0);
 }
 
-// A row that spins at the fastest rate, with balls rolled and dropped into it.
+// A row that spins at the maximum rate, with balls rolled and dropped into it.
 TEST_P(HingedMen, ASpinningRowKeepsItsMenTogetherAndTheBallOutOfThem) {
   const int rod = 5;
   const RodSpec& spec = table().rods[rod];
@@ -232,7 +232,7 @@ TEST_P(HingedMen, ASpinningRowKeepsItsMenTogetherAndTheBallOutOfThem) {
   EXPECT_LT(seen.fastest_man, 1.1 * limits.angle_rate);
 }
 
-// One ball can hold only one man of a row.
+// A ball can block only one man of a row.
 TEST(HingedMenOfARow, AreTooFarApartForOneBall) {
   for (const CharacterBody& c : bodies_of_all_kinds()) {
     const double widest = std::max(c.foot_width, c.torso_width);
@@ -242,7 +242,7 @@ TEST(HingedMenOfARow, AreTooFarApartForOneBall) {
   }
 }
 
-// With a man held and the ball pressed: the saved world goes on with the same bits.
+// With a blocked man and a pressed ball: the restored world continues bit for bit.
 TEST(HingedMenSaved, GoOnFromWhereTheyWereHeld) {
   TableWorld world(Layout::paper, built_in(1, 1)), other(Layout::paper, built_in(1, 1));
   const RodSpec& spec = table().rods[kGoalie];
@@ -265,7 +265,7 @@ TEST(HingedMenSaved, GoOnFromWhereTheyWereHeld) {
   EXPECT_EQ(world.state_hash(), other.state_hash());
 }
 
-// The world is built anew when it is tuned: nobody jumps.
+// A change of the tuning rebuilds the world: no man jumps.
 TEST(HingedMenInAMatch, KeepTheirOwnAnglesWhenTheMatchIsTuned) {
   Match match = *Match::create(
       {.layout = Layout::paper, .seed = 3, .rules = {.goals_to_win = 90, .max_goals = 99}});

@@ -1,5 +1,5 @@
-// Each rule of the ITSF set that the match judges, named after the article of the rule book (2016).
-// The counts themselves are tested in referee_test.cpp and spin_watch_test.cpp.
+// Each ITSF rule that the match judges, named after the article of the rule book (2016).
+// referee_test.cpp and spin_watch_test.cpp test the underlying counts.
 #include "match_fixture.h"
 
 namespace foosball {
@@ -25,7 +25,7 @@ class ItsfTest : public MatchTest {
     shoot({table().rods[rod].x + 0.034 * attack_sign(team), 0.0, 0.0173}, {}, team);
     run(0.02);
   }
-  // Event of the kind that came last; one that fits nothing if none came.
+  // The latest event of this kind; an invalid one if there was none.
   Event latest(EventKind kind) const {
     const Event* event = last(kind);
     EXPECT_NE(event, nullptr) << static_cast<int>(kind);
@@ -34,7 +34,8 @@ class ItsfTest : public MatchTest {
   int server_of_last() const { return latest(EventKind::serve).team; }
   Line line_of_last() const { return table().rods[latest(EventKind::serve).rod].line; }
   Foul last_foul() const { return static_cast<Foul>(std::lround(latest(EventKind::foul).value)); }
-  // Team 0's attack turns forward; the ball is put before its foot after more than a revolution.
+  // Team 0's attack rotates forward. After more than a revolution the ball is put in front of its
+  // foot.
   void spin_at_ball() {
     const int rod = rods_of_team(table(), 0)[3];
     shoot({-0.45, 0.0, 0.0173}, {});
@@ -114,7 +115,7 @@ TEST_F(ItsfTest, Article8ADeadBallGoesToTheNearestDefenceOrIsServedAgain) {
   for (RodTarget& rod : input.rods) rod.angle = 1.5;
   run(0.3);
   int server = 0;
-  shoot({0.40, 0.33 - 0.0173, 0.5}, {});  // into the corner strip that the two men leave
+  shoot({0.40, 0.33 - 0.0173, 0.5}, {});  // into the corner that the two men do not reach
   arrange([](MatchState&, TableWorld& world) { world.set_ball({0.45, 0.0, 0.0173}, {}); });
   for (int i = 0; i < 2500; ++i) {
     arrange([](MatchState&, TableWorld& world) { world.set_ball({0.448, 0.0, 0.0173}, {}); });
@@ -351,7 +352,7 @@ class TimedSetsTest : public TimedTest {
   TimedSetsTest() : TimedTest(2) {}
 };
 
-// What a ceremony is told by: a ball in the goal, or none.
+// The ceremony distinguishes a ball in the goal from none.
 TEST_F(TimedSetsTest, ASetThatEndsOnTheClockIsWonWithoutAGoalAndNoBallLiesInOne) {
   arrange([](MatchState& state, TableWorld&) { state.tally.score = {1, 2}; });
   events.clear();

@@ -1,4 +1,4 @@
-// Values of a computer player's judgment as text, and what they do to it.
+// Values of a computer player's judgment as text, and their effect.
 #include "foosball/judgment.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ TEST(Judgment, IsTheSameAfterItsChangesAreWrittenAndRead) {
   Judgment judgment = base;
   double share = 0.0;
   for (const JudgmentField& field : kJudgmentFields) {
-    share += 1.0 / 37.0;  // which no short decimal is
+    share += 1.0 / 37.0;  // not a short decimal
     judgment.*field.value = field.least + share * (field.most - field.least);
   }
   const auto again = with_changes(base, changes_of(base, judgment));

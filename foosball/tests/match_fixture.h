@@ -1,4 +1,5 @@
-// A match in the hands of a test: rods moved by hand, commands, and states arranged as saved ones.
+// A match under the control of a test: rods moved by hand, commands, and states set through a
+// snapshot.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -56,7 +57,7 @@ class MatchTest : public testing::Test {
                          [kind](const Event& event) { return event.kind == kind; });
   }
 
-  // A hand moves one rod: to where, in how long.
+  // Moves one rod by hand to this slide and angle, in this time.
   void move(int rod, double slide, double angle, double seconds) {
     RodTarget& hand = input.rods[rod];
     const RodTarget from = hand;
@@ -73,7 +74,7 @@ class MatchTest : public testing::Test {
   }
   void push(int rod) {
     const int team = table().rods[rod].team;
-    run(0.01);  // a stroke begins at rest
+    run(0.01);  // a stroke starts at rest
     move(rod, push_sign(team) * 0.06, input.rods[rod].angle, 0.15);
     move(rod, 0.0, input.rods[rod].angle, 0.15);
   }
@@ -92,7 +93,7 @@ class MatchTest : public testing::Test {
     ASSERT_EQ(view().screen, Screen::play);
   }
 
-  // The match goes on from a state arranged by the test, as from any saved one.
+  // Changes the state through a snapshot; the match continues from it.
   void arrange(const std::function<void(MatchState&, TableWorld&)>& change) {
     std::vector<std::byte> bytes;
     match->snapshot(bytes);
@@ -105,7 +106,7 @@ class MatchTest : public testing::Test {
     const auto restored = match->restore(bytes);
     ASSERT_TRUE(restored) << restored.error().message;
   }
-  // A ball on its way, that two men have touched.
+  // A moving ball that two men have touched.
   void shoot(const vp::Vec3& from, const vp::Vec3& velocity, int toucher = 0) {
     arrange([&](MatchState& state, TableWorld& world) {
       state.screen = Screen::play;

@@ -190,14 +190,14 @@ TEST_F(MatchTest, TheBallIsServedToTheMidfieldWithinItsReach) {
 
 TEST_F(MatchTest, TheServeWaitsWhileMenFillThePlace) {
   start_by_commands();
-  // The server's men hang; whatever the slide, the ball finds room that is not inside a man.
+  // The server's men hang down. At every slide the ball gets a place outside the men.
   for (int i = 0; i < 40; ++i) {
     arrange([&](MatchState& state, TableWorld& world) {
       state.ball_in_play = false;
       state.ball_parked = true;
       state.serve_in = 0;
       for (int rod = 0; rod < kRods; ++rod) {
-        state.hold[rod].live = true;  // the hand has just let go of it, here:
+        state.hold[rod].live = true;  // the hand has just released it here:
         const double swing = 0.15 * ((i * 7 + rod * 5) % 40) - 3.0;
         world.set_rod(
             rod, {table().rods[rod].slide_limit * 0.05 * ((i * 3 + rod) % 40 - 20), swing, 0, 0});
@@ -236,7 +236,7 @@ TEST_F(MatchTest, AnOwnGoalCountsForTheOther) {
 
 TEST_F(MatchTest, InAndOutCounts) {
   start_by_commands();
-  // At 15 m/s the ball is in, off the back of the box and out again within some ticks.
+  // At 15 m/s the ball enters, bounces off the back of the box and leaves within a few ticks.
   shoot({0.58, 0.07, 0.0174}, {15.0, 0.0, 0.0});
   run(0.3);
   EXPECT_EQ(view().score[0], 1);
@@ -283,7 +283,7 @@ TEST_F(MatchTest, AContactWhoseEndIsNeverSeenDoesNotOutliveTheNextServe) {
   };
   EXPECT_TRUE(touching());
   events.clear();
-  shoot({0.0, 1.0, 0.5}, {});  // off the table: served again
+  shoot({0.0, 1.0, 0.5}, {});  // off the table: a new serve
   run(1.0);
   EXPECT_EQ(count(EventKind::serve), 1);
   EXPECT_FALSE(touching());
@@ -291,7 +291,7 @@ TEST_F(MatchTest, AContactWhoseEndIsNeverSeenDoesNotOutliveTheNextServe) {
 
 TEST_F(MatchTest, EventsBeyondTheBoundOfAStepAreCounted) {
   constexpr std::size_t kRequests = kMaxEventsPerStep + 72;
-  commands.assign(kRequests, {Command::Kind::restart});  // a screen event each
+  commands.assign(kRequests, {Command::Kind::restart});  // one screen event each
   step();
   EXPECT_EQ(events.size(), kMaxEventsPerStep);
   EXPECT_EQ(view().events_dropped, 72u);

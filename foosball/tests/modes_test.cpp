@@ -1,4 +1,4 @@
-// Absent sides, the goal as it is told, training, challenge, ladder, and a table that nobody plays.
+// Absent teams, the data of a goal, training, challenge, ladder, and a table without players.
 #include "foosball/computer_player.h"
 #include "match_fixture.h"
 
@@ -14,11 +14,10 @@ class ModesTest : public MatchTest {
   }
 };
 
-// --- an absent side ------------------------------------------------------------------------------
+// --- an absent team ------------------------------------------------------------------------------
 
-// Found by a reviewer: 2 goals in 47 minutes, the ball at rest for 98.6 % of the time.
-// Seconds of play until the side that is there has won, or the limit. seed: of the match and of the
-// player.
+// Time of play until the present team has won, or the limit [s]. seed: of the match and of the
+// player. Regression: 2 goals in 47 minutes, with the ball at rest for 98.6 % of the time.
 double until_won(Layout layout, Rules rules, int absent, double limit, std::uint64_t seed) {
   rules.idle_seconds = 0.0;
   Match match = *Match::create({.layout = layout, .seed = seed, .rules = rules});
@@ -40,7 +39,7 @@ double until_won(Layout layout, Rules rules, int absent, double limit, std::uint
 TEST(AbsentSide, LosesAMatchWithinAFewMinutes) {
   Rules itsf = itsf_rules(1);
   itsf.goals_to_win = 2;
-  constexpr int kMatches = 8;  // one alone is luck: two goals after 15 to 403 s
+  constexpr int kMatches = 8;  // a single one varies too much: two goals after 15 to 403 s
   double arcade = 0.0, two_goals = 0.0;
   for (std::uint64_t seed = 1; seed <= kMatches; ++seed) {
     arcade += until_won(Layout::tournament, arcade_rules(), 1, 900.0, seed) / kMatches;
@@ -51,7 +50,7 @@ TEST(AbsentSide, LosesAMatchWithinAFewMinutes) {
   EXPECT_LT(two_goals, 300.0);
 }
 
-// Nobody plays on; team 0 keeps a hand moving, at a rod far from the ball.
+// Nobody plays the ball; team 0 keeps moving a rod far from it.
 TEST_F(ModesTest, AStillBallWaitsLongerForASideThatMovesAnyRodThanForOneThatIsAway) {
   start_by_commands();
   double& slide = input.rods[rods_of_team(table(), 0)[0]].slide;
@@ -69,7 +68,7 @@ TEST_F(ModesTest, AStillBallWaitsLongerForASideThatMovesAnyRodThanForOneThatIsAw
   ASSERT_GE(waits[0].size(), 2u);
   ASSERT_GE(waits[1].size(), 3u);
   for (const double wait : waits[0]) EXPECT_NEAR(wait, 5.0, 0.002);
-  // At its first serve it has not been away for five seconds.
+  // At its first serve it has not yet been absent for five seconds.
   for (std::size_t i = 1; i < waits[1].size(); ++i) EXPECT_NEAR(waits[1][i], 0.5, 0.002);
 }
 
@@ -106,7 +105,7 @@ TEST_F(ModesTest, AGoalNamesItsManAndTheSpeedOfTheBall) {
   EXPECT_EQ(view().last_goal.rod, goal->rod);
 }
 
-// A renderer shows the goal again in slow motion meanwhile.
+// Meanwhile a renderer replays the goal in slow motion.
 TEST_F(ModesTest, TheCeremonyOfAGoalLastsFourSecondsUnlessSomebodyPushes) {
   for (const Rules& rules : {arcade_rules(), itsf_rules()}) {
     make(Mode::match, rules);
@@ -168,7 +167,7 @@ TEST_F(ModesTest, AStrikeThatSendsTheBallOffIsAShotWithSpeedAndAngle) {
   start_by_commands();
   run(0.6);
   const int rod = rods_of_team(table(), 0)[3];
-  move(rods_of_team(table(), 1)[0], 0.2, 0.0, 0.2);  // the goalie sends nothing back
+  move(rods_of_team(table(), 1)[0], 0.2, 0.0, 0.2);  // the goalie returns nothing
   shoot({table().rods[rod].x + 0.034, 0.0, 0.0173}, {}, 0);
   move(rod, 0.0, 0.6, 0.1);
   move(rod, 0.0, -0.8, 0.03);
@@ -181,7 +180,7 @@ TEST_F(ModesTest, AStrikeThatSendsTheBallOffIsAShotWithSpeedAndAngle) {
   EXPECT_EQ(view().last_shot.speed, shot->value);
 }
 
-// --- nobody there --------------------------------------------------------------------------------
+// --- no players ----------------------------------------------------------------------------------
 
 TEST_F(ModesTest, EveryScreenReturnsToTheLogoWhenNobodyMovesARod) {
   desc.rules.idle_seconds = 3.0;
@@ -273,8 +272,7 @@ TEST_F(ModesTest, TrainingNeedsNoOpponentAndServesToTheManAskedForAgainAndAgain)
   EXPECT_GE(count(EventKind::serve), 1) << "a ball left lying is served again";
 }
 
-// At a cabinet there are the rods alone: the one that is pushed to begin, and those spun after a
-// goal.
+// A cabinet has only the rods: the one pushed to begin, and those turned after a goal.
 TEST_F(ModesTest, TrainingServesToTheRodThatBeganItAndThatIsSpunAfterAGoal) {
   make(Mode::training);
   const auto rods = rods_of_team(table(), 0);
@@ -303,7 +301,7 @@ TEST_F(ModesTest, TrainingServesToTheRodThatBeganItAndThatIsSpunAfterAGoal) {
   EXPECT_TRUE(served_to(midfield, 1)) << "back twice";
   spun_after_a_goal(attack, 2.2);
   EXPECT_TRUE(served_to(attack, 1)) << "another rod: its middle man";
-  // The end of the shot's own swing chooses nobody.
+  // The end of the shot's own swing selects nothing.
   shoot_goal(0);
   move(midfield, 0.0, input.rods[midfield].angle - 2.2, 0.1);
   run(desc.rules.ceremony_seconds + 0.7);
@@ -359,7 +357,7 @@ TEST_F(ModesTest, TrainingServesToTheSideThatBeganItUntilAManIsAskedFor) {
     ASSERT_NE(last(EventKind::serve), nullptr);
     EXPECT_EQ(last(EventKind::serve)->rod, rods_of_team(table(), team)[3]) << team;
     EXPECT_EQ(last(EventKind::serve)->team, team);
-    // Whoever comes next begins anew.
+    // The next person starts with the default.
     command(Command::Kind::feed, team, feed_value(Line::defence, 1));
     command(Command::Kind::restart);
     command(Command::Kind::push, 1 - team);
@@ -462,10 +460,10 @@ TEST_F(ModesTest, TheLadderIsClimbedByWinningAndLeftByLosing) {
   EXPECT_EQ(view().rung, 0);
 }
 
-// --- saved anywhere ------------------------------------------------------------------------------
+// --- save and restore ----------------------------------------------------------------------------
 
-// Every mode and both rule sets, restored at ticks all over a minute of play in which every screen,
-// a pause, a time-out and a spin occur: the match goes on to the same hash.
+// Every mode and both rule sets, restored at random ticks of a minute of play with every screen, a
+// pause, a time-out and a spin: the match continues to the same hash.
 TEST(SaveAndRestore, AtRandomTicksOfEveryModeGoesOnToTheSameState) {
   for (int mode = 0; mode < kModes; ++mode) {
     for (const auto& rules : {arcade_rules(), itsf_rules(3)}) {

@@ -26,7 +26,7 @@ bool has(std::uint8_t rods, int rod) {
   return (rods >> rod & 1) != 0;
 }
 
-// Two players who share team 0, against a whole one.
+// Two players who share team 0, against one with all rods.
 struct SharedTeam {
   SharedTeam(Layout table_layout, const std::string& player, const std::string& with,
              std::initializer_list<Line> lines, std::uint64_t seed = 1)
@@ -38,7 +38,7 @@ struct SharedTeam {
         away({.team = 1, .seed = 3 * seed + 2, .player = *parse_player("5")}) {}
 
   const MatchView& view() const { return match.view(); }
-  // Somebody opens the match: of the three, none has a whole team's say but the opponent.
+  // Commands open the match: only the opponent has all rods of its team.
   void step() {
     commands.clear();
     if (view().screen == Screen::logo || view().screen == Screen::selection) {
@@ -73,8 +73,7 @@ INSTANTIATE_TEST_SUITE_P(All, PartOfATeam,
                                          Case{Layout::tournament, "classic"}),
                          case_name);
 
-// Of the targets that it may not touch, none changes; of its own two rods it lets go of neither,
-// as it would to reach for a third.
+// It changes no target of other rods, and never releases its own two rods to reach for a third.
 TEST_P(PartOfATeam, NeverSpendsAHandOnATeamMatesRods) {
   SharedTeam game(GetParam().layout, GetParam().player, "4", {Line::goalie, Line::defence});
   int held_for = 0, in_play = 0;
@@ -99,7 +98,7 @@ TEST_P(PartOfATeam, NeverSpendsAHandOnATeamMatesRods) {
       ASSERT_EQ(targets[rod].live, before[rod].live);
     }
     const bool playing = game.view().screen == Screen::play;
-    constexpr int kWay = 300;  // ticks: the slowest hand here is on its rod by then
+    constexpr int kWay = 300;  // ticks: by then the slowest hand here is on its rod
     held_for = playing ? held_for + 1 : 0;
     if (held_for > kWay) {
       ++in_play;
@@ -110,7 +109,7 @@ TEST_P(PartOfATeam, NeverSpendsAHandOnATeamMatesRods) {
   EXPECT_GT(in_play, 10'000);
 }
 
-// It is handed what others want of their rods, and must not know it before it sees it.
+// Its input contains the targets of other rods. It must not use them before it sees the motion.
 TEST_P(PartOfATeam, PlaysTheSameWhateverIsCommandedOfTheOtherRods) {
   SharedTeam game(GetParam().layout, GetParam().player, "4", {Line::defence, Line::attack});
   ComputerPlayer again({.team = 0, .seed = 3, .player = *parse_player(GetParam().player)});
@@ -130,8 +129,8 @@ TEST_P(PartOfATeam, PlaysTheSameWhateverIsCommandedOfTheOtherRods) {
   }
 }
 
-// Within the distance at which a player's own hand stays on it, a mate may have left a rod
-// anywhere.
+// Where the team mate left it, even within the distance at which a player would keep its own
+// position.
 TEST_P(PartOfATeam, TakesARodOverWhereTheMateLeftIt) {
   SharedTeam game(GetParam().layout, GetParam().player, "4", {Line::goalie, Line::defence});
   int taken = 0;
@@ -143,7 +142,7 @@ TEST_P(PartOfATeam, TakesARodOverWhereTheMateLeftIt) {
       const bool gained = gains && has(kAllRods & ~game.own, rod) && tick > 4000;
       if (gained && table_spec(game.layout).rods[rod].team == 0) {
         ++taken;
-        constexpr double kStep = 0.003, kTurn = 0.12;  // of a tick's own motion [m], [rad]
+        constexpr double kStep = 0.003, kTurn = 0.12;  // motion in one tick [m], [rad]
         EXPECT_NEAR(targets[rod].slide, game.view().rods[rod].slide, kStep);
         EXPECT_NEAR(targets[rod].angle, game.view().rods[rod].angle, kTurn);
       }
@@ -176,8 +175,8 @@ double percentile(std::vector<double>& values, double share) {
   return *at;
 }
 
-// Whose feet the ball is at, or was while what is seen grew old: a forecast is good where nobody
-// interferes.
+// By the owner of the feet at the ball, now or at the time of the delayed view: a forecast is
+// accurate where nobody interferes.
 class MateForecast : public testing::TestWithParam<Layout> {};
 INSTANTIATE_TEST_SUITE_P(Layouts, MateForecast, testing::Values(Layout::paper, Layout::tournament));
 
@@ -229,7 +228,7 @@ TEST_P(MateForecast, KnowsThatATeamMatesMenMove) {
       half[own_feet], usual[own_feet], half[mates], usual[mates], half[opponents],
       usual[opponents]);
   EXPECT_LE(half[mates], half[opponents] + 0.5);
-  // 0 and 2 mm; 25 and 35 in a forecast in which the men of others hang still at their middle.
+  // 0 and 2 mm; 25 and 35 mm for a forecast with the others' men hanging still at the centre.
   EXPECT_LE(usual[mates], 10.0);
 }
 

@@ -1,4 +1,4 @@
-// That the styles of computer players show in what they do.
+// The styles of computer players differ in their statistics.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace foosball {
 namespace {
 
-// Four minutes of one style on either side against level 4, so that luck of a side counts for none.
+// Four minutes of one style on each side against level 4, so that the side does not matter.
 Statistics minutes_of(const char* name, Layout layout) {
   Statistics sum;
   for (int team = 0; team < kTeams; ++team) {
@@ -28,7 +28,7 @@ Statistics minutes_of(const char* name, Layout layout) {
       one.observe(match.view(), match.events(), input.rods);
     }
     Statistics s = one.totals();
-    if (team == 1) {  // as if it had been team 0
+    if (team == 1) {  // count it as team 0
       std::swap(s.shots[0], s.shots[1]);
       std::swap(s.passes_meant[0], s.passes_meant[1]);
       std::swap(s.passes_arrived[0], s.passes_arrived[1]);
@@ -39,7 +39,7 @@ Statistics minutes_of(const char* name, Layout layout) {
   return sum;
 }
 
-// Rods 0 and 1 are the goalie's and the defence of team 0.
+// Rods 0 and 1 are the goalie and the defence of team 0.
 double share_at_home(const Statistics& s) {
   double home = 0.0, all = 0.0;
   for (int rod = 0; rod < kRods; ++rod) {

@@ -1,4 +1,4 @@
-// The number of play: 1 for a game as it is meant to be, and each part falls off by itself.
+// The quality of play is 1 for an ideal game, and each part decreases separately.
 #include "foosball/playability.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 namespace foosball {
 namespace {
 
-// Ten matches of three minutes each, as they are meant to be.
+// Ten ideal matches of three minutes each.
 Statistics ideal() {
   Statistics s;
   constexpr std::uint64_t kMinute = 60'000;

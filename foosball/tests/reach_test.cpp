@@ -28,7 +28,7 @@ TEST(Reach, NoBallIsWithinReachOfTwoRods) {
   }
 }
 
-// By this a renderer knows whose clock of possession runs: a snapshot tells the side alone.
+// A renderer uses this to know whose time of possession runs: a snapshot contains only the team.
 TEST(Reach, TheRodThatReachesTheBallIsTheNearestOneWithinHalfTheWayToTheNext) {
   for (int layout = 0; layout < kLayouts; ++layout) {
     const TableSpec& table = table_spec(static_cast<Layout>(layout));
@@ -58,8 +58,8 @@ TEST(Reach, TheLoneGoalieDoesNotReachTheCorners) {
   EXPECT_EQ(rods_in_reach(table, kAverage, {-0.525, 0.31, 0.0173}), 0);
 }
 
-// The formula against the men themselves: a foot swung past a ball that is kept in its place meets
-// it where the formula has it within reach, to 2 mm.
+// The formula against simulated men: a foot swung past a fixed ball touches it where the formula
+// says within reach, to 2 mm.
 TEST(Reach, IsWhereASwungFootMeetsTheBall) {
   const TableSpec& table = table_spec(Layout::tournament);
   constexpr int kRod = 2;
@@ -73,7 +73,7 @@ TEST(Reach, IsWhereASwungFootMeetsTheBall) {
       bool met = false;
       for (int tick = 0; tick < 1000; ++tick) {
         world.set_ball({table.rods[kRod].x - d, 0.0, table.ball_radius}, {});
-        world.drive(kRod, {.angle = -1.0 + 0.0025 * tick, .live = true});  // feet come to -x
+        world.drive(kRod, {.angle = -1.0 + 0.0025 * tick, .live = true});  // feet move towards -x
         world.step();
         for (const vp::ContactEvent& event : world.contacts()) {
           met = met || ball_contact(event).other.what == Tag::What::man;

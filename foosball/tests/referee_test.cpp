@@ -112,7 +112,7 @@ struct Called {
   int tick = 0;
 };
 
-// What the watch calls first of a ball that moves as told, and when.
+// The first verdict of the watch for a ball on this path, and its time.
 template <class Path>
 Called call(const Rules& rules, Path path, int limit, bool touched = false,
             std::array<bool, kTeams> absent = {}) {
@@ -165,7 +165,7 @@ TEST(Itsf24, DribblingDoesNotStopTheClock) {
 }
 
 TEST(Itsf24, GoalieAndDefenceAreOnePlaceOfPossession) {
-  // To and fro between the two rods, out of reach of both in between.
+  // Back and forth between the two rods, out of reach of both in between.
   const auto pass = [](int tick) {
     return vp::Vec3{-0.45 + 0.06 * std::sin(0.004 * tick), 0.0, table.ball_radius};
   };

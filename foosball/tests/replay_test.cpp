@@ -17,11 +17,11 @@
 namespace foosball {
 namespace {
 
-// The hash of a match of two computer players after 20,000 ticks: the same on every compiler and at
-// every level. It changes whenever a figure of the game or the engine's arithmetic does; then put
-// the new one here, once g++ and clang++, Debug and Release agree on it.
+// The hash of a match of two computer players after 20,000 ticks: the same for every compiler and
+// optimization level. It changes with any number of the game and with the engine's arithmetic. Then
+// replace it, after g++ and clang++, Debug and Release agree on the new one.
 constexpr std::uint64_t kGolden = 0xefa2347de80e2ed5u;
-// Of players with levels.
+// The same for players with levels.
 constexpr std::uint64_t kGoldenLevel = 0xfcac490c2e187fd5u;
 
 struct Players {
@@ -65,7 +65,7 @@ TEST_P(GoldenReplay, TwentyThousandTicksOfTwoComputerPlayersHaveTheGoldenHash) {
   EXPECT_EQ(match.state_hash(), GetParam().hash);
 }
 
-// Inputs alone bring a match back; saved and restored in the middle, it ends in the same state.
+// Inputs alone reproduce a match. Saved and restored in the middle, it ends in the same state.
 TEST(Replay, NeedsOnlyTheInputsAlsoFromASaveInTheMiddle) {
   constexpr int kTicks = 8000, kMiddle = 3500;
   Match live = new_match(5, Layout::paper);
@@ -122,8 +122,8 @@ TEST(Restore, RefusesForeignAndTruncatedBytesAndLeavesTheMatchAsItWas) {
   EXPECT_EQ(match.state_hash(), hash);
 }
 
-// Whatever bit is flipped: refused, or a match that plays on without a fault.
-// SF_FLIPPED_EVERY=N: every N-th bit; an odd number, so that all bits of a byte have their turn.
+// For any flipped bit: rejected, or a match that plays on without error. SF_FLIPPED_EVERY=N: every
+// N-th bit; an odd number covers all bits of a byte.
 TEST(Restore, SurvivesFlippedBits) {
   const char* wanted = std::getenv("SF_FLIPPED_EVERY");
   const std::size_t every = wanted != nullptr ? std::max(1, std::atoi(wanted)) : 37;
@@ -150,8 +150,8 @@ TEST(Restore, SurvivesFlippedBits) {
               bytes.size() * 8 / every);
 }
 
-// What an attacker writes into a saved match, at every place where a number may stand: refused, or
-// a match that goes on as one: its stops end in their time, and what it saves can be restored.
+// Forged numbers at every offset of a saved match: rejected, or a match that plays on, whose stops
+// end in time and whose snapshots can be restored.
 TEST(Restore, OfAnyNumberInAnyPlaceIsRefusedOrPlaysOn) {
   Match match = new_match(2);
   const std::vector<Command> start{
@@ -164,7 +164,7 @@ TEST(Restore, OfAnyNumberInAnyPlaceIsRefusedOrPlaysOn) {
   ASSERT_GT(match.view().time_out_seconds, 0.0);
   std::vector<std::byte> bytes;
   match.snapshot(bytes);
-  constexpr std::size_t kHead = 1800;  // beyond it lies the world, which is the engine's
+  constexpr std::size_t kHead = 1800;  // followed by the world, which the engine tests
   ASSERT_GT(bytes.size(), kHead);
   const auto limit = match.view().time_out_seconds;
   int accepted = 0;
@@ -190,7 +190,7 @@ TEST(Restore, OfAnyNumberInAnyPlaceIsRefusedOrPlaysOn) {
   std::printf("%d of %zu forged saves were matches all the same\n", accepted, 5 * kHead);
 }
 
-// Each count of ticks that a match waits for, as long as it can be: the ball comes all the same.
+// Each tick count for which a match waits, at its maximum: the ball is served in time.
 TEST(Restore, OfAnyWaitEndsInTime) {
   const Rules rules{};
   const auto longest = std::uint64_t{1} << 46;

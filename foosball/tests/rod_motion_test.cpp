@@ -1,4 +1,4 @@
-// The rod's motion as a pure function against the rod of the simulated table.
+// The pure function of a rod's motion against the rod of the simulated table.
 #include "foosball/rod_motion.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,8 @@ struct Difference {
   double slide = 0.0, angle = 0.0, man = 0.0;
 };
 
-// Drives every rod of a table and its prediction with the same hand; the largest difference.
+// Drives every rod of a table and its prediction with the same hand. Returns the largest
+// difference.
 template <class Hand>
 Difference compare(Layout layout, const CharacterBody& body, int ticks, Hand&& hand) {
   TableWorld world(layout, {body, body});
@@ -33,7 +34,7 @@ Difference compare(Layout layout, const CharacterBody& body, int ticks, Hand&& h
       world.drive(rod, target);
       predicted[rod] = step_rod(spec, rod_inertia(table, spec, body), predicted[rod], target);
     }
-    world.park_ball();  // touches nothing
+    world.park_ball();  // no contacts
     world.step();
     for (int rod = 0; rod < kRods; ++rod) {
       const RodState simulated = world.rod(rod);
@@ -61,7 +62,7 @@ TEST_P(RodMotionTest, EqualsTheSimulatedRodUnderSmoothAndJumpingHands) {
     const Difference worst =
         compare(GetParam(), body, 3000, [&](int rod, int tick, const RodSpec& spec) {
           RodTarget& t = targets[rod];
-          if (tick % 400 == 50 * rod) {  // a jump: the force and the rates reach their bounds
+          if (tick % 400 == 50 * rod) {  // a jump: force and rates reach their limits
             t = {spec.slide_limit * random.between(-1.2, 1.2), random.between(0.0, 9.0), 0.0, 0.0,
                  true};
           } else if (tick % 400 > 200) {  // a stroke
@@ -80,8 +81,8 @@ TEST_P(RodMotionTest, EqualsTheSimulatedRodUnderSmoothAndJumpingHands) {
   }
 }
 
-// The response of a spring and damper that is critically damped with what it moves comes nearer
-// from one side: no overshoot, whatever the men weigh.
+// A critically damped spring and damper approaches its target from one side: no overshoot for men
+// of any mass.
 TEST_P(RodMotionTest, TheDrivesAreCriticallyDampedForEveryCharacter) {
   const TableSpec& table = table_spec(GetParam());
   for (const CharacterBody& body : bodies_of_all_kinds()) {

@@ -1,5 +1,5 @@
-// Random shots on the real table, judged by a truth that knows nothing of the engine: the chord of
-// the ball's centre over each tick, seen from every man's boxes, and the table's inner bounds.
+// Random shots on the real table, with a check that is independent of the engine: the chord of the
+// ball's centre over each tick, against every man's boxes and the table's inner bounds.
 #pragma once
 
 #include <algorithm>
@@ -17,13 +17,13 @@ struct ShotsReport {
   int shots = 0;
   long ticks = 0;
   long man_hits = 0, table_hits = 0;
-  long over_the_wall = 0;  // left over a wall: allowed
+  long over_the_wall = 0;  // left the table over a wall: allowed
   long through_a_man = 0;  // never allowed
   long outside = 0;        // never allowed
-  long held_steps = 0;     // the engine met its impact limit
+  long held_steps = 0;     // steps in which the engine reached its impact limit
   double held_seconds = 0.0;
   double deepest_in_man = 0.0;    // [m]
-  double deepest_in_table = 0.0;  // [m], field included
+  double deepest_in_table = 0.0;  // [m], including the field
 };
 
 class ShotGallery {
@@ -41,7 +41,7 @@ class ShotGallery {
     return built_in(static_cast<int>(seed % n), static_cast<int>(seed / n % n));
   }
 
-  // Whether the segment meets the box about the origin (slabs).
+  // True if the segment intersects the box about the origin (slab method).
   static bool crosses(const vp::Vec3& a, const vp::Vec3& b, const vp::Vec3& half) {
     double enter = 0.0, leave = 1.0;
     for (int axis = 0; axis < 3; ++axis) {
@@ -57,7 +57,7 @@ class ShotGallery {
     return enter <= leave;
   }
 
-  // Of a point from the box about the origin; negative inside.
+  // Distance of a point from the box about the origin; negative inside.
   static double distance(const vp::Vec3& p, const vp::Vec3& half) {
     const vp::Vec3 q{std::fabs(p.x) - half.x, std::fabs(p.y) - half.y, std::fabs(p.z) - half.z};
     const vp::Vec3 out{std::max(q.x, 0.0), std::max(q.y, 0.0), std::max(q.z, 0.0)};
@@ -65,13 +65,13 @@ class ShotGallery {
   }
 
  private:
-  static constexpr int kTicks = 16;  // 25 m/s: 0.4 m, two rods and a wall away
+  static constexpr int kTicks = 16;  // 0.4 m at 25 m/s: past two rods and to a wall
   static constexpr double kSlowest = 5.0, kFastest = 25.0;  // [m/s]
-  static constexpr double kCore = 0.6;  // of a box: no chord may cross what is left of it
+  static constexpr double kCore = 0.6;  // scale of a box: no chord may cross the scaled box
 
   const TableSpec& table() const { return world_.table(); }
 
-  // Half of the shots with rods at rest, half with them turning and sliding.
+  // In half of the shots the rods are at rest; in the other half they rotate and slide.
   void set_rods() {
     const bool moving = random_.unit() < 0.5;
     for (int rod = 0; rod < kRods; ++rod) {
@@ -94,19 +94,19 @@ class ShotGallery {
     } while (!world_.free_for_ball(place));
     const vp::Vec3 way = random_.unit() < 0.5 ? towards_a_man(place) : anywhere();
     const double length = vp::norm(way);
-    // Half of the shots as fast as there are any.
+    // Half of the shots have the maximum speed.
     const double speed = random_.unit() < 0.5 ? kFastest : random_.between(kSlowest, kFastest);
     world_.set_ball(place, (speed / std::max(length, 0.01)) * way);
   }
 
-  // Mostly along the field; a quarter at any slope.
+  // Mostly along the field; a quarter in any direction.
   vp::Vec3 anywhere() {
     const bool steep = random_.unit() < 0.25;
     return {random_.between(-1.0, 1.0), random_.between(-1.0, 1.0),
             steep ? random_.between(-1.0, 0.5) : random_.between(-0.05, 0.05)};
   }
 
-  // At some part of a man of the nearest or next rod.
+  // Towards a random part of a man of the nearest or a neighbouring rod.
   vp::Vec3 towards_a_man(const vp::Vec3& from) {
     const int nearest = static_cast<int>((from.x + 0.6) / 0.150);
     const int rod = std::clamp(nearest + random_.below(3) - 1, 0, kRods - 1);
@@ -167,8 +167,8 @@ class ShotGallery {
     }
   }
 
-  // Depth of the ball in the inside of the table: field, walls, goal boxes. Above the walls there
-  // is none; the rounding of a ball that passes over an edge is not judged. False once it is out.
+  // Penetration of the ball into the table: field, walls, goal boxes. Not checked above the walls,
+  // nor for the curvature of a ball that passes over an edge. Returns false once the ball is out.
   bool judge_table(const vp::Vec3& ball) {
     const double r = table().ball_radius;
     const double past_side = std::fabs(ball.y) - (0.5 * table().width - r);
@@ -185,13 +185,13 @@ class ShotGallery {
     return true;
   }
 
-  // Of a ball that overlaps the plane of an end wall by past_end.
+  // For a ball that overlaps the plane of an end wall by past_end.
   double depth_at_end(const vp::Vec3& ball, double past_end) const {
     const double r = table().ball_radius;
-    const double post = std::fabs(ball.y) - 0.5 * table().goal_width;  // beside the opening, if > 0
-    const double lintel = ball.z - table().goal_height;                // above it, if > 0
+    const double post = std::fabs(ball.y) - 0.5 * table().goal_width;  // beside the opening if > 0
+    const double lintel = ball.z - table().goal_height;                // above it if > 0
     if (past_end < r) {
-      // Its centre is still on the field: distance to the nearest point of the wall's face.
+      // The centre is still over the field: distance to the nearest point of the wall's face.
       if (post > 0.0 || lintel > 0.0) return past_end;
       const double to_edge = std::min(-post, -lintel);
       const double to_face = r - past_end;

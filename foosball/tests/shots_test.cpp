@@ -1,7 +1,7 @@
 // A ball at up to 25 m/s never passes through a man, a wall or the field. The seeds are shards:
-// each test is one, so that they run side by side.
+// each is a test, so that they run in parallel.
 //
-// SF_SHOTS=N: so many shots over all shards. A million take three minutes of one core:
+// SF_SHOTS=N: total number of shots of all shards. A million take three minutes on one core:
 //     SF_SHOTS=1000000 build/release/bin/foosball_many_shots_test
 #include "shots.h"
 
@@ -13,8 +13,8 @@
 namespace foosball {
 namespace {
 
-// Shots of one test program: 100,000 over the ten seeds in the release build; the fast build, which
-// also runs under the sanitizers, has 2,000.
+// Shots of one test program: 100,000 over the ten seeds in the release build; 2,000 in the fast
+// build, which also runs under the sanitizers.
 #ifdef SF_MANY_SHOTS
 constexpr int kShots = 100000;
 #else
@@ -52,8 +52,7 @@ TEST_P(Shots, NoneAtUpTo25MetresASecondPassesThroughAManAWallOrTheField) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, Shots, testing::Range(0, kShards));
 
-// The judge must be able to find a shot guilty: a ball that jumps from one side of a man to the
-// other, and one that lies in his foot.
+// The check must detect errors: a ball that jumps through a man, and one inside his foot.
 TEST(ShotsJudge, FindsABallThatWentThrough) {
   const vp::Vec3 half{0.010, 0.012, 0.012};
   EXPECT_TRUE(ShotGallery::crosses({-0.03, 0.0, 0.0}, {0.03, 0.001, 0.0}, half));

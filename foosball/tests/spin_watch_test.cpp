@@ -11,7 +11,8 @@ constexpr double kRevolution = 2.0 * vp::kPi;
 
 class Itsf15 : public testing::Test {
  protected:
-  // Turns the rod by so much at a steady rate [rad/s]; the ball is touched in the first tick if so.
+  // Rotates the rod by this angle at a constant rate [rad/s]. strikes: it touches the ball in the
+  // first tick.
   void turn(double by, bool strikes = false, double rate = 40.0) {
     const int ticks = static_cast<int>(std::fabs(by) / rate / kTick) + 1;
     for (int i = 0; i < ticks; ++i) {

@@ -1,5 +1,5 @@
-// The counts of a match: by scripted views, each of which can only be judged one way, and by whole
-// matches.
+// The counts of a match, from scripted views with one possible interpretation each, and from
+// complete matches.
 #include "foosball/statistics.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace {
 
 using vp::Vec3;
 
-// A match that is written by hand, tick by tick.
+// A match scripted tick by tick.
 struct Script {
   StatisticsObserver observer;
   MatchView view;
@@ -52,7 +52,7 @@ struct Script {
     events.push_back({kind, static_cast<std::uint8_t>(team), static_cast<std::uint8_t>(rod),
                       static_cast<std::uint8_t>(man), 0.0, view.ball_position});
   }
-  // A man of the rod sends the ball off; foot: his velocity along x there.
+  // A man of the rod hits the ball. foot: velocity of his foot along x there.
   void hit(int rod, int man, double foot, const Vec3& velocity) {
     const double angle_rate = foot / (table().ball_radius - table().rod_height);
     view.rods[rod].angle_rate = angle_rate;
@@ -60,7 +60,7 @@ struct Script {
     meet(rod, man, angle_rate, velocity);
     view.rods[rod].angle_rate = 0.0;
   }
-  // The same in the tick of the contact; before it the rod turns as the view has it.
+  // The same in the tick of the contact. Before it the rod has the view's angular rate.
   void meet(int rod, int man, double angle_rate, const Vec3& velocity) {
     view.ball_position = {table().rods[rod].x, 0.075, table().ball_radius};
     view.rods[rod].angle_rate = angle_rate;
@@ -94,7 +94,7 @@ TEST(Statistics, AStillFootOrOneThatOnlySlowsTheShotDeflectsIt) {
   for (const double foot : {0.0, -1.0}) {
     Script script;
     script.serve(1);
-    script.view.ball_velocity = {-6.0, 0.0, 0.0};  // nobody's shot
+    script.view.ball_velocity = {-6.0, 0.0, 0.0};  // not a shot
     script.tick();
     script.hit(rod_of(0, Line::goalie), 0, foot, {-4.0, 0.0, 0.0});
     script.goal(1);
@@ -103,7 +103,7 @@ TEST(Statistics, AStillFootOrOneThatOnlySlowsTheShotDeflectsIt) {
   }
 }
 
-// A foot that hangs is knocked back by the ball that comes off it.
+// The rebounding ball pushes a hanging foot back.
 TEST(Statistics, AFootThatIsMovedByTheBallDoesNotSwing) {
   Script script;
   script.serve(0);
@@ -186,7 +186,7 @@ TEST(Statistics, RodsThatMoveAtOnceAreCountedForEachTeam) {
     script.view.rods[rod_of(0, line)].slide_rate = 0.1;
   }
   script.view.rods[rod_of(1, Line::attack)].angle_rate = -2.0;
-  script.view.rods[rod_of(1, Line::goalie)].angle_rate = 0.5;  // settles
+  script.view.rods[rod_of(1, Line::goalie)].angle_rate = 0.5;  // coming to rest
   script.tick(10);
   EXPECT_EQ(script.totals().moving_ticks[0][3], 10u);
   EXPECT_EQ(script.totals().moving_ticks[1][1], 10u);
@@ -203,7 +203,7 @@ TEST(Statistics, AFullTurnWithoutTheBallIsASpinAndATouchBeginsItAnew) {
   }
   EXPECT_EQ(script.totals().spins[rod], 3u);
   script.event(EventKind::man_hit, 0, rod, 2);
-  for (int i = 2000; i < 2600; ++i) {  // less than a turn after the touch
+  for (int i = 2000; i < 2600; ++i) {  // less than a turn since the touch
     script.view.rods[rod].angle = 0.01 * i;
     script.tick();
   }
@@ -269,7 +269,7 @@ TEST(Statistics, AHopIsAsHighAsItsPeakAndABounceComparesTwo) {
   script.serve(0);
   const double ground = script.table().ball_radius, g = 14.0, height = 0.1, ratio = 0.3;
   script.view.ball_position = {0.0, 0.3, ground + height};
-  const auto fall = [&](double speed) {  // until it is down again
+  const auto fall = [&](double speed) {  // until it lands
     script.view.ball_velocity = {0.0, 0.0, speed};
     do {
       script.view.ball_velocity.z -= g * kTick;
@@ -284,7 +284,7 @@ TEST(Statistics, AHopIsAsHighAsItsPeakAndABounceComparesTwo) {
   script.tick(100);
   EXPECT_EQ(script.totals().hop_height.count(), 2u);
   EXPECT_NEAR(script.totals().hop_height.quantile(1.0), height, 0.002);
-  EXPECT_NEAR(script.totals().bounce_ratio.quantile(0.01), 0.0, 0.03);  // the second lies still
+  EXPECT_NEAR(script.totals().bounce_ratio.quantile(0.01), 0.0, 0.03);  // second: no bounce
   EXPECT_NEAR(script.totals().bounce_ratio.quantile(1.0), ratio, 0.03);
 }
 
@@ -299,7 +299,8 @@ TEST(Statistics, ABallThatNobodyTouchesIsStuckForAsLongAsItStays) {
   EXPECT_GE(script.totals().still_ticks, 1500u);
 }
 
-// As the referee counts: from the touch on, but about the place where the ball was before it.
+// As the referee counts: the touch restarts the time, but the reference point stays where the ball
+// was before.
 TEST(Statistics, ATouchBeginsTheTimeOfAStuckBallAgainAndNotItsPlace) {
   Script script;
   script.serve(0);
@@ -340,7 +341,7 @@ TEST(Reach, IsThatOfTheBestOfAllSlidesAndAngles) {
     const TableSpec& table = table_spec(layout);
     const double r = table.ball_radius;
     int reached = 0, compared = 0;
-    for (int i = 0; i < 600; ++i) {  // low-discrepancy points, those at a foot's height
+    for (int i = 0; i < 600; ++i) {  // low-discrepancy points, only those at a foot's height
       const double u = std::fmod(0.5 + i * 0.7548776662466927, 1.0);
       const double v = std::fmod(0.5 + i * 0.5698402909980532, 1.0);
       const Vec3 ball{(u - 0.5) * 1.16, (v - 0.5) * 0.64, r + 0.002 * (i % 10)};

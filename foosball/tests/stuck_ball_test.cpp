@@ -1,5 +1,5 @@
-// A ball that nobody can reach is freed by rule, whoever plays: computers, an absent side, rods
-// that spin, rods held aside. The runner has the same figures for any number of matches of all
+// The rules free a ball that nobody can reach, for any players: computers, an absent team, rods
+// that spin, rods held to the side. The runner measures the same for any number of matches of all
 // levels (space-foosball-match --stuck-balls).
 #include <gtest/gtest.h>
 
@@ -18,8 +18,8 @@ namespace {
 enum class Side { computer, absent, aside, spins };
 
 struct Longest {
-  std::uint64_t unreachable = 0;  // ticks at a stretch, out of everybody's reach
-  std::uint64_t held = 0;         // within one rod's reach
+  std::uint64_t unreachable = 0;  // longest interval out of everybody's reach [ticks]
+  std::uint64_t held = 0;         // the same within one rod's reach
 };
 
 void move(Side side, int team, const MatchView& view, ComputerPlayer& computer, RodTargets& rods) {
@@ -78,7 +78,7 @@ TEST(StuckBall, NoneIsOutOfReachOrHeldForLongerThanTheRulesAllow) {
     for (const auto& rules : {arcade_rules(), itsf_rules(1)}) {
       for (const Sides& sides : kSides) {
         const bool computers = sides.home == Side::computer && sides.away == Side::computer;
-        // Levels against themselves all five; beside others in turn.
+        // Every level against itself; against others the levels alternate.
         for (int i = 0; i < (computers ? kLevels : 1); ++i) {
           MatchDesc desc{.layout = layout, .seed = ++seed, .rules = rules};
           desc.rules.idle_seconds = 0.0;

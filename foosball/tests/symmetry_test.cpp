@@ -1,5 +1,5 @@
-// The game is fair to the bit: turned by half a revolution about z, with the teams exchanged, a
-// match goes on exactly turned.
+// The game is exactly symmetric: rotated by half a turn about z, with exchanged teams, a match
+// continues exactly rotated.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -31,7 +31,7 @@ constexpr int across(int rod) {
   return kRods - 1 - rod;
 }
 
-// Rods that wave about, pinch and kick as no player would.
+// Rods that move, pinch and kick at random, unlike a player's.
 class Hands {
  public:
   explicit Hands(std::uint64_t seed) : random_(seed) {}
@@ -59,8 +59,8 @@ class Hands {
 class Symmetry : public testing::TestWithParam<Layout> {};
 INSTANTIATE_TEST_SUITE_P(Layouts, Symmetry, testing::Values(Layout::paper, Layout::tournament));
 
-// Two minutes on each layout; a ball put anywhere every three seconds, kicked by rods that move at
-// random, often pinched between two rows.
+// Two minutes in each layout. Every three seconds the ball gets a random position. Rods that move
+// at random kick it, and often pinch it between two rows.
 TEST_P(Symmetry, AWorldOfTheOtherTeamFirstMovesTurnedToTheBit) {
   TableWorld world(GetParam(), built_in(0, 2), 0), other(GetParam(), built_in(2, 0), 1);
   Hands hands(7);
@@ -106,8 +106,8 @@ TEST_P(Symmetry, AWorldOfTheOtherTeamFirstMovesTurnedToTheBit) {
   EXPECT_EQ(left_behind > 100, hinged_men(GetParam())) << left_behind;
 }
 
-// Between two rows the order of solving shows: with both worlds made from team 0, 4 of these 400
-// squeezes end with other bits.
+// Between two rows the order of the solver matters: with both worlds built from team 0, 4 of these
+// 400 pinches end with different bits.
 TEST(SymmetryOfPinches, ABallSqueezedBetweenTheMidfieldsMovesTurnedToTheBit) {
   long hits = 0;
   for (std::uint64_t seed = 0; seed < 400; ++seed) {
@@ -140,10 +140,10 @@ TEST(SymmetryOfPinches, ABallSqueezedBetweenTheMidfieldsMovesTurnedToTheBit) {
   EXPECT_GT(hits, 2'000);
 }
 
-// One match without end: the next would draw its own lot.
+// A single match without end: the next would draw lots again.
 constexpr Rules kLong{.goals_to_win = 90, .max_goals = 99};
 
-// Two computer players at a table; the seeds of the players go with the team that is at home.
+// Two computer players at a table. The players' seeds belong to the home team.
 struct Game {
   Game(Layout layout, std::uint64_t lot, int home_team, std::uint64_t players, const char* player)
       : match(*Match::create({.layout = layout, .seed = lot, .rules = kLong})),
@@ -159,7 +159,7 @@ struct Game {
   TickInput input;
 };
 
-// The team that the lot of a seed lets serve first.
+// The team that serves first with this seed.
 int first_server(std::uint64_t seed) {
   Match match = *Match::create({.seed = seed, .rules = {}});
   const Command pushes[] = {
@@ -175,7 +175,7 @@ int first_server(std::uint64_t seed) {
   return 0;
 }
 
-// Whole matches: screens, serves, goals and all that the computer players see and do.
+// Complete matches: screens, serves, goals and everything that the computer players see and do.
 TEST_P(Symmetry, TheMirroredMatchIsTheSameMatch) {
   std::uint64_t lots[kTeams] = {1, 1};
   for (int team = 0; team < kTeams; ++team) {

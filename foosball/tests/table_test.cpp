@@ -1,4 +1,4 @@
-// The table's figures against those of real tables, and that they fit each other.
+// The table's dimensions against those of real tables, and their consistency.
 #include "foosball/table.h"
 
 #include <gtest/gtest.h>
@@ -72,7 +72,7 @@ TEST_P(TableTest, NoManTouchesAWallAtTheEndsOfItsSlideWhateverItsCharacter) {
         EXPECT_LT(outermost + box.centre.y + box.half_extents.y, 0.5 * table.width - 0.001);
       }
     }
-    EXPECT_GT(rod.slide_limit, 0.07);  // room for a push, and for a test's 40 mm
+    EXPECT_GT(rod.slide_limit, 0.07);  // travel for a push, and for a test's 40 mm
   }
 }
 
@@ -91,16 +91,16 @@ TEST_P(TableTest, NoTurningManTouchesFieldEndWallOrTheNextRodsMen) {
 
 TEST_P(TableTest, FeetReachFourFifthsOfTheWayBetweenTwoRods) {
   for (const CharacterBody& body : bodies_of_all_kinds()) {
-    EXPECT_GT(field_reach(table, body), 0.8 * 0.075);  // built in: 61.4 mm and more
+    EXPECT_GT(field_reach(table, body), 0.8 * 0.075);  // built-in characters: at least 61.4 mm
   }
 }
 
 TEST_P(TableTest, MenReachEveryLineAlongTheFieldBetweenTheRaisedCorners) {
   for (const RodSpec& rod : table.rods) {
-    const double reach = rod.slide_limit + 0.010 + table.ball_radius;  // half the thinnest foot
+    const double reach = rod.slide_limit + 0.010 + table.ball_radius;  // half the narrowest foot
     const double gap = rod.men > 1 ? rod.spacing - 2.0 * reach : 0.0;
     EXPECT_LE(gap, 0.0) << "between neighbours";
-    // What the outermost man leaves at the wall, if anything, the raised corner covers.
+    // The raised corner covers the gap between the outermost man and the wall, if any.
     const double left = 0.5 * table.width - (man_offset(rod, rod.men - 1) + reach);
     const double from_end = 0.5 * table.length - std::fabs(rod.x);
     EXPECT_LE(left, std::max(0.0, table.corner_size - from_end));

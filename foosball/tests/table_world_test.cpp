@@ -79,7 +79,7 @@ TEST_P(TableWorldTest, ARodThatIsSetPastItsStopIsAtTheStop) {
 }
 
 TEST_P(TableWorldTest, ARodKeepsWithAMovingHandWithinAMillimetreAndTwoDegrees) {
-  // 60 mm and half a revolution to either side, one and a half times a second: brisk play.
+  // 60 mm and half a turn to either side at 1.5 Hz: fast play.
   double worst_slide = 0.0, worst_angle = 0.0;
   const auto hand_at = [](double t) {
     const double w = 2.0 * vp::kPi * 1.5;
@@ -88,7 +88,7 @@ TEST_P(TableWorldTest, ARodKeepsWithAMovingHandWithinAMillimetreAndTwoDegrees) {
   };
   for (int tick = 0; tick < 2000; ++tick) {
     for (int rod = 0; rod < kRods; ++rod) world.drive(rod, hand_at(tick * kTick));
-    world.park_ball();  // nothing is in the men's way
+    world.park_ball();  // no obstacle for the men
     world.step();
     const RodTarget now = hand_at((tick + 1) * kTick);
     for (int rod = 0; rod < kRods && tick > 100; ++rod) {
@@ -101,8 +101,8 @@ TEST_P(TableWorldTest, ARodKeepsWithAMovingHandWithinAMillimetreAndTwoDegrees) {
   EXPECT_LT(worst_angle, 2.0 * vp::kPi / 180.0);
 }
 
-// A sensor's rate stands for 9 ms after its last report: the drive follows it past the target and
-// comes back. The hand here stops in no time, which none does.
+// A sensor's rate is held for 9 ms after its last report: the drive overshoots the target and
+// returns. The hand here stops instantly, which no real hand does.
 TEST_P(TableWorldTest, ARodRunsLittlePastAHandThatStopsDeadAndComesBack) {
   constexpr int kReport = 5, kHold = 9;  // ticks
   for (const double rate : {20.0, 50.0}) {
@@ -137,7 +137,7 @@ TEST_P(TableWorldTest, AFarTargetIsApproachedNoFasterThanAHandGoes) {
   EXPECT_NEAR(world.rod(0).slide, table.rods[0].slide_limit, 1e-4);
 }
 
-// A strike at a ball at rest: the drawn foot is driven through at the rate.
+// A strike at a ball at rest: the drawn foot swings through at this rate.
 double struck_speed(TableWorld& world, int rod, double foot_speed, double& foot_at_hit) {
   const TableSpec& table = world.table();
   const RodSpec& spec = table.rods[rod];
@@ -249,7 +249,7 @@ TEST_P(TableWorldTest, AFootPinsTheBallWithBoundedForceAndWithoutPushingItThroug
   world.set_ball({spec.x + 0.046, y, table.ball_radius}, {});
   double deepest = table.ball_radius;
   for (int tick = 0; tick < 500; ++tick) {
-    // Feet forward and coming down on top of the ball, pressed on as hard as the hand can.
+    // Feet forward and pressed down on top of the ball with the hand's maximum torque.
     world.drive(rod, {0.0, 0.5, 0.0, 0.0, true});
     world.step();
     deepest = std::min(deepest, world.ball().pose.position().z);
@@ -284,7 +284,7 @@ TEST_P(TableWorldTest, SavedAndRestoredStepsToTheSameBits) {
   EXPECT_EQ(world.state_hash(), other.state_hash());
 }
 
-// Exaggeration (paper, section 5), with what was measured beside the bound.
+// Exaggeration (paper, section 5), with the measured value beside the bound.
 TEST_P(TableWorldTest, ADropOf100MillimetresComesBackToHalfItsHeightAndThenLiesDown) {
   const double r = table.ball_radius;
   world.set_ball({table.rods[3].x + 0.075, 0.0, r + 0.100}, {});

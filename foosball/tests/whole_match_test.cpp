@@ -1,4 +1,5 @@
-// Whole matches, of every level in both layouts, are saved at random ticks and go on from there.
+// Complete matches of every level in both layouts are saved at random ticks and continue from
+// there.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,8 +15,7 @@
 namespace foosball {
 namespace {
 
-// A second match goes along with each whole match from one random tick to the next, made of what
-// was saved there.
+// From each random tick to the next, a second match restored from the snapshot runs in parallel.
 class WholeMatch : public testing::TestWithParam<std::tuple<const char*, Layout>> {};
 INSTANTIATE_TEST_SUITE_P(Levels, WholeMatch,
                          testing::Combine(testing::Values("1", "2", "3", "4", "5"),
@@ -30,7 +30,7 @@ TEST_P(WholeMatch, GoesOnFromASaveAtAnyTickToTheSameHash) {
   const PlayerSpec spec = *parse_player(player);
   ComputerPlayer home({.team = 0, .seed = 22, .player = spec});
   ComputerPlayer away({.team = 1, .seed = 23, .player = spec});
-  std::mt19937 random(0x5A7E);  // the same numbers on every machine
+  std::mt19937 random(0x5A7E);  // the same sequence on every machine
   TickInput input;
   std::vector<std::byte> saved;
   int tick = 0, save_at = 0, saves = 0, end = 600'000;

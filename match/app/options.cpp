@@ -31,11 +31,11 @@ std::string footer() {
          "before it was done; 2 a bad option.";
 }
 
-// "5@FILE" with the file's values in place of its name.
+// "5@FILE" with the file's name replaced by its values.
 tl::expected<std::string, std::string> with_file_read(const std::string& name) {
   const auto at = name.find('@');
   if (at == std::string::npos || at + 1 == name.size()) return name;
-  if (name.find('=', at) != std::string::npos) return name;  // values, no file
+  if (name.find('=', at) != std::string::npos) return name;  // values, not a file
   const std::string whose = name.substr(0, at);
   constexpr std::string_view kInner = "one-rod:";
   const std::string level = whose.starts_with(kInner) ? whose.substr(kInner.size()) : whose;
@@ -53,7 +53,7 @@ std::string check_player(const std::string& name) {
   return player ? "" : player.error();
 }
 
-// Names that check_player() has accepted.
+// Precondition: check_player() has accepted the names.
 void read_files(std::vector<std::string>& names) {
   for (std::string& name : names) name = with_file_read(name).value_or(name);
 }
@@ -209,7 +209,7 @@ std::string name_of(Mode mode) {
   return "matches";
 }
 
-// Options that only some modes read: elsewhere they would pass for something that they do not do.
+// Rejects options that the mode ignores: they would suggest an effect that they do not have.
 std::string objection_to_mode(const CLI::App& cli, Mode mode) {
   struct Rule {
     const char* option;
@@ -244,7 +244,7 @@ std::string objection_to_mode(const CLI::App& cli, Mode mode) {
   return {};
 }
 
-// Two outputs in one place would be mixed, or the later would replace the former.
+// Rejects two outputs in one file: they would be mixed, or the later would overwrite the earlier.
 std::string objection_to_same_files(const Options& o) {
   const std::pair<const char*, const std::string*> outputs[] = {{"--csv", &o.csv},
                                                                 {"--json", &o.json},
@@ -268,7 +268,7 @@ std::string objection_to_same_files(const Options& o) {
   return {};
 }
 
-// What --screen and --train need besides.
+// Additional requirements of --screen and --train.
 std::string translate_training(Options& o, const Raw& raw) {
   o.mode = raw.train ? Mode::train : Mode::screen;
   constexpr std::uint64_t kTrained = 4, kScreened = 8;
@@ -301,7 +301,7 @@ std::string translate(Options& o, const Raw& raw) {
   if (raw.study) o.mode = Mode::study;
   if (!raw.sprt.empty()) {
     o.mode = Mode::sprt;
-    o.players = {raw.sprt[1], raw.sprt[0]};  // NEW is the first: the test is about its score
+    o.players = {raw.sprt[1], raw.sprt[0]};  // NEW is the first player: the test is about its score
   }
   if (!raw.round_robin.empty()) {
     o.mode = Mode::round_robin;

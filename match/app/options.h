@@ -50,7 +50,7 @@ struct Options {
   bool quiet = false;
 };
 
-// Leaves the program: with text for stdout (0) or one sentence for stderr (2).
+// Exits the program: text for stdout (0) or one sentence for stderr (2).
 struct Leave {
   int exit_code;
   std::string text;

@@ -41,7 +41,7 @@ match::StudyPlan study_plan(const Options& o) {
           o.character_list, o.tuning};
 }
 
-// Both sides by the same player.
+// The same player on both sides.
 SeriesDesc mirror_of(const Options& o) {
   SeriesDesc desc = base_of(o);
   desc.players[1] = desc.players[0];
@@ -55,7 +55,8 @@ std::vector<SeriesDesc> round_robin(const Options& o) {
       SeriesDesc desc = base_of(o);
       desc.players = {o.players[i], o.players[k]};
       desc.max_games = o.max_matches;
-      // Which of the two is the better one: 10 Elo either way are let pass.
+      // Tests which of the two is better, with an indifference zone of half of elo1 - elo0 on
+      // either side.
       const double elo = 0.5 * (o.elo1 - o.elo0);
       desc.test = {match::score_of_elo(-elo), match::score_of_elo(elo), o.alpha, o.beta};
       all.push_back(desc);
@@ -64,7 +65,7 @@ std::vector<SeriesDesc> round_robin(const Options& o) {
   return all;
 }
 
-// No pair of characters beyond 60:40 of the points, either way.
+// Limit for every pair of characters: 60:40 of the points.
 constexpr double kBalanced = 0.60;
 
 std::vector<SeriesDesc> balance(const Options& o) {
@@ -172,14 +173,14 @@ Results of_round_robin(const Options& o, const std::vector<Series>& series) {
   return results;
 }
 
-// Of all series in order.
+// Digest of all series in order.
 std::string digest_text(const std::vector<Series>& series) {
   std::uint64_t digest = 0;
   for (const Series& s : series) digest = match::mix_seed(digest ^ s.digest());
   return line("\ndigest of all matches %016llx\n", static_cast<unsigned long long>(digest));
 }
 
-// The best points by playability, and all figures for the files.
+// The best points by playability, and all statistics for the files.
 Results of_study(const Options& o, const std::vector<Series>& series) {
   Results results;
   results.figures = match::study_figures(study_plan(o), series);
@@ -207,7 +208,7 @@ const char* word(match::Verdict verdict) {
                                          : "not decided";
 }
 
-// A column a character: the points of the row's character against it [%].
+// One column per character: the points of the row's character against it [%].
 std::string cross_table(const foosball::Characters& characters, const std::vector<Series>& series) {
   const std::size_t n = characters.size();
   std::string text = line("\n  %-24s", "");
@@ -342,7 +343,7 @@ Results results_of(const Options& o, const std::vector<Series>& series) {
       return results;
     }
     case Mode::train:
-      break;  // in rounds: results_of_training()
+      break;  // has rounds: results_of_training()
   }
   return {};
 }

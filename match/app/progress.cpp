@@ -22,14 +22,14 @@ std::string clock_text(double seconds) {
   return text;
 }
 
-// A series may be decided before its last match.
+// True if a series may be decided before its last match.
 bool ends_early(const match::Schedule& schedule) {
   return std::ranges::any_of(schedule.series(), [](const match::Series& series) {
     return series.desc().test || series.desc().band;
   });
 }
 
-// Of the one series with a test, how near it is to its bounds.
+// For a single series with a test: the test's value and its bounds.
 std::string test_text(const match::Schedule& schedule) {
   if (schedule.series().size() != 1 || !schedule.series()[0].desc().test) return {};
   const match::Series& series = schedule.series()[0];

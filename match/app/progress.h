@@ -1,5 +1,5 @@
-// How far a run has come, on stderr: a bar that is drawn over and over on a terminal, else a line
-// every ten seconds.
+// Progress of a run on stderr: a bar that is redrawn on a terminal; otherwise a line every ten
+// seconds.
 #pragma once
 
 #include <cstdint>
@@ -12,10 +12,10 @@ namespace app {
 class Progress {
  public:
   explicit Progress(bool quiet);
-  // So many matches are to be played, though the schedule has not all of them yet.
+  // Total number of matches, if the schedule does not have all of them yet.
   void expect(std::uint64_t matches) { expected_ = matches; }
   void show(const match::Schedule& schedule, const match::Effort& effort);
-  void note(const std::string& line);  // beside the bar
+  void note(const std::string& line);  // printed without disturbing the bar
   void finish();
 
  private:
@@ -23,7 +23,7 @@ class Progress {
   bool drawn_ = false, begun_ = false;
   std::int64_t begun_ns_, shown_ns_ = 0;
   std::uint64_t expected_ = 0;
-  std::uint64_t known_ = 0;  // games that an earlier run had finished
+  std::uint64_t known_ = 0;  // games finished by an earlier run
 };
 
 }  // namespace app

@@ -11,7 +11,7 @@
 namespace app {
 namespace {
 
-// By the names that the server gives its computers, so that they share a rating.
+// Uses the names that the server gives its computer players, so that they share a rating.
 results::MatchResult result_of(const match::GameDesc& game, const match::GameResult& played) {
   const foosball::Rules rules;
   results::MatchResult result;
@@ -61,7 +61,7 @@ void ResultWriter::flush() {
 
 void ResultWriter::put_aside() {
   std::string rows = results::matches_csv(waiting_);
-  if (aside_ > 0) rows.erase(0, rows.find('\n') + 1);  // the headings are there
+  if (aside_ > 0) rows.erase(0, rows.find('\n') + 1);  // the file already has the header
   std::ofstream file(path_ + ".unsaved.csv", std::ios::binary | std::ios::app);
   file << rows;
   file.close();

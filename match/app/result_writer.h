@@ -1,5 +1,5 @@
-// Adds the matches of a run to a file of results (results/store.h), so many in one transaction. A
-// file that fails ends nothing: what it does not take is written beside it, as CSV.
+// Adds the matches of a run to a results file (results/store.h), in batches of one transaction. If
+// the file fails, the run continues, and the rejected results go to a CSV file beside it.
 #pragma once
 
 #include <cstdint>
@@ -15,15 +15,17 @@ namespace app {
 
 class ResultWriter {
  public:
-  static constexpr std::size_t kBatch = 256;   // results in memory, at most
-  static constexpr std::int64_t kEvery_s = 2;  // a batch is added after so long, too
+  static constexpr std::size_t kBatch = 256;   // maximum number of results in memory
+  static constexpr std::int64_t kEvery_s = 2;  // maximum time before a batch is added
 
-  // The error says what is wrong with the file.
+  // The error describes the problem with the file.
   static tl::expected<ResultWriter, std::string> open(const std::string& path);
 
-  // recording: of its journal, or empty. May wait for other programs' locks, for results::kBusy_ms.
+  // recording: path of the journal, or empty. May wait for other programs' locks, up to
+  // results::kBusy_ms.
   void add(const match::GameDesc& game, const match::GameResult& result, std::string recording);
-  // Adds what is left. Empty, or the sentence that says what was not kept, and where it is.
+  // Adds the remaining results. Returns an empty text, or a sentence that says what the file did
+  // not accept and where it is.
   std::string finish();
   std::uint64_t kept() const { return kept_; }
 
@@ -38,7 +40,7 @@ class ResultWriter {
   std::vector<results::MatchResult> waiting_;
   std::int64_t flushed_s_ = 0;
   std::uint64_t kept_ = 0, aside_ = 0, lost_ = 0;
-  std::string problem_;  // the first one of the file
+  std::string problem_;  // the first problem of the file
 };
 
 }  // namespace app

@@ -30,7 +30,7 @@ extern "C" void request_stop(int) {
   stop_requested.store(true);
 }
 
-// A second signal ends the program at once.
+// A second signal terminates the program immediately.
 void end_on_signals() {
   struct sigaction action {};
   action.sa_handler = request_stop;
@@ -47,7 +47,8 @@ bool write_text(const std::string& path, const std::string& text) {
   return static_cast<bool>(file);
 }
 
-// Why the file could not be written when all is played, asked before; empty: it can be.
+// Checks before the run that the file can be written at its end. Returns the problem, or an empty
+// text.
 std::string objection_to_file(const std::string& path) {
   if (path.empty() || path == "-") return {};
   std::error_code error;
@@ -69,8 +70,8 @@ void print_effort(const match::Effort& effort) {
               effort.games, effort.seconds, effort.core_seconds, effort.real_time_factor());
 }
 
-// Plays what is there, and of a training one round after the other, each as the results before it
-// have it. play: plays the schedule to its end.
+// Plays the scheduled series. A training then adds one round after another, each based on the
+// results of the previous one. play: plays the schedule to its end.
 template <class Play>
 tl::expected<match::Effort, std::string> play_rounds(
     match::Schedule& schedule, std::optional<match::Training>& training,

@@ -1,5 +1,5 @@
-// The program around the matches: signals, checkpoint, progress, results. Who plays is handed in:
-// threads of this machine, or the ranks of a cluster.
+// The program around the matches: signals, checkpoint, progress, results. The caller supplies the
+// executor: threads of this machine, or the ranks of a cluster.
 #pragma once
 
 #include <functional>
@@ -14,11 +14,11 @@ namespace app {
 using PlayAll = std::function<tl::expected<match::Effort, std::string>(
     match::Schedule&, const match::ExecutorOptions&)>;
 
-// The exit code. Prints the results, or one sentence that says what failed.
+// Prints the results, or one sentence about the failure. Returns the exit code.
 int run(const Options& options, const PlayAll& play_all);
 
 int fail(int exit_code, const std::string& sentence);
-// For what parse() gave instead of options: help, or what is wrong with them.
+// Handles a Leave of parse(): help, or an error in the options.
 int leave(const Leave& leave);
 
 }  // namespace app

@@ -1,5 +1,6 @@
 // space-foosball-match-mpi: the same matches on the ranks of a cluster, under mpirun or Slurm. Rank
-// 0 hands out the games and keeps the results; the others play. Alone, it plays with threads.
+// 0 assigns the games and collects the results; the other ranks play. A single rank plays with
+// threads.
 #include <mpi.h>
 
 #include "options.h"

@@ -20,14 +20,14 @@ using match::JobId;
 
 enum Tag { kIdle, kResult, kFailed, kJob, kStop };
 
-// What an idle rank sends: which games it would play, and how.
+// An idle rank sends this identity of the games that it would play, and of its program.
 std::string identity_of(const std::vector<match::SeriesDesc>& series) {
   std::uint64_t digest = match::game_fingerprint(series);
   for (const match::SeriesDesc& desc : series) digest = match::mix_seed(digest ^ desc.digest());
   return std::to_string(digest);
 }
 
-// What a rank sends back: "series game nanoseconds result", or a sentence with kFailed.
+// The answer of a rank: "series game nanoseconds result", or a sentence with kFailed.
 struct Answer {
   JobId id;
   std::int64_t cost_ns = 0;
@@ -72,7 +72,7 @@ struct Message {
   std::string text;
 };
 
-// Waits without holding a core, which the ranks that play need more.
+// Waits without occupying a core: the playing ranks need it.
 std::optional<Message> receive(std::int64_t patience_ns) {
   const std::int64_t until = os::monotonic_ns() + patience_ns;
   MPI_Status status;
@@ -92,7 +92,7 @@ std::optional<Message> receive(std::int64_t patience_ns) {
   return message;
 }
 
-// A game as text: "series game layout seed", and a line for each player.
+// A game as text: "series game layout seed", and one line per player.
 std::string encode(JobId id, const match::SeriesDesc& desc) {
   std::string text = std::to_string(id.series);
   for (const std::uint64_t number :
@@ -108,7 +108,7 @@ struct Job {
   match::GameDesc game;
 };
 
-// Of another rank of this program: it is as encode() writes it.
+// text: by encode() in another rank of this program.
 Job decode(const std::string& text, const std::vector<match::SeriesDesc>& series) {
   Job job;
   std::uint64_t paper = 0, seed = 0;
@@ -124,7 +124,7 @@ Job decode(const std::string& text, const std::vector<match::SeriesDesc>& series
   return job;
 }
 
-// Hands out the games of one call.
+// Assigns the games of one call.
 class Round {
  public:
   Round(match::Schedule& schedule, const match::ExecutorOptions& options,
@@ -191,7 +191,8 @@ class Round {
     if (options_.progress) options_.progress(schedule_, effort_);
   }
 
-  // Something new; else what has been under way for longest, in case its rank is lost.
+  // Assigns a new game. If there is none, the one that has been in progress for longest, whose rank
+  // may be lost.
   void hand_out(int rank) {
     auto id = schedule_.next();
     if (!id && !under_way_.empty()) {

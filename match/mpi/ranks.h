@@ -1,10 +1,9 @@
-// Games handed out to ranks and taken back, by MPI messages of a few hundred bytes. Which rank
-// played a game leaves no trace in the totals (match/schedule.h).
+// Distributes games to ranks and collects the results, by MPI messages of a few hundred bytes. The
+// totals do not depend on the rank that plays a game (match/schedule.h).
 //
-// A rank that is lost: what it had finished is with rank 0 (and on its disk, with --checkpoint);
-// the game it was playing is handed out again once there is nothing else to play. Where the
-// launcher ends the whole job when a rank dies, as mpirun does unless told otherwise, the same
-// command goes on from the checkpoint.
+// A lost rank: rank 0 has its finished games (and on disk, with --checkpoint). The game that it was
+// playing is assigned again when no other games are left. If the launcher ends the job when a rank
+// dies, as mpirun does by default, the same command continues from the checkpoint.
 #pragma once
 
 #include <deque>
@@ -16,19 +15,19 @@
 
 namespace ranks {
 
-// Rank 0, of two or more.
+// Rank 0 of two or more.
 class Coordinator {
  public:
-  // series: what it begins with. A rank that would play it otherwise, since its program or its
-  // options are others, is an error of play_all().
+  // series: the initial ones. play_all() fails if a rank would play them differently, because its
+  // program or options differ.
   explicit Coordinator(const std::vector<match::SeriesDesc>& series);
-  // Tells all ranks that there is no more. Those that still play what is not needed any more are
-  // waited for; one that does not answer is lost, and MPI could not be ended in order with it.
+  // Tells all ranks to stop. Waits for ranks that play games which are no longer needed. A rank
+  // that does not answer is lost, and prevents an orderly shutdown of MPI.
   ~Coordinator();
   Coordinator(const Coordinator&) = delete;
   Coordinator& operator=(const Coordinator&) = delete;
 
-  // Until the schedule is finished. May be called again when more was added to it.
+  // Returns when the schedule is finished. May be called again after series were added to it.
   tl::expected<match::Effort, std::string> play_all(match::Schedule& schedule,
                                                     const match::ExecutorOptions& options);
 
@@ -39,8 +38,8 @@ class Coordinator {
   std::deque<match::JobId> under_way_;
 };
 
-// The others: plays what it is told until there is no more. series: what rank 0 begins with; a
-// series beyond them differs from the first in players, layout and seed alone. The exit code.
+// The other ranks: plays assigned games until rank 0 stops it. Returns the exit code. series: the
+// initial ones of rank 0; later series differ from the first only in players, layout and seed.
 int play(const std::vector<match::SeriesDesc>& series, const std::string& record_folder);
 
 }  // namespace ranks

@@ -34,14 +34,14 @@ std::vector<std::string> split(const std::string& text, char separator) {
   return parts;
 }
 
-// The list with that value in it.
+// A copy of the list with this value.
 foosball::Characters with_value(foosball::Characters list, const VariedNumber& varied,
                                 double value) {
   list[varied.character].body.*foosball::kBodyFields[varied.field].value = value;
   return list;
 }
 
-// Least squares, each point with the same weight. Where the line meets 50 %; NaN if it is flat.
+// The value at which a least-squares line (equal weights) crosses 50 %; NaN if the line is flat.
 double balanced_value(const std::vector<double>& values, const std::vector<double>& scores) {
   const auto n = static_cast<double>(values.size());
   const double mean_value = std::accumulate(values.begin(), values.end(), 0.0) / n;

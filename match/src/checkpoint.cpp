@@ -23,7 +23,7 @@ namespace {
 constexpr const char* kKind = "space-foosball-match checkpoint ";
 constexpr const char* kVersion = "2; ";
 
-// What is played.
+// Identifies the series.
 std::string subject_of(const std::vector<SeriesDesc>& series, const std::string& plan) {
   std::uint64_t digest = 0;
   for (const SeriesDesc& desc : series) digest = mix_seed(digest ^ desc.digest());
@@ -32,7 +32,7 @@ std::string subject_of(const std::vector<SeriesDesc>& series, const std::string&
          std::to_string(digest);
 }
 
-// Why this first line of a file is not the head.
+// The reason why the first line of a file is not the expected header.
 std::string refusal(const std::string& path, const std::string& line, const std::string& subject) {
   if (!line.starts_with(kKind)) return path + " is no checkpoint: give another file";
   if (!line.starts_with(kKind + std::string(kVersion)) || line.starts_with(subject + ";")) {
@@ -65,7 +65,7 @@ tl::expected<Checkpoint::Opened, std::string> Checkpoint::open(
     const std::string& path, const std::vector<SeriesDesc>& series, const std::string& plan) {
   const std::string subject = subject_of(series, plan);
   const std::string head = subject + "; game " + std::to_string(game_fingerprint(series));
-  // A pipe would wait for its reader, a device may have no end.
+  // Opening a pipe would block, and a device may have no end.
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
@@ -77,7 +77,8 @@ tl::expected<Checkpoint::Opened, std::string> Checkpoint::open(
     return tl::unexpected("cannot open the checkpoint " + path + ": " + std::strerror(errno) +
                           "; choose a file in a folder that can be written");
   }
-  // Two runs would play each other's games again. Not every file system has locks.
+  // Two runs would play each other's games again. Some file systems have no locks: then the run
+  // continues without one.
   if (::flock(file.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
     return tl::unexpected("another run has the checkpoint " + path +
                           ": wait for it, or give another file");
@@ -91,7 +92,7 @@ tl::expected<Checkpoint::Opened, std::string> Checkpoint::open(
   opened.checkpoint.reset(new Checkpoint(path, std::move(file)));
   std::string line;
   std::getline(text, line);
-  // A head that was cut off as it was written is written again.
+  // Writes a truncated header again.
   const bool begins = !whole_head && head.starts_with(all);
   if (!begins && line != head) return tl::unexpected(refusal(path, line, subject));
   while (std::getline(text, line)) {
@@ -102,7 +103,7 @@ tl::expected<Checkpoint::Opened, std::string> Checkpoint::open(
       ++opened.unreadable;
     }
   }
-  // After a line that was cut off, a new one must begin.
+  // Completes a truncated last line, so that the next result starts on a new line.
   const std::string missing = begins               ? head.substr(all.size()) + "\n"
                               : all.back() != '\n' ? "\n"
                                                    : "";
@@ -134,7 +135,7 @@ tl::expected<void, std::string> Checkpoint::write(const std::string& text) {
 
 namespace {
 
-// Rules and tuning as a recording's head has them.
+// Digest of the default rules and tuning, encoded as in a recording's header.
 std::uint64_t digest_of_defaults() {
   wire::JournalEncoder encoder;
   std::vector<std::byte> bytes;
@@ -148,7 +149,7 @@ std::uint64_t digest_of_defaults() {
 }  // namespace
 
 std::uint64_t game_fingerprint(const std::vector<SeriesDesc>& series) {
-  // Values of judgment are in the series' text: what is played is the level that they are of.
+  // The series' text contains the values of judgment; the sample play uses the level without them.
   std::set<std::string> players;
   std::set<foosball::Layout> layouts;
   for (const SeriesDesc& desc : series) {

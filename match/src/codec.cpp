@@ -18,7 +18,7 @@ std::vector<std::uint64_t*> counts_of(foosball::Statistics& statistics) {
   return std::move(pointers.all);
 }
 
-// FNV-1a, 64 bits: finds a line that was cut off or mangled, not one that was forged.
+// FNV-1a, 64 bits. It detects truncated or damaged lines, not forged ones.
 std::uint64_t check_of(std::string_view text) {
   std::uint64_t hash = 14695981039346656037u;
   for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211u;

@@ -12,7 +12,7 @@
 namespace match {
 namespace {
 
-// E|N(0, I)| in n dimensions, by the series that Hansen 2016 gives.
+// E|N(0, I)| in n dimensions, by the series of Hansen 2016.
 double expected_length(double n) {
   return std::sqrt(n) * (1.0 - 1.0 / (4.0 * n) + 1.0 / (21.0 * n * n));
 }
@@ -21,7 +21,7 @@ double length(const std::vector<double>& v) {
   return std::sqrt(std::inner_product(v.begin(), v.end(), v.begin(), 0.0));
 }
 
-// Noise must neither stop the search nor let it jump over the whole cube.
+// Limits against noise: it must not stop the search, nor make it jump across the whole cube.
 constexpr double kLeastStep = 0.01, kMostStep = 0.5;
 
 }  // namespace
@@ -56,7 +56,7 @@ EvolutionStrategy::EvolutionStrategy(Point start, double step, std::size_t popul
   c_s_ = (mu_w_ + 2.0) / (n + mu_w_ + 5.0);
   d_s_ = 1.0 + c_s_ + 2.0 * std::max(0.0, std::sqrt((mu_w_ - 1.0) / (n + 1.0)) - 1.0);
   c_c_ = (4.0 + mu_w_ / n) / (n + 4.0 + 2.0 * mu_w_ / n);
-  const double faster = (n + 2.0) / 3.0;  // n numbers are learned sooner than n (n + 1) / 2
+  const double faster = (n + 2.0) / 3.0;  // learning rates for n instead of n (n + 1) / 2 numbers
   c_1_ = std::min(0.5, faster * 2.0 / ((n + 1.3) * (n + 1.3) + mu_w_));
   c_mu_ = std::min(1.0 - c_1_,
                    faster * 2.0 * (mu_w_ - 2.0 + 1.0 / mu_w_) / ((n + 2.0) * (n + 2.0) + mu_w_));
@@ -110,7 +110,7 @@ void EvolutionStrategy::tell(const std::vector<double>& values) {
   means_.push_back(mean_);
   const double n = static_cast<double>(size_), told = static_cast<double>(means_.size());
   const double relative = length(path_s_) / expected_length(n);
-  // A path that has grown too long by itself must not stretch the variances too.
+  // While |p_s| is large, p_c must not increase the variances too.
   const double unbiased =
       relative / std::sqrt(1.0 - plain_exp(std::max(-600.0, 2.0 * told * plain_log(1.0 - c_s_))));
   const double h = unbiased < 1.4 + 2.0 / (n + 1.0) ? 1.0 : 0.0;

@@ -33,8 +33,8 @@ class Pool {
     return !problem_.empty() || (options_.stop != nullptr && options_.stop->load());
   }
 
-  // A thread ends when nothing is left that may be needed: what is under way elsewhere can only
-  // make it less.
+  // A thread ends when no game is left that may be needed: games in progress elsewhere can only
+  // reduce the need.
   void work() {
     while (true) {
       JobId id;

@@ -16,7 +16,7 @@ using foosball::Command;
 using foosball::kRods;
 using foosball::kTeams;
 
-// Keeps a journal in memory, as the server's recorder keeps one on disk.
+// A journal in memory, in the format of the server's recorder.
 class MemorySink {
  public:
   explicit MemorySink(std::vector<std::byte>& out) : out_(out) {}
@@ -70,7 +70,7 @@ class Game {
   }
 
  private:
-  // True when a side has won.
+  // Returns true when a team has won.
   bool step(std::uint64_t number) {
     const foosball::MatchView& view = match_.view();
     open_or_go_on(number, view);
@@ -95,7 +95,8 @@ class Game {
     return false;
   }
 
-  // As a recording has the targets. Most hands are still: what stays is not put there again.
+  // Quantizes the targets as a recording does. Most targets do not change: those keep their
+  // quantized values.
   void put_on_grid(const foosball::RodTargets& hands) {
     for (int rod = 0; rod < kRods; ++rod) {
       if (hands[rod] == hands_[rod]) continue;
@@ -105,7 +106,8 @@ class Game {
     hands_ = hands;
   }
 
-  // Past the screens before play by commands, and past the ceremony as soon as the match allows it.
+  // Passes the screens before play by commands, and leaves the ceremony as soon as the match
+  // permits it.
   void open_or_go_on(std::uint64_t tick, const foosball::MatchView& view) {
     constexpr double kCeremony = 0.6;  // [s]
     commands_.clear();
@@ -131,7 +133,7 @@ class Game {
   MemorySink sink_;
   std::optional<server::RecordSchedule<MemorySink>> record_;
   wire::JournalTick tick_;
-  foosball::RodTargets hands_{}, on_grid_{};  // of the last tick
+  foosball::RodTargets hands_{}, on_grid_{};  // of the previous tick
   std::vector<Command> commands_;
 };
 

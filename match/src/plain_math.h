@@ -1,6 +1,6 @@
-// Logarithm and exponential of basic operations alone, which give the same bits on every machine:
-// the standard library's do not, and a search that goes on elsewhere would draw other samples.
-// Within 4 ulp (plain_math_test).
+// Logarithm and exponential from basic operations only, with the same bits on every machine. The
+// standard library's results differ between machines, and a search continued elsewhere would draw
+// other samples. Error within 4 ulp (plain_math_test).
 #pragma once
 
 #include <cmath>

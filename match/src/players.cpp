@@ -1,4 +1,4 @@
-// The registry of players: one row for each kind.
+// The registry of players: one row per kind.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -40,13 +40,13 @@ class Idle final : public Player {
   void play(const MatchView&, RodTargets&, std::uint8_t) override {}
 };
 
-// All rods of the team spin forward without end, each with a man kept level with the ball: what
-// wins against whoever only guards, and what the ITSF forbids.
+// All rods of the team spin forward continuously, each with a man level with the ball. It wins
+// against players who only guard, and ITSF rules forbid it.
 class Spinner final : public Player {
  public:
   explicit Spinner(int team) : team_(team) {}
   void play(const MatchView& view, RodTargets& targets, std::uint8_t rods) override {
-    constexpr double kRate = 60.0;  // a hard flick of the wrist [rad/s]
+    constexpr double kRate = 60.0;  // a fast flick of the wrist [rad/s]
     constexpr double kSpeed = 1.5;  // of the slide [m/s]
     const bool turns = view.screen == foosball::Screen::play && !view.paused;
     const double rate = turns ? -foosball::attack_sign(team_) * kRate : 0.0;
@@ -82,8 +82,8 @@ class Spinner final : public Player {
   std::array<double, kRods> slide_{};
 };
 
-// A person with one hand, as with a mouse: another player that has only the rod that this person
-// would take. Which one, and what the others do, is up to the assists (foosball/assists.h).
+// A person with one hand, such as with a mouse: plays the inner player with one rod, the one that
+// this person would take. The assists choose this rod and move the others (foosball/assists.h).
 class OneRod final : public Player {
  public:
   OneRod(int team, std::unique_ptr<Player> inner) : team_(team), inner_(std::move(inner)) {}
@@ -118,7 +118,7 @@ class OneRod final : public Player {
 
   void take_a_rod(const foosball::AssistView& seen) {
     const int rod = assists_->rod_to_take(seen, {}, rod_);
-    constexpr int kSettle = 100;  // ticks: a hand that has just changed stays for a while
+    constexpr int kSettle = 100;  // ticks: minimum time between changes of rod
     if (++since_ >= kSettle && rod != rod_) {
       rod_ = rod;
       since_ = 0;
@@ -144,7 +144,7 @@ class OneRod final : public Player {
   std::unique_ptr<Player> inner_;
 };
 
-// The whole name counts.
+// Parses the complete name.
 Made make_computer(const PlayerDesc& desc) {
   const auto at = desc.name.find('@');
   const auto spec = foosball::parse_player(desc.name.substr(0, at));
@@ -159,7 +159,7 @@ Made make_computer(const PlayerDesc& desc) {
 }
 
 Made make_one_rod(const PlayerDesc& desc, const std::string& argument) {
-  // Of itself any number of times, it would overflow the stack.
+  // Nested one-rod players could overflow the stack.
   if (argument.starts_with("one-rod"))
     return tl::unexpected(std::string("one-rod is of another player: give one such as one-rod:2"));
   auto inner = make_player({argument.empty() ? "classic" : argument, desc.team, desc.seed});
@@ -178,7 +178,7 @@ struct Kind {
   const char* name;
   const char* syntax;
   const char* meaning;
-  Made (*make)(const PlayerDesc&, const std::string& argument);  // what follows the colon
+  Made (*make)(const PlayerDesc&, const std::string& argument);  // text after the colon
 };
 
 constexpr Kind kKinds[] = {

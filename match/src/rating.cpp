@@ -9,7 +9,7 @@ constexpr double kEloPerNat = 173.71779276130073;  // 400 / ln 10
 
 struct Games {
   std::size_t first, second;
-  double n, points;  // games; of the first
+  double n, points;  // number of games; points of the first player
 };
 
 std::vector<Games> games_of(const std::vector<Encounter>& encounters) {
@@ -26,7 +26,7 @@ double logistic(double x) {
   return 1.0 / (1.0 + std::exp(-x));
 }
 
-// Solves A x = b in place by elimination with pivots; A is row-major, n x n.
+// Solves A x = b by Gaussian elimination with pivoting; A is row-major, n x n.
 std::vector<double> solve(std::vector<double> A, std::vector<double> b) {
   const std::size_t n = b.size();
   for (std::size_t k = 0; k < n; ++k) {
@@ -49,7 +49,7 @@ std::vector<double> solve(std::vector<double> A, std::vector<double> b) {
   return b;
 }
 
-// Minus the Hessian of the log-likelihood, with the mean fixed by 1/n added everywhere.
+// Negative Hessian of the log-likelihood. The added 1/n everywhere fixes the mean.
 std::vector<double> information(std::size_t n, const std::vector<Games>& games,
                                 const std::vector<double>& r) {
   std::vector<double> H(n * n, 1.0 / static_cast<double>(n));
@@ -66,7 +66,7 @@ std::vector<double> information(std::size_t n, const std::vector<Games>& games,
 
 }  // namespace
 
-// Newton's method: the log-likelihood is concave.
+// Newton's method; the log-likelihood is concave.
 std::vector<Rating> rate(std::size_t n, const std::vector<Encounter>& encounters) {
   const std::vector<Games> games = games_of(encounters);
   std::vector<double> r(n, 0.0);

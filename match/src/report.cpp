@@ -25,12 +25,12 @@ std::string format(double value) {
   const char* digits = size >= 100.0                ? "%.0f"
                        : size >= 10.0               ? "%.1f"
                        : size >= 0.1 || size == 0.0 ? "%.2f"
-                                                    : "%.3g";  // a length in metres
+                                                    : "%.3g";  // for lengths in metres
   std::snprintf(text, sizeof text, digits, value);
   return text;
 }
 
-// What is printed of a goal is what it is judged by.
+// A goal is printed with exactly the digits of the number that is compared.
 std::string number(double value) {
   char text[40];
   std::snprintf(text, sizeof text, "%g", value);
@@ -57,7 +57,7 @@ Goal around(double value, double low, double high) {
   return {low, high, with_note(number(value), within(low, high).text.c_str())};
 }
 
-// Open: a bound is within two standard errors of the value, so chance alone may have decided.
+// open: a bound is within two standard errors of the value, so that chance may decide.
 Figure::Judgment judge(const Goal& goal, double value, double error) {
   if (goal.text.empty()) return Figure::Judgment::none;
   if (std::isnan(value)) return Figure::Judgment::unknown;
@@ -81,13 +81,13 @@ class List {
   void add(const char* name, double value, const char* unit) {
     figures.push_back({section_, name, value, unit, "", Figure::Judgment::none});
   }
-  // error: standard error of the value, where one is known.
+  // error: standard error of the value, if known.
   void add(const char* name, double value, const char* unit, const Goal& goal,
            double error = kNone) {
     figures.push_back({section_, name, value, unit, goal.text, judge(goal, value, error), error});
   }
-  // Of a share of n, each by itself [%]. One more of either kind is counted for the error, so that
-  // three of three are not exact (Agresti and Coull).
+  // A fraction of n independent cases [%]. The error counts one more case of either kind, so that
+  // three of three do not count as exact (Agresti and Coull).
   void add_share(const char* name, std::uint64_t part, std::uint64_t n, const Goal& goal) {
     const double p = ratio(part + 1, n + 2);
     const double error = 100.0 * std::sqrt(p * (1.0 - p) / static_cast<double>(n + 2));
@@ -141,8 +141,8 @@ void add_hands(List& list, const Statistics& s) {
   list.add("spins beyond a turn", per_minute(sum(s.spins), s.play_ticks), "a minute", at_most(0.0));
 }
 
-// By the rules that the matches are played by: a ball out of reach is dead after so long, one in
-// reach that nobody plays on after so long.
+// The limits are those of the matches' rules: a ball out of reach becomes dead after this time, and
+// so does a ball within reach that nobody plays.
 void add_longest(List& list, const Statistics& s, const char* name) {
   list.add(name, static_cast<double>(s.longest_unreachable_ticks) * foosball::kTick, "s",
            at_most(foosball::arcade_rules().dead_ball_seconds, "rule"));
@@ -291,8 +291,8 @@ namespace {
 
 enum class Part { main, other_layout, passive, spinner, one_rod, characters };
 
-// Of the plan's series those that tell something: a report of a player who has no hand, spins or
-// has one rod already leaves out what cannot be, or would be the same again.
+// The useful series of the plan. A report of a player who has no hand, spins, or already has one
+// rod omits those that are impossible or redundant.
 std::vector<Part> parts_of(const ReportPlan& plan) {
   std::vector<Part> parts{Part::main, Part::other_layout};
   if (plan.home == "idle") return parts;
@@ -319,13 +319,13 @@ foosball::Layout other(foosball::Layout layout) {
   return layout == foosball::Layout::paper ? foosball::Layout::tournament : foosball::Layout::paper;
 }
 
-// Of all parts but the characters.
+// For every part except the characters.
 SeriesDesc series_of(const ReportPlan& plan, Part part) {
   SeriesDesc desc = base_of(plan);
   if (part == Part::other_layout) desc.layout = other(plan.layout);
   if (part == Part::passive) {
     desc.players[1] = "idle";
-    desc.max_games = std::min<std::uint64_t>(plan.matches, 8);  // they are long
+    desc.max_games = std::min<std::uint64_t>(plan.matches, 8);  // these matches are long
   }
   if (part == Part::spinner) desc.players = {"spinner", plan.home};
   if (part == Part::one_rod) desc.players = {"one-rod:" + plan.home, plan.away};
@@ -341,7 +341,8 @@ std::string title(const Series& series) {
 
 void add_points(List& list, const char* name, const Series& series, const Goal& goal) {
   if (series.taken() < 2) return list.add(name, kNone, "% points", goal);
-  // With a pair lost and a pair won added: pairs that ended alike are few, not exact.
+  // Adds a lost and a won pair for the error, so that a few pairs with the same result do not count
+  // as exact.
   PairCounts pairs = series.pairs();
   ++pairs.front();
   ++pairs.back();
@@ -370,7 +371,7 @@ List against_idle(const Series& series) {
   return list;
 }
 
-// One series each.
+// One series per character.
 List of_characters(const ReportPlan& plan, std::span<const Series> series) {
   List list("characters, each against all others, played by " + plan.home + ", " +
             std::to_string(series.front().taken()) + " matches each");
@@ -412,7 +413,7 @@ std::vector<SeriesDesc> report_series(const ReportPlan& plan) {
       series.push_back(series_of(plan, part));
       continue;
     }
-    // Each character against the others, half as many matches each: equal players.
+    // Each character against the others, with half as many matches, between equal players.
     SeriesDesc desc = base_of(plan);
     desc.players[1] = plan.home;
     desc.max_games = std::max<std::uint64_t>(2, plan.matches / 4 * 2);

@@ -15,7 +15,8 @@ void Schedule::know(JobId id, const GameResult& result) {
   take_known(id.series);
 }
 
-// The series that is least ahead of its results goes first, so that little is played in vain.
+// Prefers the series with the fewest games assigned beyond its results, so that few games are
+// played unnecessarily.
 std::optional<JobId> Schedule::next() {
   while (!returned_.empty()) {
     const JobId id = returned_.back();

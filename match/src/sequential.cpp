@@ -15,8 +15,8 @@ double points(std::size_t outcome) {
   return 0.25 * static_cast<double>(outcome);
 }
 
-// Nearest distribution to p of mean s, as factors p_i / pk_i = 1 + t (a_i - s). The sum falls with
-// t between the two poles, so that bisection finds its root.
+// The distribution of mean s nearest to p, as factors p_i / pk_i = 1 + t (a_i - s). The sum
+// decreases with t between its two poles, so bisection finds its root t.
 double tilt(const Frequencies& p, double s) {
   double low = -1.0 / (1.0 - s), high = 1.0 / s;
   for (int i = 0; i < 200; ++i) {
@@ -69,8 +69,8 @@ double score_error(const PairCounts& pairs) {
 double log_likelihood_ratio(const PairCounts& pairs, double score0, double score1) {
   const double n = static_cast<double>(pair_count(pairs));
   if (n == 0.0) return 0.0;
-  // Outcomes not seen yet count as 0.001 of one: without them no distribution of the other mean
-  // may exist.
+  // Unseen outcomes count as 0.001 of one: otherwise a distribution with the other mean may not
+  // exist.
   Frequencies p{};
   double sum = 0.0;
   for (std::size_t i = 0; i < p.size(); ++i) {
@@ -103,8 +103,9 @@ Verdict SequentialTest::verdict(const PairCounts& pairs) const {
 }
 
 void BandTest::take(std::size_t half_points) {
-  // The share that is bet. Its growth is best for a mean 0.1 off the hypothesis (0.1 over the
-  // pairs' variance of 1/8 and 0.1 squared) and still positive for one that is 0.05 off.
+  // The fraction of the capital that is bet. Its growth is largest for a mean 0.1 away from the
+  // hypothesis (0.1 over the sum of the pairs' variance of 1/8 and 0.1 squared), and still positive
+  // at 0.05.
   constexpr double kStake = 0.7;
   const double s = points(half_points), c = band_.limit;
   const std::array<double, 4> gain{c - s, s - (1.0 - c), s - c, (1.0 - c) - s};

@@ -31,7 +31,7 @@ std::string SeriesDesc::text() const {
       text += std::to_string(value);
     }
   };
-  // Of those that are not the defaults, all digits: another tuning is another series.
+  // The values that differ from the defaults, with all digits: another tuning makes another series.
   visit_fields(tuning, [&](const foosball::TuningField& field, double value) {
     if (value == foosball::Tuning{}.*field.value) return;
     char digits[40];

@@ -6,10 +6,10 @@
 namespace match {
 namespace {
 
-// By the parts of play that they shape: flight, bounce, exaggeration, strength of the hand, sag.
+// Number of levels of a value that is varied alone.
 constexpr int kLevels = 5;
 
-// Van der Corput's sequence in this base: the digits of the index, mirrored at the point.
+// Van der Corput's sequence in this base: the digits of the index, reversed behind the point.
 double radical_inverse(std::uint64_t index, std::uint64_t base) {
   double value = 0.0, digit = 1.0 / static_cast<double>(base);
   for (; index > 0; index /= base, digit /= static_cast<double>(base)) {
@@ -35,6 +35,8 @@ double between(const StudiedValue& studied, double share) {
 
 }  // namespace
 
+// Grouped by the part of play that they affect: flight, bounce, exaggeration, strength of the hand,
+// sag.
 const std::vector<StudiedValue>& studied_values() {
   static const std::vector<StudiedValue> kValues{
       {"gravity", 8.0, 24.0},         {"field_restitution", 0.3, 0.85},
@@ -61,7 +63,7 @@ std::vector<StudyPoint> study_points(std::uint64_t samples, const foosball::Tuni
     }
   }
   constexpr std::uint64_t kBases[] = {2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37};
-  // The first points of the higher bases lie on a line.
+  // The first points of the larger bases lie on a line.
   constexpr std::uint64_t kSkipped = 409;
   for (std::uint64_t sample = 0; sample < samples; ++sample) {
     StudyPoint point{"fill", about};

@@ -19,14 +19,15 @@ using foosball::kJudgmentFields;
 
 constexpr std::array kLayouts{foosball::Layout::tournament, foosball::Layout::paper};
 
-// Seeds of generations, and of the validation, far from one another.
+// Distance between the seeds of the generations and of the validation.
 constexpr std::uint64_t kSeedsApart = 100'000;
 
 double share_of(const JudgmentField& field, double value) {
   return (value - field.least) / (field.most - field.least);
 }
 
-// Four digits are more than any search tells apart; a sample's name is its whole value.
+// Four digits are finer than any search can resolve. So a sample's name contains its complete
+// value.
 double value_at(const JudgmentField& field, double share) {
   const double value = std::lerp(field.least, field.most, std::clamp(share, 0.0, 1.0));
   char digits[32];
@@ -36,7 +37,7 @@ double value_at(const JudgmentField& field, double share) {
   return std::clamp(rounded, field.least, field.most);
 }
 
-// Of the first player's and the second's goals; half a goal each keeps the share of none defined.
+// Goals of the first and the second player. Half a goal each defines the fraction without goals.
 struct Goals {
   double own = 0.5, other = 0.5;
   void add(const Series& series) {
@@ -44,11 +45,11 @@ struct Goals {
     other += static_cast<double>(series.goals()[1]);
   }
   double share() const { return own / (own + other); }
-  // As if every goal were a draw of its own.
+  // Assumes independent goals.
   double error() const { return std::sqrt(share() * (1.0 - share()) / (own + other)); }
 };
 
-// Every opponent and layout counts the same, however many goals fall there.
+// Every opponent and layout has the same weight, regardless of its number of goals.
 struct MeanShare {
   double value = 0.0, error = 0.0;
 };
@@ -77,7 +78,7 @@ std::string shown(double value) {
   return text;
 }
 
-// The two values of a field that a screening compares.
+// The two values of a field that the screening compares.
 std::array<double, 2> low_and_high(const TrainPlan& plan, std::size_t index,
                                    const Judgment& start) {
   const JudgmentField& field = kJudgmentFields[index];
@@ -85,8 +86,8 @@ std::array<double, 2> low_and_high(const TrainPlan& plan, std::size_t index,
   return {value_at(field, at - plan.step), value_at(field, at + plan.step)};
 }
 
-// Points of the design: rows of the Hadamard matrix of the smallest power of 2 beyond the number of
-// fields, then the same rows with the signs exchanged.
+// Points of the design: the rows of the Hadamard matrix whose size is the smallest power of 2 above
+// the number of fields, then the same rows with exchanged signs.
 std::size_t design_points(const TrainPlan& plan) {
   return 2 * std::bit_ceil(plan.fields.size() + 1);
 }

@@ -1,4 +1,4 @@
-// What is varied of a character, and against whom it then plays.
+// The variation of a character's number, and the opponents.
 #include "match/character_study.h"
 
 #include <gtest/gtest.h>
@@ -65,7 +65,7 @@ TEST(VariedNumber, ChangesThatOfOneCharacterAlone) {
   EXPECT_EQ(opponents, (std::set<int>{0, 2, 3, 4, 5}));
 }
 
-// Twenty matches at each value, of which the character wins the given share.
+// Twenty matches at each value, of which the character wins the given number of tenths.
 std::vector<Series> played(const VariedNumber& varied, std::initializer_list<int> tenths) {
   std::vector<Series> series;
   for (const int wins : tenths) {
@@ -89,7 +89,7 @@ TEST(VariedNumber, HasItsBalanceWhereTheLineThroughThePointsMeetsAHalf) {
   EXPECT_NEAR(figures[0].value, 40.0, 1e-9);
   EXPECT_NEAR(figures[1].value, 60.0, 1e-9);
   EXPECT_NEAR(figures[2].value, 0.06, 1e-9);
-  // Printed as what can go into a file, and not as "0.06" of anything from 0.055 to 0.065.
+  // Printed with all digits, for use in a file, instead of "0.06" for anything from 0.055 to 0.065.
   const VariedNumber wide{.character = 0, .field = 6, .low = 0.04, .high = 0.084, .steps = 2};
   EXPECT_NE(as_table(varied_figures(wide, played(wide, {4, 6}))).find(" 0.062 "),
             std::string::npos);

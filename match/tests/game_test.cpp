@@ -66,7 +66,7 @@ TEST(Game, OfALevelIsPlayedWithTheValuesOfJudgmentThatItsNameHas) {
   EXPECT_NE(hash("5@hands_goalie=0,hands_defense=0.2"), usual);
 }
 
-// Goalie and defence follow by the assist.
+// The assist moves goalie and defence.
 TEST(Player, OneRodHasMidfieldOrAttackInHandNeverBoth) {
   GameDesc game = short_game();
   game.players = {"one-rod:classic:0.9", "classic"};

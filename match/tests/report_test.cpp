@@ -1,4 +1,4 @@
-// What --report and --stuck-balls play, and how their figures are judged.
+// The matches of --report and --stuck-balls, and the evaluation of their results.
 #include "match/report.h"
 
 #include <gtest/gtest.h>

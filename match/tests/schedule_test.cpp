@@ -1,4 +1,4 @@
-// Totals do not depend on who played what and when; a killed run goes on where it was.
+// Totals do not depend on the assignment and order of games; a killed run continues.
 #include "match/schedule.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ SeriesDesc short_series(std::uint64_t seed, std::uint64_t games) {
   return desc;
 }
 
-// A result that depends on the game alone.
+// A result that depends only on the game.
 GameResult made_up(const GameDesc& game) {
   GameResult result;
   result.winner = static_cast<int>(mix_seed(game.seed * 2 + game.variant) % 3) - 1;
@@ -52,7 +52,7 @@ TEST(Schedule, GivesTheSameTotalsInWhateverOrderResultsCome) {
   std::vector<SeriesDesc> plan{short_series(1, 30), short_series(100, 400)};
   plan[1].test = SequentialTest{0.4, 0.6, 0.05, 0.05};
   std::vector<std::uint64_t> digests, taken;
-  for (const std::size_t ahead : {1u, 2u, 7u, 50u}) {  // games under way at once
+  for (const std::size_t ahead : {1u, 2u, 7u, 50u}) {  // games in progress at the same time
     Schedule schedule(plan);
     std::vector<JobId> under_way;
     std::uint64_t order = ahead;
@@ -66,7 +66,7 @@ TEST(Schedule, GivesTheSameTotalsInWhateverOrderResultsCome) {
       const JobId id = under_way[pick];
       under_way.erase(under_way.begin() + static_cast<std::ptrdiff_t>(pick));
       if (mix_seed(order++) % 5 == 0) {
-        schedule.give_back(id);  // whoever played it is gone
+        schedule.give_back(id);  // its player is lost
       } else {
         schedule.complete(id, made_up(schedule.game(id)));
       }
@@ -125,7 +125,7 @@ TEST_F(CheckpointFile, LetsAKilledRunGoOnToTheSameTotals) {
                                              play_game(whole.game({0, game})).result));
     }
   }
-  // The last line was being written when the power went.
+  // A last line truncated by a power failure.
   std::ofstream(path, std::ios::app) << "0 5 " << plan[0].digest() << ' '
                                      << encode_result(made_up(whole.game({0, 5}))).substr(0, 20);
   auto opened = Checkpoint::open(path, plan);
@@ -154,7 +154,7 @@ TEST_F(CheckpointFile, OfOtherMatchesIsRefused) {
   EXPECT_FALSE(Checkpoint::open("/no/such/folder/file", plan).has_value());
 }
 
-// As a changed level leaves it: the same matches, another fingerprint.
+// As after a change of a level: the same matches, another fingerprint.
 TEST_F(CheckpointFile, OfAnotherVersionOfTheGameIsRefused) {
   ASSERT_TRUE(Checkpoint::open(path, plan).has_value());
   std::string head;
@@ -183,7 +183,7 @@ TEST_F(CheckpointFile, OfAnotherKindIsRefusedAndLeftAsItIs) {
   }
 }
 
-// Killed at whatever byte: what is whole is read, and the run goes on.
+// Killed at any byte: complete lines are read, and the run continues.
 TEST_F(CheckpointFile, CutOffAnywhereIsGoneOnFrom) {
   {
     auto opened = Checkpoint::open(path, plan);
@@ -203,7 +203,7 @@ TEST_F(CheckpointFile, CutOffAnywhereIsGoneOnFrom) {
     {
       auto opened = Checkpoint::open(path, plan);
       ASSERT_TRUE(opened.has_value()) << size << ": " << opened.error();
-      // A line without its end may be whole all the same.
+      // A line without its newline may still be complete.
       ASSERT_GE(static_cast<long>(opened->lines.size()), std::max(0l, lines - 1)) << size;
       ASSERT_LE(static_cast<long>(opened->lines.size()), std::max(0l, lines)) << size;
       ASSERT_TRUE(opened->checkpoint->append({0, 5}, plan[0].digest(), {}));
@@ -237,7 +237,7 @@ TEST(GameFingerprint, TellsPlayersAndLayouts) {
   EXPECT_EQ(of("3@patience=1", Layout::paper), of("3", Layout::paper)) << "its text is the series'";
 }
 
-// A rank that was thought lost comes back with a game that another has played since.
+// A rank believed lost returns a game that another has played since.
 TEST(Schedule, TakesEachGameOnce) {
   Schedule schedule({short_series(1, 6)});
   const auto first = schedule.next(), second = schedule.next();

@@ -12,7 +12,7 @@
 namespace match {
 namespace {
 
-// Numbers in [0, 1), the same everywhere.
+// Numbers in [0, 1), identical on all platforms.
 class Uniform {
  public:
   explicit Uniform(std::uint64_t seed) : state_(seed) {}
@@ -30,7 +30,7 @@ TEST(Elo, OfOddsTenToOneIs400) {
 }
 
 TEST(LogLikelihoodRatio, OfPairsThatAreAllWonOrLostIsThatOfCoins) {
-  // Only 0 and 2 points: the distribution of a given mean is unique, log (s1 / s0) a win.
+  // Only 0 and 2 points: the distribution with a given mean is unique, log (s1 / s0) per win.
   const PairCounts pairs{400, 0, 0, 0, 600};
   const double expected = 600 * std::log(0.6 / 0.5) + 400 * std::log(0.4 / 0.5);
   EXPECT_NEAR(log_likelihood_ratio(pairs, 0.5, 0.6), expected, 0.02);
@@ -54,8 +54,8 @@ TEST(LogLikelihoodRatio, NearsTheNormalApproximationForCloseHypotheses) {
   EXPECT_NEAR(log_likelihood_ratio(pairs, s0, s1), expected, 0.01 * std::fabs(expected) + 0.005);
 }
 
-// As Fishtest published them for Stockfish's pull requests 2950, 3098 and 3209 (2020), with bounds
-// in logistic Elo.
+// As published by Fishtest for Stockfish's pull requests 2950, 3098 and 3209 (2020), with bounds in
+// logistic Elo.
 TEST(LogLikelihoodRatio, IsThatOfPublishedTests) {
   struct Published {
     PairCounts pairs;
@@ -82,7 +82,7 @@ TEST(SequentialTest, HasWaldsBounds) {
   EXPECT_EQ(test.verdict({40, 0, 0, 0, 0}), Verdict::h0);
 }
 
-// How often the test decides for H1, of 1000 runs of pairs of independent games.
+// Fraction of 1000 runs of pairs of independent games in which the test decides for H1.
 double share_of_h1(const SequentialTest& test, double win, double draw, double& mean_pairs) {
   Uniform uniform(7);
   int h1 = 0;
@@ -117,17 +117,17 @@ TEST(SequentialTest, ErrsAboutAsOftenAsItWasTold) {
     const double wrong_h0 = 1.0 - share_of_h1(test, 0.6 - 0.5 * draw, draw, pairs1);
     std::printf("draws %.1f: wrong for H1 %.3f after %.0f pairs, for H0 %.3f after %.0f\n", draw,
                 wrong_h1, pairs0, wrong_h0, pairs1);
-    // 0.05, and 3 standard deviations of 1000 runs, 0.021.
+    // 0.05 plus 3 standard deviations of 1000 runs, 0.021.
     EXPECT_LT(wrong_h1, 0.071);
     EXPECT_LT(wrong_h0, 0.071);
     EXPECT_GT(wrong_h1 + wrong_h0, 0.02);
   }
 }
 
-// Of pairs of independent games of this mean score, until the band's test decides or gives up.
+// Pairs of independent games with this mean score, until the band's test decides or gives up.
 struct BandRuns {
-  double within = 0.0, beyond = 0.0;  // shares of the runs
-  double matches = 0.0;               // mean of a run
+  double within = 0.0, beyond = 0.0;  // fractions of the runs
+  double matches = 0.0;               // mean per run
 };
 BandRuns band_runs(double score, double draw, int runs = 1000, int max_pairs = 400) {
   Uniform uniform(static_cast<std::uint64_t>(1e6 * score + 1e3 * draw));
@@ -152,7 +152,7 @@ BandRuns band_runs(double score, double draw, int runs = 1000, int max_pairs = 4
 }
 
 TEST(BandTest, ErrsAtTheEdgesOfTheBandAsOftenAsItWasToldAtMost) {
-  // 0.05, and 2 standard deviations of 1000 runs, 0.014. At 0.6 both verdicts are errors: of a
+  // 0.05 plus 2 standard deviations of 1000 runs, 0.014. At 0.6 both verdicts are errors: of a
   // score just outside, and of one just inside.
   for (const double edge : {0.4, 0.6}) {
     for (const double draw : {0.0, 0.2}) {
@@ -173,7 +173,7 @@ TEST(BandTest, DecidesForWhatIsClear) {
   struct Case {
     double score;
     bool beyond;
-    double matches;  // at most, of a run; measured 236, 194, 66
+    double matches;  // upper bound per run; measured 236, 194, 66
   };
   for (const Case& c : {Case{0.5, false, 260}, Case{0.3, true, 210}, Case{0.8, true, 80}}) {
     const BandRuns runs = band_runs(c.score, 0.0);

@@ -1,4 +1,4 @@
-// The design of the study of tuning values, and what one of its points plays.
+// The design of the study of tuning values, and the series of one of its points.
 #include "match/study.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ TEST(Study, HasTheDefaultsEachValueAloneAndSamplesThatFillTheBox) {
     EXPECT_TRUE(in_range(point.tuning)) << point.name;
     EXPECT_TRUE(names.insert(point.name).second) << point.name << " twice";
   }
-  // In each direction every quarter has its share of the samples.
+  // In each dimension every quarter has its fraction of the samples.
   for (const StudiedValue& studied : studied_values()) {
     const auto field =
         foosball::kTuningFields[static_cast<std::size_t>(foosball::tuning_index(studied.name))];

@@ -1,5 +1,4 @@
-// The evolution strategy on functions whose maximum is known, and a search over a player's
-// judgment.
+// The evolution strategy on functions with a known maximum, and a search over a player's judgment.
 #include "match/training.h"
 
 #include <gtest/gtest.h>
@@ -25,7 +24,7 @@ double distance(const Point& a, const Point& b) {
   return std::sqrt(sum);
 }
 
-// A bell about kBest, narrow in one direction and wide in another, with the noise of a few matches.
+// A bell curve around kBest with different widths per coordinate, and the noise of a few matches.
 class NoisyBell {
  public:
   explicit NoisyBell(double noise) : noise_(noise) {}
@@ -35,7 +34,7 @@ class NoisyBell {
       const double scale = i == 0 ? 0.15 : i == 1 ? 0.6 : 0.3;
       sum += std::pow((x[i] - kBest[i]) / scale, 2);
     }
-    // Twelve uniform numbers: nearly normal, of deviation 1.
+    // The sum of twelve uniform numbers: nearly normal, standard deviation 1.
     double bell = -6.0;
     for (int k = 0; k < 12; ++k) {
       random_ = mix_seed(random_);
@@ -66,7 +65,7 @@ TEST(EvolutionStrategy, FindsTheMaximumWithoutNoise) {
   }
 }
 
-// From 0.56 away. Noise of 0.05 is that of 100 goals.
+// From a distance of 0.56. Noise of 0.05 corresponds to 100 goals.
 TEST(EvolutionStrategy, FindsTheMaximumOfANoisyFunction) {
   const double begin = distance(Point(kBest.size(), 0.5), kBest);
   double sum = 0.0;
@@ -90,7 +89,7 @@ TEST(EvolutionStrategy, StaysInTheCubeAndIsTheSameForTheSameSeed) {
         ASSERT_GE(coordinate, 0.0);
         ASSERT_LE(coordinate, 1.0);
       }
-      values.push_back(x[0] - x[1]);  // its maximum lies in a corner
+      values.push_back(x[0] - x[1]);  // the maximum is in a corner
     }
     a.tell(values);
     b.tell(values);
@@ -118,8 +117,8 @@ TEST(PlainMath, IsWithinAFewUnitsOfTheLibrarys) {
   EXPECT_EQ(plain_exp(0.0), 1.0);
 }
 
-// A search that goes on on another machine must draw the same samples. The number changes with the
-// strategy; with compiler and library it does not.
+// A search that continues on another machine must draw the same samples. The number changes with
+// the strategy, but not with compiler or library.
 TEST(EvolutionStrategy, DrawsTheSameSamplesOnEveryMachine) {
   EvolutionStrategy search(Point(kBest.size(), 0.5), 0.15, 10, 1);
   std::uint64_t hash = 0;
@@ -160,7 +159,7 @@ TrainPlan small_plan() {
   return plan;
 }
 
-// As if team 0 had scored so many goals more, the nearer the player's shot_bar is to 0.7.
+// As if team 0 had scored more goals the nearer the player's shot_bar is to 0.7.
 GameResult result_of(const GameDesc& game) {
   GameResult result;
   for (int team = 0; team < 2; ++team) {

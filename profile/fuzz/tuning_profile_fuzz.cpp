@@ -1,4 +1,4 @@
-// parse_tuning() on a stranger's file. What is accepted is written to the same values.
+// Fuzzes parse_tuning() with untrusted files. Accepted values must survive a round trip.
 #include <cstdlib>
 #include <string_view>
 

@@ -1,5 +1,5 @@
-// Files of one `name = value` a line, for values that are described by an array of fields: name,
-// unit, value, least, most, meaning.
+// Files with one `name = value` per line, for values described by an array of fields: name, unit,
+// value, least, most, meaning.
 #pragma once
 
 #include <fmt/format.h>
@@ -20,8 +20,8 @@ std::string range_of(const Field& field) {
                      field.unit);
 }
 
-// values with what the text gives. kind: of value, as in "no tuning value is named"; command: shows
-// their names.
+// Returns values, changed by the text. kind: of value, as in "no tuning value is named". command:
+// the one that lists the names.
 template <class Values, class Fields>
 tl::expected<Values, std::string> read_fields(std::string_view text, std::string_view file,
                                               Values values, const Fields& fields,
@@ -53,7 +53,7 @@ tl::expected<Values, std::string> read_fields(std::string_view text, std::string
   return values;
 }
 
-// The text of a file of at most 64 KiB. what: it should be, as in "tuning profile".
+// Reads a file of at most 64 KiB. what: the expected kind, such as "tuning profile".
 inline tl::expected<std::string, std::string> read_text(const std::string& path,
                                                         std::string_view what) {
   constexpr std::size_t kMostBytes = 64 * 1024;
@@ -69,8 +69,8 @@ inline tl::expected<std::string, std::string> read_text(const std::string& path,
   return text;
 }
 
-// Each value with its range and meaning as a comment; read_fields() of it gives the same values bit
-// for bit.
+// Writes each value with its range and meaning as a comment. read_fields() restores the same values
+// bit for bit.
 template <class Values, class Fields>
 std::string write_fields(const Values& values, const Values& defaults, const Fields& fields) {
   std::string text;

@@ -10,10 +10,10 @@ constexpr std::uint32_t kFirst = 0x80, kLast = 0xFEFF, kMoved = 0xF0000;
 
 struct Letter {
   std::uint32_t code = 0;
-  std::size_t bytes = 0;  // 0: not UTF-8, or the text is over
+  std::size_t bytes = 0;  // 0: not UTF-8, or end of the text
 };
 
-// The letter of UTF-8 (RFC 3629) that begins here.
+// The UTF-8 letter (RFC 3629) that begins here.
 Letter letter_at(std::string_view text, std::size_t at) {
   const auto byte = [&](std::size_t k) {
     return at + k < text.size() ? static_cast<unsigned char>(text[at + k]) : 0u;
@@ -49,7 +49,7 @@ void append(std::string& text, std::uint32_t code) {
   more(0);
 }
 
-// Letters first..last by so much further; what is no UTF-8 stays, and is toml++'s to refuse.
+// Moves the letters first..last by this distance. Invalid UTF-8 stays unchanged; toml++ rejects it.
 std::string with_moved(std::string_view text, std::uint32_t first, std::uint32_t last,
                        std::uint32_t by) {
   std::string moved;
@@ -67,12 +67,12 @@ std::string with_moved(std::string_view text, std::uint32_t first, std::uint32_t
   return moved;
 }
 
-// Each dot of a key (a.b.c) is a table within a table, and toml++ follows them by recursion: 20000
-// overflow a stack of 8 MiB. In numbers, strings and comments so many are no more use.
+// Each dot of a key (a.b.c) opens a nested table, which toml++ follows by recursion: 20000 levels
+// overflow a stack of 8 MiB. Numbers, strings and comments do not need that many either.
 constexpr std::size_t kMostDots = 2000;
 
-// The line in which the text has more than kMostDots dots; 0: nowhere. A row of dots counts as one:
-// in a key no two are neighbours.
+// The line in which the number of dots exceeds kMostDots; 0: none. A row of dots counts as one: a
+// key has no adjacent dots.
 toml::source_index line_with_too_many_dots(std::string_view text) {
   std::size_t dots = 0;
   toml::source_index line = 1;

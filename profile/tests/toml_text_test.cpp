@@ -9,7 +9,8 @@ namespace profile {
 namespace {
 
 TEST(TomlText, KeepsEveryLetterOfStringsAndKeys) {
-  // Latin, Greek, Hangul, the last of three bytes, an emoji; with a byte order mark before.
+  // Latin, Greek, Hangul, the last letter of three bytes, an emoji; with and without a byte order
+  // mark.
   const std::string letters = "gr\u00f6\u00dfe \u03b1 \ubcbd \ufeff \uffee \U0001F3D3";
   for (const std::string& mark : std::vector<std::string>{"", "\xEF\xBB\xBF"}) {
     const auto parsed = parse_toml(mark + "# " + letters + "\n\"" + letters + "\" = '" + letters +

@@ -15,7 +15,7 @@ using foosball::kTuningFields;
 using foosball::Tuning;
 using foosball::TuningField;
 
-// Every value with its own number, and thirds, which no short decimal has.
+// A different number for each value; thirds are not short decimals.
 TEST(TuningProfile, ComesBackBitForBit) {
   Tuning tuning;
   double share = 0.0;

@@ -6,7 +6,8 @@
 
 namespace results {
 
-// A spreadsheet takes what begins like a formula for one: a quote before it keeps it text.
+// A spreadsheet interprets some initial characters as a formula: a quote before them keeps the cell
+// a text.
 inline std::string csv_cell(const std::string& text) {
   std::string out = text;
   if (!out.empty() && std::string_view("=+-@\t\r").find(out[0]) != std::string_view::npos) {

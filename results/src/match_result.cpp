@@ -7,7 +7,7 @@
 namespace results {
 namespace {
 
-// 2026-11-22T23:59:59Z
+// Format: 2026-11-22T23:59:59Z
 bool is_date(const std::string& text) {
   constexpr std::string_view kForm = "dddd-dd-ddTdd:dd:ddZ";
   if (text.size() != kForm.size()) return false;
@@ -17,7 +17,7 @@ bool is_date(const std::string& text) {
   }
   const auto number = [&](std::size_t at) { return 10 * (text[at] - '0') + (text[at + 1] - '0'); };
   return number(5) >= 1 && number(5) <= 12 && number(8) >= 1 && number(8) <= 31 &&
-         number(11) <= 23 && number(14) <= 59 && number(17) <= 60;  // a leap second
+         number(11) <= 23 && number(14) <= 59 && number(17) <= 60;  // with a leap second
 }
 
 bool is_text(const std::string& text) {

@@ -11,7 +11,7 @@
 namespace results {
 namespace {
 
-// Of the scores in order, the middle one, or the mean of the two in the middle.
+// The middle score in order, or the mean of the two middle ones.
 double median_of(const QuestionSummary& summary) {
   const auto at = [&](std::uint64_t rank) {
     std::uint64_t below = 0;

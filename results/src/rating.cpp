@@ -13,14 +13,14 @@ using Players = std::map<std::string, Standing>;
 double weighted_rating(const Team& team, Players& players) {
   double sum = 0.0, weights = 0.0;
   for (const Player& player : team.players) {
-    const double weight = std::max(player.share, 1e-6);  // one who played nothing is no team
+    const double weight = std::max(player.share, 1e-6);  // avoids a division by 0
     sum += weight * players[player.name].rating;
     weights += weight;
   }
   return sum / weights;
 }
 
-// The same computer may have stood in on both sides: that is no match of its own.
+// The same computer may have played for both teams: such a match does not count as one.
 bool meets_himself(const MatchResult& match) {
   std::set<std::string> names;
   for (const Player& player : match.teams[0].players)

@@ -12,10 +12,10 @@
 namespace results {
 namespace {
 
-// Marks the file as ours: "SFrs". An SQLite database of other programs has another number, or 0.
+// Application id of the file: "SFrs". Databases of other programs have another number, or 0.
 constexpr int kApplicationId = 0x53467273;
 
-// What each version adds to the one before. Never changed once released.
+// Additions of each version to the previous one. Must not change once released.
 constexpr const char* kMigrations[kSchemaVersion] = {
     // 1: results
     R"(CREATE TABLE match (
@@ -43,7 +43,7 @@ constexpr const char* kMigrations[kSchemaVersion] = {
          STRICT, WITHOUT ROWID;
        CREATE INDEX player_by_name ON player(name);
        CREATE INDEX match_by_date ON match(finished_at, id);)",
-    // 2: statistics; null where none were taken
+    // 2: statistics; null if not recorded
     R"(ALTER TABLE match ADD COLUMN shot_speed_median REAL;
        ALTER TABLE match ADD COLUMN shot_speed_fastest REAL;
        ALTER TABLE team ADD COLUMN shots INTEGER;
@@ -53,7 +53,7 @@ constexpr const char* kMigrations[kSchemaVersion] = {
        ALTER TABLE team ADD COLUMN touches INTEGER;
        ALTER TABLE team ADD COLUMN own_goals INTEGER;
        ALTER TABLE team ADD COLUMN possession_seconds REAL;)",
-    // 3: the questionnaire; an answer that was not given has no row
+    // 3: the questionnaire; an unanswered question has no row
     R"(CREATE TABLE sheet (
          id INTEGER PRIMARY KEY,
          match INTEGER NOT NULL REFERENCES match(id) ON DELETE CASCADE,
@@ -65,10 +65,10 @@ constexpr const char* kMigrations[kSchemaVersion] = {
          question TEXT NOT NULL,
          score INTEGER NOT NULL CHECK (score BETWEEN 1 AND 5),
          PRIMARY KEY (sheet, question)) STRICT, WITHOUT ROWID;)",
-    // 4: how much of the match each has played
+    // 4: fraction of the match that each player played
     R"(ALTER TABLE player ADD COLUMN share REAL NOT NULL DEFAULT 1.0
          CHECK (share BETWEEN 0.0 AND 1.0);)",
-    // 5: who has left it
+    // 5: players who left
     R"(ALTER TABLE player ADD COLUMN has_left INTEGER NOT NULL DEFAULT 0
          CHECK (has_left IN (0, 1));)",
     // 6: each team's own fastest shot
@@ -78,7 +78,7 @@ std::string sentence(const std::string& path, const std::string& why) {
   return "results in " + path + ": " + why;
 }
 
-// A prepared statement; step() is SQLITE_ROW, SQLITE_DONE or an error of the database.
+// A prepared statement. step() returns SQLITE_ROW, SQLITE_DONE or a database error.
 class Statement {
  public:
   Statement(sqlite3* database, const std::string& sql) {
@@ -147,15 +147,14 @@ bool run(sqlite3* database, const std::string& sql) {
   return sqlite3_exec(database, sql.c_str(), nullptr, nullptr, nullptr) == SQLITE_OK;
 }
 
-// Rolled back unless it is committed. A rollback hides the error that led to it: ask for that
-// first.
+// Rolled back unless committed. The rollback overwrites the error that caused it: read that first.
 class Transaction {
  public:
   explicit Transaction(sqlite3* database) : database_(database) {
     begun_ = run(database, "BEGIN IMMEDIATE");
   }
   ~Transaction() {
-    // SQLite itself has rolled back what a full disk cut off.
+    // SQLite itself has already rolled back after a full disk.
     if (begun_ && sqlite3_get_autocommit(database_) == 0) run(database_, "ROLLBACK");
   }
   Transaction(const Transaction&) = delete;
@@ -201,12 +200,12 @@ std::string what_is_wrong(sqlite3* database) {
   }
 }
 
-// All steps within one transaction: a program that dies on the way leaves the old version. What
-// went wrong, if anything did.
+// Migrates in one transaction: if the program dies, the old version remains. Returns the problem,
+// if any.
 std::optional<std::string> migrate(sqlite3* database, int from) {
   Transaction transaction(database);
   const auto steps = [&] {
-    // Another program may have done it since.
+    // Another program may have migrated the file meanwhile.
     from = static_cast<int>(pragma(database, "user_version").value_or(from));
     for (int version = from; version < kSchemaVersion; ++version) {
       if (!run(database, kMigrations[version])) return false;
@@ -285,7 +284,7 @@ std::string Store::error() const {
 
 namespace {
 
-// Within a transaction. The id that it got; none: the database's error.
+// Call within a transaction. Returns the id; none after a database error.
 std::optional<std::int64_t> insert(sqlite3* db, const MatchResult& result) {
   const auto& speeds = result.shot_speeds;
   bool ok = Statement(db,
@@ -437,7 +436,7 @@ bool read_teams(sqlite3* db, int version, std::map<std::int64_t, MatchResult*>& 
 tl::expected<std::vector<MatchResult>, std::string> Store::matches(const Filter& filter) const {
   sqlite3* const db = database_.get();
   if (!run(db, "BEGIN"))
-    return tl::unexpected(error());  // one state of the file for all that follows
+    return tl::unexpected(error());  // a consistent state for all following reads
   std::string sql =
       "SELECT id, finished_at, layout, goals_to_win, max_goals, seed, play_seconds, recording";
   sql += version_ < 2 ? ", NULL, NULL" : ", shot_speed_median, shot_speed_fastest";

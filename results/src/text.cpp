@@ -18,7 +18,7 @@ std::string names(const Team& team, const char* between) {
   return text;
 }
 
-// "Ann (62%), computer 2 (38%), Bob (20%, left)": of who has played all of it the name alone.
+// "Ann (62%), computer 2 (38%), Bob (20%, left)". A player of the complete match has no percentage.
 std::string names_and_shares(const Team& team) {
   std::string text;
   for (const Player& player : team.players) {
@@ -46,13 +46,13 @@ std::string leavers(const Team& team) {
   return names(left, "; ");
 }
 
-// Names come from players: no control characters reach a terminal.
+// Players choose the names: control characters must not reach a terminal.
 std::string shown(std::string text, std::size_t width) {
   std::replace_if(
       text.begin(), text.end(), [](char c) { return (c >= 0 && c < 0x20) || c == 0x7f; }, '?');
   if (text.size() <= width) return text;
   std::size_t cut = width - 1;
-  while (cut > 0 && (text[cut] & 0xc0) == 0x80) --cut;  // a letter of several bytes stays whole
+  while (cut > 0 && (text[cut] & 0xc0) == 0x80) --cut;  // does not split a multi-byte character
   return text.substr(0, cut) + "~";
 }
 
@@ -89,7 +89,7 @@ nlohmann::ordered_json json_of(const Team& team) {
   return out;
 }
 
-// Names that are no UTF-8 are written with replacement characters, not refused.
+// Writes replacement characters for invalid UTF-8 in names.
 std::string dump(const nlohmann::ordered_json& json) {
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
@@ -156,7 +156,7 @@ std::string matches_json(std::span<const MatchResult> matches) {
     out["layout"] = m.layout;
     out["goals_to_win"] = m.goals_to_win;
     out["max_goals"] = m.max_goals;
-    out["seed"] = std::to_string(m.seed);  // beyond 2^53, which not every reader of JSON holds
+    out["seed"] = std::to_string(m.seed);  // may exceed 2^53, the limit of some JSON readers
     out["play_s"] = m.play_seconds;
     if (m.shot_speeds) {
       out["shot_speed_median"] = m.shot_speeds->median;

@@ -1,4 +1,4 @@
-// The summary against figures worked out by hand, and the exports.
+// The summary against values calculated by hand, and the exports.
 #include "results/questionnaire.h"
 
 #include <gtest/gtest.h>

@@ -30,7 +30,7 @@ TEST(Rating, OfEqualsHalfTheGainGoesOver) {
   EXPECT_EQ(all[0].goals_against, 3u);
 }
 
-// Found by a reviewer: the fastest shot of a match was credited to both sides.
+// Regression: the fastest shot of a match was credited to both teams.
 TEST(Rating, TellsTheFastestShotAndTheSavesOfTheOwnTeams) {
   std::vector<MatchResult> matches{match_between("Ann", "Bob", 5, 3, 1),
                                    match_between("Ann", "Bob", 3, 5, 2)};
@@ -51,7 +51,7 @@ TEST(Rating, TellsTheFastestShotAndTheSavesOfTheOwnTeams) {
     EXPECT_DOUBLE_EQ(one.fastest_shot, one.name == "Bob" ? 8.5 : 0.0) << "not known";
 }
 
-// By hand: after 1516 against 1484, E of the weaker is 1 / (1 + 10^(32/400)) = 0.454078...
+// By hand: at 1516 against 1484, E of the weaker is 1 / (1 + 10^(32/400)) = 0.454078...
 TEST(Rating, WhoIsExpectedToLoseGainsMore) {
   const std::vector<MatchResult> matches{match_between("Ann", "Bob", 5, 3, 1),
                                          match_between("Ann", "Bob", 2, 5, 2)};
@@ -109,7 +109,7 @@ TEST(Rating, IsNotSavedByLeavingInTheLastMoment) {
   EXPECT_DOUBLE_EQ(rating(standings(std::vector{match}), "Ann"), 1484.0) << "nor won so";
 }
 
-// Else one player could take the match from everybody's rating by changing sides.
+// Otherwise a player could exclude the match from all ratings by changing teams.
 TEST(Rating, IsMovedThoughSomebodyWentOverToTheOtherTeam) {
   MatchResult match = match_between("Bob", "Cleo", 5, 3);
   match.teams[1].players.push_back({"Ann", "person", 0.05, true});

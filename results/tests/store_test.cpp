@@ -1,4 +1,4 @@
-// The file itself: what was added is there, older and later versions, what is damaged or locked.
+// The results file: round trips, older and later versions, damaged and locked files.
 #include "results/store.h"
 
 #include <gtest/gtest.h>
@@ -92,7 +92,7 @@ TEST_F(StoreTest, AddsABatchWholeOrNotAtAll) {
   EXPECT_EQ(store.matches({}).value().size(), 40u) << "nothing of the second";
 }
 
-// A limit on the file's size stands for a disk that fills while the tables are made.
+// A limit on the file's size simulates a disk that becomes full while the tables are created.
 TEST_F(StoreTest, SaysThatItIsTheDiskThatFailed) {
   rlimit before{};
   ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
@@ -194,7 +194,7 @@ TEST_F(StoreTest, RefusesAnswersOfNobodyOfNoMatchAndGivenTwice) {
   ASSERT_TRUE(store.add(answers_of(match, 0, 0x03)));
   std::vector<Answers> bad(7, answers_of(match, 0, 0x04));
   bad[0].match = match + 1;
-  bad[1].rods = 0x06;  // one of them has answered
+  bad[1].rods = 0x06;  // one of them has already answered
   bad[2].team = 2;
   bad[3].rods = 0;
   bad[4].rods = 0x100;
@@ -204,7 +204,7 @@ TEST_F(StoreTest, RefusesAnswersOfNobodyOfNoMatchAndGivenTwice) {
   EXPECT_EQ(store.answers().value().size(), 1u);
 }
 
-// As the release before the questionnaire made it.
+// A file of the release before the questionnaire.
 TEST_F(StoreTest, ReadsAndMigratesTheSecondVersion) {
   { ASSERT_TRUE(made().add(match_between("Ann", "Bob", 5, 3))); }
   execute(
@@ -224,7 +224,7 @@ TEST_F(StoreTest, ReadsAndMigratesTheSecondVersion) {
   EXPECT_EQ(store.answers().value().size(), 1u);
 }
 
-// As the release before shares made it.
+// A file of the release before the fractions of play.
 TEST_F(StoreTest, ReadsAndMigratesTheThirdVersion) {
   { ASSERT_TRUE(made().add(match_between("Ann", "Bob", 5, 3))); }
   execute(
@@ -237,7 +237,7 @@ TEST_F(StoreTest, ReadsAndMigratesTheThirdVersion) {
   EXPECT_EQ(share(made()), 1.0) << "whoever played then played all of it";
 }
 
-// As the release before leavers made it.
+// A file of the release before leavers were recorded.
 TEST_F(StoreTest, ReadsAndMigratesTheFourthVersion) {
   MatchResult match = match_between("Ann", "Bob", 5, 3);
   match.teams[0].players[0].left = true;
@@ -253,7 +253,7 @@ TEST_F(StoreTest, ReadsAndMigratesTheFourthVersion) {
   EXPECT_FALSE(left(made())) << "nobody knows any more";
 }
 
-// As the release before a team's own fastest shot made it.
+// A file of the release before each team's fastest shot.
 TEST_F(StoreTest, ReadsAndMigratesTheFifthVersion) {
   { ASSERT_TRUE(made().add(match_between("Ann", "Bob", 5, 3))); }
   const auto fastest = [](const Store& store) {
@@ -294,7 +294,8 @@ TEST_F(StoreTest, LeavesFilesOfOthersAlone) {
   EXPECT_NE(refused(Access::create).find("cannot be opened"), std::string::npos);
 }
 
-// Every page but the first overwritten: an error in a sentence, or what is still whole; no crash.
+// Every page except the first is overwritten: an error as a sentence, or the undamaged results; no
+// crash.
 TEST_F(StoreTest, SurvivesADamagedFile) {
   {
     Store store = made();

@@ -22,7 +22,7 @@ TEST(Text, CsvQuotesWhatWouldBreakItAndMakesNoFormulas) {
   EXPECT_NE(csv.find(",'=1+1;"), std::string::npos) << csv;
   EXPECT_EQ(csv.find(",=1+1"), std::string::npos) << csv;
   EXPECT_NE(csv.find(",18446744073709551615,"), std::string::npos) << csv;
-  // As many columns in each line; the two commas within quotes aside.
+  // The same number of columns in each line, without the two quoted commas.
   const auto commas = [](const std::string& line) {
     long count = 0;
     bool quoted = false;

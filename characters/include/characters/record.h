@@ -1,4 +1,4 @@
-// Between a character and what is recorded and sent of it (wire/characters.h).
+// Conversion between a character and its recorded and transmitted form (wire/characters.h).
 #pragma once
 
 #include <optional>
@@ -10,8 +10,8 @@ namespace characters {
 
 wire::Characters to_record(const foosball::Characters& characters);
 
-// Nothing where a number is out of its range, or a name is missing: bytes from outside never make a
-// character that cannot be played.
+// Returns none if a number is out of range or a name is missing: external bytes never produce an
+// unplayable character.
 std::optional<foosball::Characters> from_record(const wire::Characters& record);
 
 }  // namespace characters

@@ -1,13 +1,14 @@
-// Help for a person with one hand free: which rod to take (automatic rod), goalie and defence that
-// cover the shot (goalie follows), a slide that meets the ball (aim). One function for the client,
-// whose hands it helps, and for matches without a screen, whose one-rod player it helps.
+// Assists for a person who plays with one hand: which rod to take (automatic rod), goalie and
+// defence that cover the shot (goalie follows), a slide that meets the ball (aim). The client uses
+// it for its own player. Matches without a screen use it for their one-rod player.
 //
-// An assist changes targets only: it sees what the person sees, and the rods follow its targets
-// with the same bounded force as a hand's. It slides no rod faster than kAssistRate, and starts and
-// stops with at most kAssistAcceleration: those of a held key.
+// An assist only changes targets. It sees what the person sees. The rods follow its targets with
+// the same bounded force as a hand's. Its slides are no faster than kAssistRate, and accelerate and
+// brake at no more than kAssistAcceleration: the limits of a pressed key.
 //
-// Deterministic: the state is the object, time is counted in ticks. Symmetric: for team 1 it does
-// with the turned table to the bit what it does for team 0. One thread.
+// Deterministic: all state is in the object, and time is counted in ticks. Symmetric: for team 1 on
+// the table rotated by half a turn, the results are bit for bit those of team 0. Use from one
+// thread.
 #pragma once
 
 #include <array>
@@ -19,7 +20,7 @@
 
 namespace foosball {
 
-// Each by itself.
+// Each assist can be switched on separately.
 struct AssistChoice {
   bool automatic_rod = false;
   bool goalie_follows = false;
@@ -30,54 +31,54 @@ struct AssistChoice {
 
 inline constexpr double kAssistRate = 1.2;           // of a slide [m/s]
 inline constexpr double kAssistAcceleration = 12.0;  // [m/s^2]
-inline constexpr double kSettleRate = 5.0;           // of men that come to hang down [rad/s]
-inline constexpr double kAimPull = 0.008;            // the most that aim moves a rod aside [m]
-inline constexpr double kAimRate = 0.25;             // and how fast [m/s]
-inline constexpr double kAimReach = 0.030;  // a foot further than this beside its place is not
-                                            // helped [m]: aim finishes an aim, it makes none
-// A rod that can act so much sooner than the one in hand is taken in its place [s]. Less, and the
-// choice flickers while the ball lies between two rods.
+inline constexpr double kSettleRate = 5.0;           // of men that return to hanging down [rad/s]
+inline constexpr double kAimPull = 0.008;            // limit of the aim's correction of a slide [m]
+inline constexpr double kAimRate = 0.25;             // and of its rate [m/s]
+// The aim ignores a foot that is further from its target [m]: it only corrects a person's aim.
+inline constexpr double kAimReach = 0.030;
+// Automatic rod: another rod replaces the current one if it can act this much sooner [s]. With
+// less, the choice flickers while the ball is between two rods.
 inline constexpr double kSoonerBy = 0.12;
 
 // What a person sees, in the table's frame.
 struct AssistView {
   bool ball_in_play = false;
   vp::Vec3 ball, velocity;             // [m], [m/s]
-  std::array<RodState, kRods> rods{};  // all eight: the opponent's men stand in the way of a shot
+  std::array<RodState, kRods> rods{};  // all eight: the opponent's men block shots
   TeamBodies bodies;
 };
 
-// What the person does.
+// The person's input.
 struct AssistHand {
   std::array<RodTarget, kRods> targets{};
-  std::uint8_t held = 0;  // rods that are in the hand, by bit: they are its own, but for the aim
-  bool strikes = false;   // presses or turns to strike with the rod in hand: aim helps, and the rod
-                          // is not changed
+  std::uint8_t held = 0;  // rods in the hand, as bits: only the aim affects them
+  bool strikes = false;   // presses or rotates to strike with the rod in hand: aim is active, and
+                          // the rod does not change
 };
 
 class Assists {
  public:
-  // rods: the person's, by bit. Precondition: team is 0 or 1.
+  // rods: those of the person, as bits. Precondition: team is 0 or 1.
   Assists(int team, Layout layout, std::uint8_t rods, const AssistChoice& choice);
 
-  // The rod that can act next, of the person's: the one in hand unless another can by kSoonerBy
-  // sooner. `now`: the one in hand, -1: none. Without automatic_rod it is `now`.
+  // The person's rod that can act next. Keeps `now` unless another rod can act sooner by kSoonerBy.
+  // `now`: the rod in hand; -1: none. Without automatic_rod, returns `now`.
   int rod_to_take(const AssistView& view, const AssistHand& hand, int now) const;
 
-  // Targets of all rods, so many ticks after the call before (0: the first). Those that it does not
-  // help are the hand's. Preconditions: everything is finite, 0 <= ticks.
+  // Targets of all rods. ticks: since the previous call (0: the first call). Rods without
+  // assistance keep the hand's targets. Preconditions: everything is finite, 0 <= ticks.
   std::array<RodTarget, kRods> steer(const AssistView& view, const AssistHand& hand, int ticks);
 
-  // Rods that steer() has moved and the hand does not hold, by bit: the hand that takes one takes
-  // it where it is.
+  // Rods, as bits, that steer() has moved and that are not in the hand. A hand that takes such a
+  // rod must take it where it is.
   std::uint8_t following() const { return following_; }
 
  private:
   struct Rod {
     bool follows = false;
-    double slide = 0.0, rate = 0.0;  // of one that follows, team's frame
+    double slide = 0.0, rate = 0.0;  // while it follows, in the team's frame
     double angle = 0.0;              // table's frame
-    double pull = 0.0;               // of the aim, team's frame
+    double pull = 0.0;               // offset by the aim, in the team's frame
   };
   struct Ball {
     double x, y, vx, vy;  // team's frame: own goal at -x
@@ -97,7 +98,7 @@ class Assists {
   std::uint8_t mine_;
   AssistChoice choice_;
   double reach_of(const CharacterBody& body) const;
-  mutable CharacterBody seen_;  // of which reach_ is field_reach(): that takes a while
+  mutable CharacterBody seen_;  // the body of the cached reach_: field_reach() is expensive
   mutable double reach_;
   std::array<Rod, kRods> rods_{};
   std::uint8_t following_ = 0;

@@ -1,9 +1,9 @@
 // The characters that teams choose from (paper, section 5: tall and thin attacks well, small and
-// fat defends well). Each is plain data: what the physics takes of it (CharacterBody), what is seen
-// of it (CharacterLook) and heard of it (CharacterVoice). A match is made with a list of them,
-// which it records and hashes (MatchDesc::characters).
+// fat defends well). Each is plain data: its physics (CharacterBody), its appearance
+// (CharacterLook) and its sound (CharacterVoice). A match has a list of them, which it records and
+// hashes (MatchDesc::characters).
 //
-// The files that people edit are characters/data/*.toml; docs/characters.md explains them.
+// People edit the files characters/data/*.toml; docs/characters.md explains them.
 #pragma once
 
 #include <algorithm>
@@ -17,14 +17,15 @@
 
 namespace foosball {
 
-// Of a list, at least one. The selection screen shows six at a time; the wire has 4 bits for one.
+// Of a list, which has at least one. The selection screen shows six at a time. The wire format has
+// 4 bits for an index.
 inline constexpr int kMaxCharacters = 12;
 inline constexpr std::size_t kMaxCharacterName = 32;        // bytes of UTF-8, at least 1
 inline constexpr std::size_t kMaxCharacterSpecialty = 100;  // bytes of UTF-8
 
-// What the physics takes. Of speeds, forces and torques the lower counts, this one or the tuning's
-// (foosball/tuning.h); here they are as high as they may be, so that the tuning's count. The man is
-// a stack of boxes from sole to crown (boxes_of).
+// Parameters of the physics. For speeds, forces and torques the lower of this limit and the
+// tuning's (foosball/tuning.h) applies. The defaults here are the largest allowed values, so that
+// the tuning's limits apply. A man is a stack of boxes from sole to crown (boxes_of).
 struct CharacterBody {
   double foot_width = 0.024;
   double foot_depth = 0.020;
@@ -44,7 +45,7 @@ struct CharacterBody {
   bool operator==(const CharacterBody&) const = default;
 };
 
-// For the eye. No physics follows from it.
+// Appearance only: it does not affect the physics.
 enum class Headgear : std::uint8_t { helmet, antenna, cap, horns, hood, bubble };
 inline constexpr int kHeadgears = 6;
 inline constexpr std::array kHeadgearNames{"helmet", "antenna", "cap", "horns", "hood", "bubble"};
@@ -55,14 +56,14 @@ using Colour = std::array<std::uint8_t, 3>;  // sRGB
 
 struct CharacterLook {
   Colour skin{206, 170, 140};
-  Colour accent{230, 230, 235};  // beside the team's colour: gloves, boots, headgear
+  Colour accent{230, 230, 235};  // second colour beside the team's: gloves, boots, headgear
   Headgear headgear = Headgear::helmet;
   Face face = Face::visor;
 
   bool operator==(const CharacterLook&) const = default;
 };
 
-// For the ear.
+// Sound.
 struct CharacterVoice {
   double pitch = 240.0;
   double timbre = 0.4;
@@ -81,16 +82,16 @@ struct Character {
 };
 using Characters = std::vector<Character>;
 
-// --- numbers with their ranges -------------------------------------------------------------------
+// --- numbers and their ranges --------------------------------------------------------------------
 
-// A number of T as people write it in a file, with what it may be.
+// A number of T in a character file, with its range.
 template <class T>
 struct CharacterField {
   const char* name;
-  const char* unit;  // empty for a plain number
+  const char* unit;  // empty: dimensionless
   double T::*value;
   double least, most;
-  const char* meaning;  // what it is, and what breaks beyond its range
+  const char* meaning;  // what it is, and what fails beyond its range
 };
 
 inline constexpr std::array kBodyFields = std::to_array<CharacterField<CharacterBody>>({
@@ -133,41 +134,42 @@ inline constexpr std::array kVoiceFields = std::to_array<CharacterField<Characte
 });
 inline constexpr int kVoiceNumbers = static_cast<int>(kVoiceFields.size());
 
-// Within the field's range; false for what is not a number.
+// False out of the field's range and for NaN.
 template <class T>
 constexpr bool in_range(const CharacterField<T>& field, double value) {
   return field.least <= value && value <= field.most;
 }
 
-// No corner of the foot further from the rod's axis: what the end wall and the next rod's men
-// leave.
+// Largest distance of a foot's corner from the rod's axis. The end wall and the men of the next rod
+// limit it.
 inline constexpr double kFootCorner = 0.0749;  // [m]
 constexpr bool foot_clears(const CharacterBody& body) {
   const double half = 0.5 * body.foot_depth;
   return body.foot_reach * body.foot_reach + half * half <= kFootCorner * kFootCorner;
 }
 
-// Can be played: every number within its range, a name, texts no longer than they may be.
+// Every number is in its range, the name is not empty, and no text is too long.
 bool in_range(const Character& character);
-// 1 to kMaxCharacters of them, each in range.
+// 1 to kMaxCharacters characters, each in range.
 bool in_range(const Characters& characters);
 
-// The character of this number, or the last one there is: for who draws what was sent.
-// Precondition: not empty.
+// The character of this index, clamped to the list: for renderers of received data. Precondition:
+// not empty.
 inline const Character& nearest(const Characters& characters, int number) {
   const int last = static_cast<int>(characters.size()) - 1;
   return characters[static_cast<std::size_t>(std::clamp(number, 0, last))];
 }
 
-// FNV-1a over all of it: two lists that agree in it are the same.
+// FNV-1a over every field. Equal digests mean equal lists.
 std::uint64_t digest(const Characters& characters);
 
-// Those that come with the game, in the order of their files (characters/data).
+// The characters that come with the game, in the order of their files (characters/data).
 const Characters& built_in_characters();
 
 // --- the man's boxes -----------------------------------------------------------------------------
 
-// A box of a man in the man's frame: origin on the rod's axis, axes as the table's at angle 0.
+// A box of a man in the man's frame: origin on the rod's axis, axes parallel to the table's at
+// angle 0.
 struct ManBox {
   vp::Vec3 centre;        // [m]
   vp::Vec3 half_extents;  // [m]

@@ -1,6 +1,6 @@
-// A computer player: sees what a person sees, moves the rods of one team, or some of them, with a
+// A computer player. It sees what a person sees, and moves all or some rods of one team with a
 // person's limits (reaction delay, motor noise, hand speed, two hands). Deterministic: its state
-// follows from its seed and from the views and rods that it was handed, one a tick.
+// depends only on its seed and on the views and rods that it was given, one per tick.
 #pragma once
 
 #include <array>
@@ -20,8 +20,8 @@ namespace foosball {
 
 struct PlayerSpec {
   enum class Kind : std::uint8_t {
-    level,    // a level and a style: what players are offered
-    classic,  // the first player, with a skill 0..1: a reference for tests and studies
+    level,    // a level and a style: what the game offers
+    classic,  // the original player, with a skill 0..1: a reference for tests and studies
   };
   Kind kind = Kind::level;
   int level = 2;  // 1..kLevels
@@ -31,28 +31,28 @@ struct PlayerSpec {
   bool operator==(const PlayerSpec&) const = default;
 };
 
-// "3", "3:shooter", "classic", "classic:0.9". A level alone has the style that suits it. Rejects
-// anything else with Errc::invalid_argument and a sentence that names the choices.
+// Accepts "3", "3:shooter", "classic", "classic:0.9". A level without a style gets its default
+// style. Rejects anything else with Errc::invalid_argument and a sentence that lists the choices.
 vp::Expected<PlayerSpec> parse_player(std::string_view text);
 std::string to_text(const PlayerSpec& spec);
-// Whom a challenge is played against, drawn from its date: the same for everybody.
+// The opponent of a challenge, drawn from its date: the same for everybody.
 PlayerSpec challenge_opponent(std::uint64_t challenge);
-// What a player of this level and style judges by. Levels out of range are clamped.
+// The decision parameters of this level and style. Clamps a level out of range.
 Judgment judgment_of(int level, PlayStyle style);
 
-// Differs where a number of any player does, of a level, a style or the first player: who goes on
-// with games that were played before must know that it is with the same players.
+// Digest of every number of every player: levels, styles, the classic player. A program that
+// continues earlier games compares it to detect changed players.
 std::uint64_t players_digest();
 
 struct ComputerPlayerDesc {
   int team = 1;
   std::uint64_t seed = 1;
-  bool opens_match = true;             // pushes at the logo; false: leaves that to a person
-  PlayerSpec player{};                 // out of range: clamped
-  std::optional<Judgment> judgment{};  // of a level; none: judgment_of() its level and style
+  bool opens_match = true;             // pushes at the logo; false: a person has to
+  PlayerSpec player{};                 // clamped to its range
+  std::optional<Judgment> judgment{};  // of a level player; none: judgment_of() its level and style
 };
 
-inline constexpr std::uint8_t kAllRods = 0xFF;  // by bit, of TableSpec::rods
+inline constexpr std::uint8_t kAllRods = 0xFF;  // as bits, indexed as TableSpec::rods
 
 class ComputerPlayer {
  public:
@@ -61,17 +61,17 @@ class ComputerPlayer {
   ComputerPlayer(ComputerPlayer&&) noexcept;
   ComputerPlayer& operator=(ComputerPlayer&&) noexcept;
 
-  // Targets for its rods: those of its team among `rods`; all other targets are left as they are,
-  // and not read. Rods of its team that are not its own are a team mate's: it sees where they are,
-  // as it sees the opponent's. They may change from tick to tick. None: it lets go, is ready to
-  // play at once, and looks anew when it has some again. With its whole team it works the screens
-  // too: pushes at the logo, chooses and confirms a character. With a part of it, that is left to
-  // the team mate.
+  // Sets the targets of its rods: those of its team among `rods`. It neither reads nor changes
+  // other targets. The other rods of its team belong to a team mate: it sees their positions, as it
+  // sees the opponent's. `rods` may change from tick to tick. With no rods it releases all, stays
+  // ready to play, and observes afresh when it gets rods again. With all rods of its team it also
+  // operates the screens: pushes at the logo, chooses and confirms a character. With only some of
+  // them, it leaves that to the team mate.
   void play(const MatchView& view, RodTargets& targets, std::uint8_t rods = kAllRods);
-  // The pass that a foot sent off in the last play(), if one did.
+  // The pass that a foot made in the last play(), if any.
   PlayedPass passed() const;
 
-  struct Impl;  // one for each kind
+  struct Impl;  // a subclass per kind
 
  private:
   std::unique_ptr<Impl> impl_;

@@ -1,4 +1,4 @@
-// Training: the man to whom the ball is served, as the value of a command.
+// Training: the man who receives the serve, encoded as the value of a command.
 #pragma once
 
 #include <cstdint>

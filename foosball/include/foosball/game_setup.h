@@ -1,5 +1,5 @@
-// What may be chosen of a match while its server runs, as a person says it: by a command to the
-// match (foosball/match.h), by a request of a client, by options. Plain data.
+// The settings of a match that a person can change while the server runs: by a command to the match
+// (foosball/match.h), by a client's request, or by options. Plain data.
 #pragma once
 
 #include <algorithm>
@@ -10,25 +10,25 @@
 
 namespace foosball {
 
-inline constexpr int kMostGoals = 99;  // that win a set
-inline constexpr int kMostSets = 17;   // of which a match is the best
+inline constexpr int kMostGoals = 99;  // to win a set
+inline constexpr int kMostSets = 17;   // of a match (best of)
 inline constexpr std::uint32_t kMostMatchMs = 3'600'000;
-inline constexpr int kGoalsBeyond = 3;  // how many more a last set may take: 8 are to 5
+inline constexpr int kGoalsBeyond = 3;  // margin of max_goals over goals_to_win: 8 for 5
 inline constexpr std::uint32_t kFirstDate = 1000'01'01, kLastDate = 9999'12'31;
 
 struct GameSetup {
   Mode mode = Mode::match;
   RuleSet rules = RuleSet::arcade;
-  int goals = 0;               // that win a set, 1..kMostGoals; 0: as the rules have it
-  int sets = 0;                // the best of so many, odd, 1..kMostSets; 0: as the rules have it
-  std::uint32_t match_ms = 0;  // of play of a set [ms], at most kMostMatchMs; 0: no limit
+  int goals = 0;               // to win a set, 1..kMostGoals; 0: default of the rules
+  int sets = 0;                // best of this number, odd, 1..kMostSets; 0: default of the rules
+  std::uint32_t match_ms = 0;  // playing time of a set [ms], at most kMostMatchMs; 0: no limit
   bool change_sides = false;   // between sets
-  std::uint32_t date = 0;      // of a challenge, such as 20261122; else 0
+  std::uint32_t date = 0;      // of a challenge, such as 20261122; otherwise 0
 
   bool operator==(const GameSetup&) const = default;
 };
 
-// What the mode leaves to be chosen.
+// The settings that a mode lets a person choose.
 constexpr bool chooses_rules(Mode mode) {
   return mode != Mode::challenge;
 }
@@ -39,7 +39,7 @@ constexpr bool chooses_opponent(Mode mode) {
   return mode == Mode::match || mode == Mode::training;
 }
 
-// The setup with what its mode does not leave to be chosen left out; a date stays.
+// Resets the settings that the mode fixes to their defaults. Keeps the date.
 constexpr GameSetup only_chosen(GameSetup setup) {
   if (!chooses_rules(setup.mode)) setup.rules = RuleSet::arcade;
   if (!has_end(setup.mode)) {
@@ -50,7 +50,7 @@ constexpr GameSetup only_chosen(GameSetup setup) {
   return setup;
 }
 
-// A day of the Gregorian calendar.
+// A valid date of the Gregorian calendar.
 constexpr bool is_date(std::uint32_t date) {
   const std::uint32_t year = date / 10000, month = date / 100 % 100, day = date % 100;
   if (date < kFirstDate || date > kLastDate || month < 1 || month > 12) return false;
@@ -60,21 +60,21 @@ constexpr bool is_date(std::uint32_t date) {
   return day >= 1 && day <= days;
 }
 
-// Numbers in their ranges.
+// Every number is in its range.
 constexpr bool in_range(const GameSetup& setup) {
   return static_cast<int>(setup.mode) < kModes && static_cast<int>(setup.rules) < kRuleSets &&
          setup.goals >= 0 && setup.goals <= kMostGoals && setup.match_ms <= kMostMatchMs &&
          (setup.sets == 0 || (setup.sets >= 1 && setup.sets <= kMostSets && setup.sets % 2 == 1));
 }
 
-// In range, without what contradicts the mode.
+// In range, and consistent with the mode.
 constexpr bool playable(const GameSetup& setup) {
   const bool dated = setup.mode == Mode::challenge ? is_date(setup.date) : setup.date == 0;
   return in_range(setup) && dated && setup == only_chosen(setup);
 }
 
-// The rules of a setup that is in range. The times of the screens are not chosen: they are those of
-// `screens`.
+// The rules of a setup. Precondition: in_range(setup). The screens' durations are not part of a
+// setup: they come from `screens`.
 constexpr Rules rules_of(const GameSetup& setup, const Rules& screens = {}) {
   Rules rules = setup.mode == Mode::challenge  ? challenge_rules()
                 : setup.rules == RuleSet::itsf ? itsf_rules()
@@ -96,7 +96,7 @@ constexpr Rules rules_of(const GameSetup& setup, const Rules& screens = {}) {
   return rules;
 }
 
-// The other way round, as near as a setup can say it. date: of a challenge.
+// Inverse of rules_of(), as far as a setup can express the rules. date: of a challenge.
 inline GameSetup setup_of(Mode mode, const Rules& rules, std::uint32_t date = 0) {
   GameSetup setup{.mode = mode, .rules = rules.set};
   const bool timed = rules.match_seconds > 0.0;

@@ -1,8 +1,9 @@
-// What a computer player judges by, apart from a person's limits (delay, hand speeds, aim): each
-// number with its name, unit, range and meaning, described once. `space-foosball-match --train`
-// searches over them.
+// Parameters of a computer player's decisions, without a person's limits (delay, hand speeds, aim).
+// Each has a name, a unit, a range and a meaning, described in one place. `space-foosball-match
+// --train` searches over them.
 //
-// Lengths and speeds are in the team's frame: x from its own goal to the other, 0 in the middle.
+// Lengths and speeds are in the team's frame: x from its own goal to the opponent's, 0 at the
+// centre.
 #pragma once
 
 #include <array>
@@ -51,7 +52,7 @@ struct Judgment {
 
 struct JudgmentField {
   const char* name;  // of the member
-  const char* unit;  // empty for a plain number
+  const char* unit;  // empty: dimensionless
   double Judgment::*value;
   double least, most;
   const char* meaning;
@@ -130,7 +131,7 @@ constexpr bool in_range(const Judgment& judgment) {
 }
 static_assert(in_range(Judgment{}));
 
-// -1: no value has this name.
+// Returns -1 if no value has this name.
 constexpr int judgment_index(std::string_view name) {
   for (int i = 0; i < kJudgmentValues; ++i) {
     if (name == kJudgmentFields[static_cast<std::size_t>(i)].name) return i;
@@ -138,10 +139,11 @@ constexpr int judgment_index(std::string_view name) {
   return -1;
 }
 
-// "shot_bar=0.4,patience=1.2": base with these values. Errc::invalid_argument with a sentence for
-// what is no value, given twice or out of range.
+// Applies changes such as "shot_bar=0.4,patience=1.2" to base. Fails with Errc::invalid_argument
+// and a sentence for a name that is unknown or given twice and for a value out of range.
 vp::Expected<Judgment> with_changes(const Judgment& base, std::string_view changes);
-// What differs from base, as with_changes() reads it back bit for bit; empty if nothing does.
+// The values that differ from base, as text. with_changes() reads it back bit for bit. Empty if
+// nothing differs.
 std::string changes_of(const Judgment& base, const Judgment& judgment);
 
 }  // namespace foosball

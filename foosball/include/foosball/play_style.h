@@ -1,25 +1,24 @@
-// The levels of computer players and what each of them prefers: what a person is told of an
-// opponent.
+// Levels and styles of computer players, as the game shows them to a person.
 #pragma once
 
 #include <cstdint>
 
 namespace foosball {
 
-// What a computer player prefers where it has a choice.
+// What a computer player prefers.
 enum class PlayStyle : std::uint8_t {
-  wall,     // hands stay at the goal, fears what comes back
-  shooter,  // strikes at the first fair chance, from any rod
-  passer,   // plays to a man further ahead where another would shoot
-  gambler,  // waits for the one chance, feints, takes risks with its own goal
+  wall,     // hands stay near the goal; avoids shots that may come back
+  shooter,  // strikes at the first reasonable chance, from any rod
+  passer,   // passes to a man further ahead where others would shoot
+  gambler,  // waits for a good chance, feints, takes risks at its own goal
 };
 inline constexpr int kPlayStyles = 4;
 const char* name_of(PlayStyle style);
 
 inline constexpr int kLevels = 5;
-PlayStyle style_of_level(int level);  // precondition: 1 <= level <= kLevels
+PlayStyle style_of_level(int level);  // Precondition: 1 <= level <= kLevels.
 
-// The opponent at a rung of the ladder, 0 <= rung < kLadderRungs (foosball/rules.h).
+// Level of the opponent at a rung of the ladder, 0 <= rung < kLadderRungs (foosball/rules.h).
 constexpr int level_of_rung(int rung) {
   return rung + 1;
 }

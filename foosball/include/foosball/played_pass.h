@@ -1,4 +1,4 @@
-// A ball that a computer player has sent off to a chosen man of its team.
+// A pass by a computer player to a chosen man of its team.
 #pragma once
 
 namespace foosball {

@@ -1,7 +1,7 @@
-// How a hand drives a rod: the bounded force, the rates and the stops, as pure functions. The
-// simulated table drives its articulations with this force law (table_world.cpp), and a renderer
-// predicts its own rods with it. A rod that touches nothing moves here as it does in the simulated
-// world, within the tolerances below (rod_motion_test.cpp).
+// How a hand drives a rod: bounded force, rates and stops, as pure functions. The simulated table
+// drives its articulations with this force law (table_world.cpp). A renderer predicts its own rods
+// with it. A rod without contacts moves here as it does in the simulated world, within the
+// tolerances below (rod_motion_test.cpp).
 //
 // Each rod has two independent axes: the slide along the table's y and the rotation about it.
 // Threads: pure functions, no state.
@@ -12,7 +12,7 @@
 
 namespace foosball {
 
-// Where a hand wants a rod. A rod that is not live is held where it is.
+// Target of a hand for a rod. A rod that is not live holds its position.
 struct RodTarget {
   double slide = 0.0;       // [m]
   double angle = 0.0;       // [rad], unbounded: full turns count
@@ -22,18 +22,18 @@ struct RodTarget {
   bool operator==(const RodTarget&) const = default;
 };
 
-// A hand has moved its rod where the target is off by so much: what a sensor's noise or a table
-// that is leant on does not reach.
+// Thresholds: a hand has moved its rod if the target changed by at least this much. Sensor noise
+// and a table that somebody leans on stay below.
 inline constexpr double kLeastHandSlide = 0.003;  // [m]
 inline constexpr double kLeastHandTurn = 0.05;    // [rad]
 
-// The slide of a row, and the angle of the hand that turns it: what a rod does.
+// State of a rod: the slide of the row and the angle of the hand that rotates it.
 struct RodState {
-  double slide, angle, slide_rate, angle_rate;  // as simulated [m, rad, m/s, rad/s]
+  double slide, angle, slide_rate, angle_rate;  // simulated values [m, rad, m/s, rad/s]
 };
 
-// A man's own angle about his shoulder. On a rod it is the rod's; a hinged man (Layout::paper) has
-// the hand's angle but while something holds him.
+// A man's own angle about his shoulder. On a rod it equals the rod's. A hinged man (Layout::paper)
+// follows the hand's angle unless something blocks him.
 struct ManState {
   double angle, angle_rate;  // [rad], [rad/s]
 };
@@ -49,8 +49,8 @@ struct AxisDrive {
   bool operator==(const AxisDrive&) const = default;
 };
 
-// What a hand can do at most with the men of a character: the lower of what the tuning allows every
-// hand and of the character's own.
+// Limits of a hand with the men of a character: the lower of the tuning's limit for every hand and
+// the character's own.
 struct HandLimits {
   double force;                   // [N]
   double torque;                  // [N m]
@@ -59,7 +59,7 @@ struct HandLimits {
 };
 HandLimits hand_limits(const CharacterBody& body, const Tuning& tuning = {});
 
-// What the drive moves, and with what.
+// Inertias of a rod, and the limits of its drives.
 struct RodInertia {
   HandLimits limits;
   double rod_and_men;     // without the hand [kg]
@@ -71,25 +71,26 @@ struct RodInertia {
 RodInertia rod_inertia(const TableSpec& table, const RodSpec& rod, const CharacterBody& body,
                        const Tuning& tuning = {});
 
-// The drives of the axes for one kTick, from where the rod is now: each critically damped with the
-// inertia that it moves. Precondition: target is finite.
+// The drives of the axes for one kTick from the rod's current state. Each is critically damped for
+// the inertia that it moves. Precondition: target is finite.
 AxisDrive slide_drive(const RodSpec& rod, const RodInertia& inertia, const RodState& now,
                       const RodTarget& target);
 AxisDrive angle_drive(const RodInertia& inertia, double angle, const RodTarget& target);
 
-// The drive of a hinged man: the hand's, towards that of the hand's turns which is nearest to him,
-// so that he is never more than half a turn behind: a man who is held while the hand spins on slips
-// and does not wind up.
+// The drive of a hinged man. It follows the hand's angle modulo full turns, at the equivalent angle
+// nearest to the man's. So he is never more than half a turn behind: a blocked man slips instead of
+// winding up while the hand spins.
 AxisDrive man_drive(const RodInertia& inertia, double angle, double hand_angle,
                     const RodTarget& target);
-// The whole turns that such a man is ahead of his hand [rad].
+// Difference in full turns between such a man and his hand [rad].
 double turns_ahead(double angle, double hand_angle);
 
-// One kTick of a rod that touches nothing but its stops. Precondition: target is finite.
+// One kTick of a rod that touches only its stops. Precondition: target is finite.
 RodState step_rod(const RodSpec& rod, const RodInertia& inertia, const RodState& now,
                   const RodTarget& target);
 
-// Against the simulated rod, over any motion of the hand [m], [rad]; measured 1e-15.
+// Bounds on the difference from the simulated rod, for any motion of the hand [m], [rad]; measured
+// 1e-15.
 inline constexpr double kRodSlideTolerance = 1e-9;
 inline constexpr double kRodAngleTolerance = 1e-9;
 

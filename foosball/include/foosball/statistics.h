@@ -1,8 +1,8 @@
-// What happened in matches, as counts: a pure observer of the view, the events and the targets of
-// each tick. docs/match-runner.md defines each figure that is made of these counts.
+// Statistics of matches, as counts: a pure observer of each tick's view, events and targets.
+// docs/match-runner.md defines each quantity derived from these counts.
 //
-// All counts are integers, and distributions are histograms, so that the totals of many matches do
-// not depend on the order in which they are added. No clock; no allocation.
+// All counts are integers, and distributions are histograms, so the totals of many matches do not
+// depend on the order of addition. No clock, no allocation.
 #pragma once
 
 #include <algorithm>
@@ -17,8 +17,8 @@
 
 namespace foosball {
 
-// Counts of values in bins of equal width [1e-6 of the value's unit], from 0; the last bin takes
-// all that is larger.
+// Histogram with bins of equal width [1e-6 of the value's unit], from 0. The last bin counts all
+// larger values.
 template <int kBinCount, int kWidthMicro>
 struct Histogram {
   static constexpr int kBins = kBinCount;
@@ -35,7 +35,7 @@ struct Histogram {
     for (const std::uint64_t bin : bins) sum += bin;
     return sum;
   }
-  // 0 <= fraction <= 1; linear within a bin; 0 of an empty histogram.
+  // Precondition: 0 <= fraction <= 1. Linear within a bin; 0 if empty.
   double quantile(double fraction) const {
     const double wanted = fraction * static_cast<double>(count());
     double below = 0.0;
@@ -48,7 +48,7 @@ struct Histogram {
     }
     return 0.0;
   }
-  // Of the bins' centers.
+  // Mean of the bins' centres.
   double mean() const {
     const std::uint64_t n = count();
     double sum = 0.0;
@@ -66,24 +66,25 @@ using PerRod = std::array<std::uint64_t, kRods>;
 struct Statistics {
   // Matches.
   PerTeam wins{};
-  std::uint64_t undecided = 0;        // left before a side had won
-  std::uint64_t lead_changes = 0;     // the lead passed to the side that had been behind
-  Histogram<180, 10'000'000> length;  // play of a decided match [s]
+  std::uint64_t undecided = 0;        // abandoned before a team won
+  std::uint64_t lead_changes = 0;     // the lead passed to the team that was behind
+  Histogram<180, 10'000'000> length;  // playing time of a decided match [s]
 
-  // Time, in ticks of the play screen that is not paused.
-  std::uint64_t ticks = 0;              // stepped, any screen
+  // Time in ticks, on the play screen while not paused.
+  std::uint64_t ticks = 0;              // steps on any screen
   std::uint64_t play_ticks = 0;         // on the play screen
   std::uint64_t ball_ticks = 0;         // with the ball in play; the counts below are parts of it
   std::uint64_t still_ticks = 0;        // the ball is slower than kStillSpeed
   std::uint64_t unreachable_ticks = 0;  // no man can touch the ball
-  PerTeam possession_ticks{};           // by who touched last
-  std::uint64_t longest_unreachable_ticks = 0;  // at a stretch
-  std::uint64_t longest_stuck_ticks = 0;        // within kStuckDistance, touched by nobody
+  PerTeam possession_ticks{};           // of the team that touched last
+  std::uint64_t longest_unreachable_ticks = 0;  // longest interval
+  std::uint64_t longest_stuck_ticks = 0;        // within kStuckDistance, untouched
 
-  // Goals and what stopped play.
-  PerTeam goals{};            // by who scored
-  PerTeam own_goals_swing{};  // by who touched last: the foot drove the ball towards its own goal
-  PerTeam own_goals_deflected{};  // by who touched last: any other
+  // Goals and stops of play.
+  PerTeam goals{};            // by scoring team
+  PerTeam own_goals_swing{};  // by the team that touched last: the foot drove the ball towards its
+                              // own goal
+  PerTeam own_goals_deflected{};  // by the team that touched last: every other own goal
   PerTeam serves{};               // from the midfield
   PerTeam goals_of_server{};      // the team of the last serve scored; by that team
   PerTeam goals_of_receiver{};    // the other team scored; by the team of the last serve
@@ -91,87 +92,87 @@ struct Statistics {
   std::uint64_t balls_out = 0;
   std::uint64_t fouls = 0;
 
-  // Hands. A rod counts while a hand is on it (RodTarget::live).
-  std::array<std::array<std::uint64_t, 5>, kTeams> moving_ticks{};  // [team][rods moving at once]
+  std::array<std::array<std::uint64_t, 5>, kTeams> moving_ticks{};  // [team][rods in motion]
   PerRod hand_ticks{};
   PerRod slide_reversals{};
   PerRod swing_reversals{};
-  PerRod spins{};  // full turns without touching the ball
+  PerRod spins{};  // full turns without contact with the ball
 
   // Play of the ball.
-  PerTeam touches{};         // by one man, however long
+  PerTeam touches{};         // by one man, of any duration
   PerTeam passes{};          // see docs/match-runner.md
-  PerTeam passes_meant{};    // to a chosen man (PlayedPass),
-  PerTeam passes_arrived{};  // who was the next to touch the ball
+  PerTeam passes_meant{};    // to a chosen man (PlayedPass)
+  PerTeam passes_arrived{};  // that man touched the ball next
   PerTeam shots{};
   PerTeam shots_on_target{};
-  PerTeam saves{};                      // by the team that defended
+  PerTeam saves{};                      // by the defending team
   Histogram<300, 100'000> shot_speed;   // [m/s]
-  Histogram<500, 1'000> hop_height;     // underside of the ball over the ground [m]
-  Histogram<200, 10'000> bounce_ratio;  // height after a bounce on the ground to that before it
-  Histogram<64, 1'000'000> rally;       // how often the ball changed teams until play stopped
+  Histogram<500, 1'000> hop_height;     // height of the ball's underside above the ground [m]
+  Histogram<200, 10'000> bounce_ratio;  // height after a bounce on the ground to that before
+  Histogram<64, 1'000'000> rally;       // changes of team until play stopped
 
   std::uint64_t matches() const { return wins[0] + wins[1] + undecided; }
   void merge(const Statistics& other);
   bool operator==(const Statistics&) const = default;
 
-  // Every count in a fixed order, with its name: visitor.sum(name, count) for what adds up,
-  // visitor.max(name, count) for a largest one.
+  // Visits every count in a fixed order, with its name: visitor.sum(name, count) for a sum,
+  // visitor.max(name, count) for a maximum.
   template <class Visitor, class Self>
   static void visit(Visitor& visitor, Self& self);
 };
 
 inline constexpr double kStillSpeed = 0.02;     // [m/s]
-inline constexpr double kStuckDistance = 0.08;  // as the referee's for a dead ball [m]
+inline constexpr double kStuckDistance = 0.08;  // the referee's for a dead ball [m]
 
-// Height of the ground under a point of the field, which the corners raise [m].
+// Height of the ground at a point of the field [m]; the corners are raised.
 double ground_height(const TableSpec& table, double x, double y);
 
-// Follows one match after another. One call a tick, in order, with what the step was given and what
-// it made: the match's view and events after the step, and the targets that it was stepped with.
+// Observes any number of matches in sequence. Call it once per tick, in order, with the match's
+// view and events after the step and the targets of that step.
 class StatisticsObserver {
  public:
   void observe(const MatchView& view, std::span<const Event> events, const RodTargets& targets);
-  // A player has sent off a pass in the tick that is observed next. Only who plays knows what was
-  // meant.
+  // Announces that a player makes a pass in the next observed tick. Only the player knows its
+  // intention.
   void meant(const PlayedPass& pass, Layout layout);
-  // The match under way is given up: counts as undecided, if it had begun. Forgets it.
+  // Abandons the current match: counts it as undecided if it has begun, and clears its state.
   void abandon();
-  // Another match begins: what is left of the one before is given up.
+  // Another match begins. Abandons the previous one if it is unfinished.
   void begin_match();
   const Statistics& totals() const { return totals_; }
-  // Of each team, since begin_match() [m/s]; 0: it has not shot.
+  // Per team, since begin_match() [m/s]; 0: no shot.
   const std::array<double, kTeams>& fastest_shots() const { return fastest_shots_; }
 
  private:
-  // A man's time at the ball: all contacts until another man has one or kTouchPause has passed.
+  // A man's touch of the ball: all his contacts until another man has one or kTouchPause has
+  // passed.
   struct Touch {
-    int team = -1, rod = -1, man = -1;  // -1: none yet since the ball was put in play
+    int team = -1, rod = -1, man = -1;  // -1: none since the ball was put in play
     std::uint64_t since = 0, last = 0;  // [ticks]
-    double arrival_vx = 0.0;            // ball's, before [m/s]
+    double arrival_vx = 0.0;            // of the ball, before the touch [m/s]
     double arrival_speed = 0.0;         // [m/s]
-    double departure_vx = 0.0;          // ball's, so far [m/s]
-    double drive = 0.0;                 // the foot's velocity towards its own goal as it came to
-                                        // the ball, or the most that the hand gave it since [m/s]
-    bool faced_shot = false;            // it met a shot on target of the other team
-    double stroke = 0.0;                // the foot's largest speed along the ball's way out [m/s]
+    double departure_vx = 0.0;          // of the ball, so far [m/s]
+    double drive = 0.0;  // velocity of the foot towards its own goal on arrival at the ball, or the
+                         // maximum that the hand has given it since [m/s]
+    bool faced_shot = false;  // of a shot on target by the other team
+    double stroke = 0.0;  // largest speed of the foot along the ball's direction of departure [m/s]
   };
-  // A hand's turning points on one axis.
+  // Detects reversals of a hand on one axis.
   struct Reversals {
     double extreme = 0.0;
-    int way = 0;  // of the motion: -1, 0 not known yet, +1
+    int way = 0;  // direction of motion: -1, +1; 0: not known yet
     bool update(double value, double hysteresis);
   };
   struct Rod {
     Reversals slide, swing;
-    double spin_from = 0.0;  // angle at the last touch, turn or change of direction [rad]
+    double spin_from = 0.0;  // angle at the last touch, full turn or change of direction [rad]
     Reversals spin;
     bool followed = false;
     double hand_angle = 0.0;       // the last target [rad]
-    double hand_angle_rate = 0.0;  // its change in this tick [rad/s]
+    double hand_angle_rate = 0.0;  // its change per time in this tick [rad/s]
   };
   struct Shot {
-    int team = -1;  // -1: none under way
+    int team = -1;  // -1: none in progress
     bool on_target = false;
     double peak = 0.0;  // [m/s]
   };
@@ -196,29 +197,29 @@ class StatisticsObserver {
   Statistics totals_;
   std::array<double, kTeams> fastest_shots_{};
   std::uint64_t now_ = 0;  // ticks observed
-  bool begun_ = false;     // a match
-  int leader_ = -1;        // who was last ahead
-  int server_ = -1;        // of the last serve from a midfield
+  bool begun_ = false;     // of a match
+  int leader_ = -1;        // the last team in the lead
+  int server_ = -1;        // team of the last serve from a midfield
   std::array<Rod, kRods> rods_{};
 
-  bool in_play_ = false;      // the ball, in the tick before
-  vp::Vec3 velocity_before_;  // of the ball in the last tick [m/s]
-  ManStates men_before_{};    // in the last tick
+  bool in_play_ = false;      // the ball, in the previous tick
+  vp::Vec3 velocity_before_;  // of the ball in the previous tick [m/s]
+  ManStates men_before_{};    // in the previous tick
   Touch touch_, previous_touch_;
   bool touched_now_ = false;
   std::uint64_t rally_changes_ = 0;
   Shot shot_;
   int saver_ = -1;  // team that touched a shot on target; -1: none
   std::uint64_t saved_at_ = 0;
-  PlayedPass meant_;        // on its way; to_rod < 0: none
-  bool pass_open_ = false;  // a man received from another of his team; under control yet?
+  PlayedPass meant_;        // in progress; to_rod < 0: none
+  bool pass_open_ = false;  // a man received the ball from a team mate, who does not control it yet
   vp::Vec3 stuck_at_;
   std::uint64_t stuck_ticks_ = 0, unreachable_ticks_ = 0;
   bool airborne_ = false;
-  bool falling_clean_ = false;  // since the peak, nothing but air
+  bool falling_clean_ = false;  // no contact since the peak
   double peak_ = 0.0;           // of this hop [m]
-  double bounced_from_ = 0.0;   // peak before the last landing; 0: not to be compared [m]
-  double rebound_ = 0.0;        // highest since that landing [m]
+  double bounced_from_ = 0.0;   // peak before the last landing; 0: not comparable [m]
+  double rebound_ = 0.0;        // maximum since that landing [m]
   std::uint64_t landed_at_ = 0;
 };
 

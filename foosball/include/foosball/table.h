@@ -1,10 +1,9 @@
-// The table in true dimensions: one description from which the physics, the rules and the renderer
-// all take their figures.
+// The table in its true dimensions: one description for the physics, the rules and the renderer.
 //
 // Frame: origin at the centre of the field's surface; x from goal to goal (team 0 defends -x and
-// attacks +x), y along the rods, z up. A rod's slide is along +y. Its angle is a right-handed turn
-// about +y; at 0 the men hang straight down; a positive angle swings the feet towards -x.
-// Source: shared notes on real tables (Leonhart 1200 x 680 mm, Tornado ball), paper section 5.1.
+// attacks +x), y along the rods, z up. A rod's slide is along +y. Its angle is right-handed about
+// +y. At angle 0 the men hang straight down; a positive angle swings the feet towards -x. Source:
+// shared notes on real tables (Leonhart 1200 x 680 mm, Tornado ball), paper section 5.1.
 #pragma once
 
 #include <array>
@@ -18,7 +17,7 @@ namespace foosball {
 inline constexpr int kRods = 8;
 inline constexpr int kTeams = 2;
 inline constexpr int kMaxMenOnRod = 5;
-inline constexpr double kTick = 0.001;  // [s]; every process counts in these
+inline constexpr double kTick = 0.001;  // [s]; the time step of every process
 
 enum class Layout : std::uint8_t {
   paper,       // 4 men in each of the 8 rows, each hinged at his shoulder
@@ -26,16 +25,16 @@ enum class Layout : std::uint8_t {
 };
 inline constexpr int kLayouts = 2;
 
-// Paper, section 5.1: its men hang from hinges of their own, and there is no pipe that joins them.
+// Paper, section 5.1: each man hangs from his own hinge; no rod connects them.
 constexpr bool hinged_men(Layout layout) {
   return layout == Layout::paper;
 }
 
-// Of the men of team 0 and 1.
+// Bodies of the men of teams 0 and 1.
 using TeamBodies = std::array<CharacterBody, kTeams>;
 
-// The way a team attacks along x, and the way its players push a rod along y: the players of team 0
-// stand on the -y side with their own goal to the left, those of team 1 opposite.
+// Sign of x of a team's attack, and sign of y of a push of a rod by its players. The players of
+// team 0 stand on the -y side with their own goal to the left; those of team 1 stand opposite.
 constexpr double attack_sign(int team) {
   return team == 0 ? 1.0 : -1.0;
 }
@@ -43,7 +42,7 @@ constexpr double push_sign(int team) {
   return team == 0 ? 1.0 : -1.0;
 }
 
-// What a rod is for, from a team's own goal outwards.
+// The role of a rod, in order from a team's own goal.
 enum class Line : std::uint8_t { goalie, defence, midfield, attack };
 
 struct RodSpec {
@@ -74,20 +73,20 @@ struct TableSpec {
 };
 const TableSpec& table_spec(Layout layout);
 
-// How far fore and aft of its rod's axis a man can touch a ball that lies on the field: the most
-// over all angles, from the axis to the ball's centre [m]. What lies further from every rod is out
-// of everybody's reach.
+// Reach of a man on the field, fore and aft: the maximum distance over all angles from the rod's
+// axis to the centre of a ball that he can touch [m]. No man can touch a ball that is further from
+// every rod.
 double field_reach(const TableSpec& table, const CharacterBody& body);
 
-// y of a man on its rod at slide 0 [m]; 0 <= man < rod.men.
+// y of a man on his rod at slide 0 [m]. Precondition: 0 <= man < rod.men.
 inline double man_offset(const RodSpec& rod, int man) {
   return (man - 0.5 * (rod.men - 1)) * rod.spacing;
 }
 
-// The man whose place at slide 0 is nearest to y [m].
+// The man whose y at slide 0 is nearest to y [m].
 int man_nearest(const RodSpec& rod, double y);
 
-// The rods of a team, from its goal outwards: index into TableSpec::rods by Line.
+// The rods of a team, in order from its goal: index into TableSpec::rods by Line.
 std::array<int, 4> rods_of_team(const TableSpec& table, int team);
 
 }  // namespace foosball

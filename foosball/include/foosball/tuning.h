@@ -1,6 +1,6 @@
-// The quantities that shape play, tuned to playability, not to reality (paper, section 5.1): each
-// with its name, unit, range and meaning, described once. Part of a match: recorded with it,
-// hashed, and changed while it runs by Command::Kind::tune.
+// The quantities that shape play. They are tuned for playability, not for realism (paper, section
+// 5.1). Each has a name, a unit, a range and a meaning, described in one place. They are part of a
+// match: recorded and hashed with it, and changed during play by Command::Kind::tune.
 #pragma once
 
 #include <array>
@@ -43,11 +43,11 @@ struct Tuning {
 };
 
 struct TuningField {
-  const char* name;  // of the member, in profiles and on panels
-  const char* unit;  // empty for a plain number
+  const char* name;  // of the member; used in profiles and panels
+  const char* unit;  // empty: dimensionless
   double Tuning::*value;
   double least, most;
-  const char* meaning;  // one sentence: what it is, and what breaks beyond its range
+  const char* meaning;  // one sentence: what it is, and what fails beyond its range
 };
 
 inline constexpr std::array kTuningFields = std::to_array<TuningField>({
@@ -121,7 +121,7 @@ constexpr void visit_fields(Self& tuning, Visit&& visit) {
   for (const TuningField& field : kTuningFields) visit(field, tuning.*field.value);
 }
 
-// Within the field's range; false for what is not a number.
+// False out of the field's range and for NaN.
 constexpr bool in_range(const TuningField& field, double value) {
   return field.least <= value && value <= field.most;
 }
@@ -133,7 +133,7 @@ constexpr bool in_range(const Tuning& tuning) {
 }
 static_assert(in_range(Tuning{}));
 
-// -1: no value has this name.
+// Returns -1 if no value has this name.
 constexpr int tuning_index(std::string_view name) {
   for (int i = 0; i < kTuningValues; ++i) {
     if (name == kTuningFields[static_cast<std::size_t>(i)].name) return i;

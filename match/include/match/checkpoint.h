@@ -1,7 +1,7 @@
-// The results of finished games in a file, one line each, appended as they come and on disk
-// (fdatasync) before the next: a run that was killed goes on from there and gives the same totals.
-// A last line that was cut off, or any line that was changed, is not read, and its game is played
-// again. One run at a time has the file.
+// A file with the results of finished games, one per line. Each line is on disk (fdatasync) before
+// the next is appended. A killed run can continue from the file and gives the same totals.
+// Truncated or changed lines are ignored, and their games are played again. Only one run at a time
+// can use the file.
 //
 //   space-foosball-match checkpoint 2; N series, DIGEST; game FINGERPRINT
 //   SERIES GAME DIGEST_OF_SERIES RESULT                                    (match/codec.h)
@@ -21,18 +21,18 @@ class Checkpoint {
  public:
   struct Line {
     JobId id;
-    std::uint64_t series = 0;  // SeriesDesc::digest() of the series that the game is of
+    std::uint64_t series = 0;  // SeriesDesc::digest() of the game's series
     GameResult result;
   };
   struct Opened {
     std::unique_ptr<Checkpoint> checkpoint;
-    std::vector<Line> lines;  // what was finished before
-    int unreadable = 0;       // lines
+    std::vector<Line> lines;  // results of earlier runs
+    int unreadable = 0;       // number of lines
   };
 
-  // Creates the file, or continues it if its head is that of the same series played by the same
-  // game with the same players. plan: what else the games depend on, if these series are only the
-  // first. The error is a sentence.
+  // Creates the file. Continues an existing file if its header matches: same series, same game,
+  // same players. plan: further data that the games depend on, if these series are only the first.
+  // The error is a sentence.
   static tl::expected<Opened, std::string> open(const std::string& path,
                                                 const std::vector<SeriesDesc>& series,
                                                 const std::string& plan = {});
@@ -47,9 +47,10 @@ class Checkpoint {
   os::FileDescriptor file_;
 };
 
-// Differs between programs that would play these series otherwise: of all numbers of all players
-// (foosball::players_digest()), of the default rules and tuning, and of a few seconds of play of
-// each player of the series, which tell of what is no number, the physics and the players' code.
+// Fingerprint of the program: differs between programs that would play these series differently. It
+// covers all numbers of all players (foosball::players_digest()), the default rules and tuning, and
+// a few seconds of play of each player of the series. The play detects changes of the physics and
+// of the players' code.
 std::uint64_t game_fingerprint(const std::vector<SeriesDesc>& series);
 
 }  // namespace match

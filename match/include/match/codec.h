@@ -1,6 +1,6 @@
 // A result as one line of text, for checkpoint files and messages between ranks:
 //   winner score0 score1 state_hash index:count ... #check
-// with the counts of Statistics that are not 0, in the order of Statistics::visit.
+// with the nonzero counts of Statistics, in the order of Statistics::visit.
 #pragma once
 
 #include <optional>
@@ -12,7 +12,7 @@
 namespace match {
 
 std::string encode_result(const GameResult& result);
-// Nothing, if the line is not whole or was changed.
+// Returns none if the line is truncated or was changed.
 std::optional<GameResult> decode_result(std::string_view line);
 
 }  // namespace match

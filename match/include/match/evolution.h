@@ -1,7 +1,7 @@
-// Finds the maximum of a function that is noisy and costly, in the unit cube: an evolution strategy
-// with weighted recombination, cumulative step-size adaptation and a diagonal covariance matrix
-// (sep-CMA-ES). Of n coordinates x_i, with deviation sigma d_i, weights w_1 > .. > w_mu of the best
-// mu of lambda samples and mu_w = 1 / sum w^2, a generation does
+// Maximizes a noisy and costly function on the unit cube: an evolution strategy with weighted
+// recombination, cumulative step-size adaptation and a diagonal covariance matrix (sep-CMA-ES).
+// With n coordinates x_i, standard deviations sigma d_i, weights w_1 > .. > w_mu of the best mu of
+// lambda samples and mu_w = 1 / sum w^2, a generation computes
 //   x = m + sigma D z,  z ~ N(0, I)                  samples, clamped to the cube
 //   y = sum w (x - m) / sigma,  m += sigma y         mean of the best
 //   p_s = (1 - c_s) p_s + sqrt(c_s (2 - c_s) mu_w) D^-1 y
@@ -11,8 +11,8 @@
 // Sources: Hansen 2016 (hansen2016) for the constants, Ros and Hansen 2008 (ros2008) for c_1 and
 // c_mu of a diagonal matrix, docs/references.bib.
 //
-// What it answers with is not the best sample, which was lucky, but the mean over the later half of
-// the generations of the search's mean, whose noise is less.
+// The answer is the average of the mean m over the later half of the generations. It has less noise
+// than the best sample, which owes its value partly to chance.
 #pragma once
 
 #include <cstddef>
@@ -25,20 +25,20 @@ using Point = std::vector<double>;  // coordinates from 0 to 1
 
 class EvolutionStrategy {
  public:
-  // The samples are the same on every machine (src/plain_math.h): a search may go on elsewhere.
-  // Preconditions: at least one coordinate, 0 < step <= 1, population >= 4. The same arguments and
-  // the same values told give the same samples.
+  // The samples are the same on every machine (src/plain_math.h), so that a search can continue on
+  // another one. The same arguments and the same values given to tell() produce the same samples.
+  // Preconditions: at least one coordinate, 0 < step <= 1, population >= 4.
   EvolutionStrategy(Point start, double step, std::size_t population, std::uint64_t seed);
 
-  // The samples of this generation; the same until tell().
+  // The samples of the current generation; unchanged until tell().
   const std::vector<Point>& samples() const { return samples_; }
-  // Their values, larger is better, in the samples' order. Begins the next generation.
+  // Supplies the samples' values, in their order; larger is better. Starts the next generation.
   void tell(const std::vector<double>& values);
 
-  std::size_t generation() const { return means_.size(); }  // told
+  std::size_t generation() const { return means_.size(); }  // number completed by tell()
   const Point& mean() const { return mean_; }
   double step() const { return step_; }
-  Point deviations() const;  // of the next samples, by coordinate
+  Point deviations() const;  // of the next samples, per coordinate
   Point answer() const;
 
  private:
@@ -55,7 +55,7 @@ class EvolutionStrategy {
   std::vector<Point> samples_, means_;
 };
 
-// Default population of so many coordinates: 4 + 3 ln n, even.
+// Default population for this number of coordinates: 4 + 3 ln n, even.
 std::size_t usual_population(std::size_t coordinates);
 
 }  // namespace match

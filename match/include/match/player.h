@@ -1,13 +1,11 @@
-// Who plays a side, by name. The one registry of players is src/players.cpp: a new kind of player
-// is one row there.
+// Players by name. src/players.cpp has the only registry: a new kind of player is one row there.
 //
 //   1 to 5, 3:STYLE   the computer player of a level (foosball/computer_player.h)
-//   5@NAME=NUMBER,... such a player with values of its judgment (foosball/judgment.h)
-//   classic:SKILL     the first computer player, SKILL 0 to 1 (default 0.6)
+//   5@NAME=NUMBER,... such a player with changed values of its judgment (foosball/judgment.h)
+//   classic:SKILL     the original computer player, SKILL 0 to 1 (default 0.6)
 //   idle              no hand on any rod
-//   spinner           every rod spins all the time, a man level with the ball
-//   one-rod:PLAYER    PLAYER with one hand and all assists (foosball/assists.h), as a person with a
-//   mouse
+//   spinner           every rod spins all the time, with a man level with the ball
+//   one-rod:PLAYER    PLAYER with one hand and all assists (foosball/assists.h), as with a mouse
 #pragma once
 
 #include <cstdint>
@@ -22,16 +20,16 @@
 
 namespace match {
 
-// Plays one side of one game. Deterministic: the same desc and the same views give the same
+// Plays one team in one game. Deterministic: the same desc and the same views give the same
 // targets.
 class Player {
  public:
   virtual ~Player() = default;
-  // Targets for those of its team's rods that are in the set, by bit; the others are left as they
-  // are. One call a tick.
+  // Sets the targets of its team's rods in the set `rods` (bits). It does not change the others.
+  // Call once per tick.
   virtual void play(const foosball::MatchView& view, foosball::RodTargets& targets,
                     std::uint8_t rods) = 0;
-  // The pass that a foot sent off in the last play(), if one did and the player says so.
+  // The pass that a foot made in the last play(), if any, for players that report it.
   virtual foosball::PlayedPass passed() const { return {}; }
 };
 
@@ -41,10 +39,10 @@ struct PlayerDesc {
   std::uint64_t seed = 1;
 };
 
-// The error is a sentence that lists what may be given.
+// The error is a sentence that lists the valid names.
 tl::expected<std::unique_ptr<Player>, std::string> make_player(const PlayerDesc& desc);
 
-// Whom the game itself offers where none is named.
+// The default opponent of the game.
 std::string default_player();
 
 struct PlayerKind {

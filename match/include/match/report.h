@@ -1,4 +1,4 @@
-// Figures of play, each beside its goal; docs/match-runner.md defines them.
+// Statistics of play and their goals; docs/match-runner.md defines them.
 #pragma once
 
 #include <limits>
@@ -15,9 +15,9 @@ struct Figure {
   double value = 0.0;
   std::string unit;
   std::string goal;  // as text; empty: none
-  // Open: the goal's bound is within two standard errors of the value.
+  // open: the goal's bound is within two standard errors of the value.
   enum class Judgment { none, pass, falls_short, open, unknown } judgment = Judgment::none;
-  double error = std::numeric_limits<double>::quiet_NaN();  // standard error, where known
+  double error = std::numeric_limits<double>::quiet_NaN();  // standard error; NaN: not known
 };
 
 std::vector<Figure> figures_of(const std::string& section, const foosball::Statistics& statistics);
@@ -26,7 +26,7 @@ std::string as_table(const std::vector<Figure>& figures);
 std::string as_csv(const std::vector<Figure>& figures);
 std::string as_json(const std::vector<Figure>& figures);
 
-// The matches of --report: the two players, and what a reviewer of play tried against them.
+// The matches of --report: between the two players, and of reference opponents against them.
 struct ReportPlan {
   std::string home = default_player(), away = default_player();
   foosball::Layout layout = foosball::Layout::tournament;
@@ -36,11 +36,11 @@ struct ReportPlan {
   foosball::Characters character_list = foosball::built_in_characters();
 };
 std::vector<SeriesDesc> report_series(const ReportPlan& plan);
-// Precondition: the series of that plan, in their order.
+// Precondition: the series of report_series(plan), in their order.
 std::vector<Figure> report_figures(const ReportPlan& plan, const std::vector<Series>& series);
 
-// The matches of --stuck-balls: every level against itself in both layouts; how long nobody could
-// reach the ball, or nobody played it. Of the plan, not its players and layout.
+// The matches of --stuck-balls: every level against itself in both layouts. They measure for how
+// long no man could reach the ball, or nobody played it. Ignores the plan's players and layout.
 std::vector<SeriesDesc> stuck_ball_series(const ReportPlan& plan);
 std::vector<Figure> stuck_ball_figures(const std::vector<Series>& series);
 

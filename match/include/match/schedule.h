@@ -1,5 +1,5 @@
-// Which game is to be played next, and what becomes of the results: for threads and ranks alike.
-// Used by one thread at a time.
+// Assigns games and collects their results, for threads and ranks alike. Use from one thread at a
+// time.
 #pragma once
 
 #include <cstdint>
@@ -23,35 +23,36 @@ class Schedule {
  public:
   explicit Schedule(std::vector<SeriesDesc> series) { add(std::move(series)); }
 
-  // More series, after those that are there.
+  // Appends series.
   void add(std::vector<SeriesDesc> series);
 
-  // Results of an earlier run: are taken instead of played. Ignored if they are of no series here.
+  // Supplies a result of an earlier run instead of playing the game. Ignored if its series does not
+  // exist.
   void know(JobId id, const GameResult& result);
 
-  // The next game to play; nothing, if all that may still be needed is under way. Gives a game
-  // again after give_back().
+  // The next game to play; none if every game that may still be needed is in progress. After
+  // give_back() it assigns a game again.
   std::optional<JobId> next();
-  // Takes results in any order; each series sees them in its own. False: this game was played
-  // before, by another who was thought lost, and nothing is taken.
+  // Accepts results in any order; each series receives its results in order. Returns false and
+  // ignores the result if the game was already completed by a player who was believed lost.
   bool complete(JobId id, const GameResult& result);
-  // Whoever played it is gone.
+  // The game's player is lost: the game can be assigned again.
   void give_back(JobId id);
 
   bool finished() const;
   GameDesc game(JobId id) const { return series_[id.series].game(id.game); }
   const std::vector<Series>& series() const { return series_; }
   std::uint64_t games_taken() const;
-  std::uint64_t games_at_most() const;  // of those not decided all, else those taken
+  std::uint64_t games_at_most() const;  // all games of undecided series, counted ones of others
 
  private:
   void take_known(std::size_t series);
 
   std::vector<Series> series_;
-  std::vector<std::uint64_t> handed_out_;  // by series: games below this
-  std::map<JobId, GameResult> waiting_;    // for those before them
+  std::vector<std::uint64_t> handed_out_;  // by series: number of games assigned so far
+  std::map<JobId, GameResult> waiting_;    // results that wait for earlier games
   std::vector<JobId> returned_;
-  std::set<JobId> uncounted_;  // played beyond the point where their series was decided
+  std::set<JobId> uncounted_;  // games beyond the point at which their series was decided
 };
 
 }  // namespace match

@@ -1,9 +1,9 @@
-// The file that keeps results: an SQLite database, in WAL mode, with a versioned schema.
+// The results file: an SQLite database in WAL mode with a versioned schema.
 //
-// Calls read and write files and may wait for other programs' locks, for kBusy_ms at most: never
-// for a tick's thread. Errors are sentences; a file that is damaged, locked, of a later version or
-// no database is left as it is. A store is used by one thread at a time; several programs may have
-// the same file open.
+// Calls access files and may wait for other programs' locks, up to kBusy_ms: do not call them from
+// the tick's thread. Errors are sentences. A file that is damaged, locked, of a later version or
+// not a database is left unchanged. Use a store from one thread at a time. Several programs may
+// have the same file open.
 #pragma once
 
 #include <functional>
@@ -27,25 +27,26 @@ enum class Access { read_only, create };
 
 class Store {
  public:
-  // create: makes the file if there is none, and brings an older one's schema up to date, within
-  // one transaction. read_only: needs the file, and reads older ones as they are.
+  // create: creates the file if it does not exist, and upgrades an older schema in one transaction.
+  // read_only: the file must exist; reads older schemas unchanged.
   static tl::expected<Store, std::string> open(const std::string& path, Access access);
 
-  // All of it or nothing. Refused: what problem_with() finds. The id that it got.
+  // Adds a result in one transaction. Returns its id. Rejects results for which problem_with()
+  // reports a problem.
   tl::expected<std::int64_t, std::string> add(const MatchResult& result);
-  // Several in one transaction: all of them or none.
+  // Adds several results in one transaction: all or none.
   tl::expected<void, std::string> add(std::span<const MatchResult> results);
-  // The same of a player's answers. Refused too: of a match that is not there, of rods that have
-  // answered for it already.
+  // Adds a player's answers in the same way. Also rejects answers for a match that does not exist,
+  // and for rods that have already answered for it.
   tl::expected<std::int64_t, std::string> add(const Answers& answers);
 
   struct Filter {
-    std::string player;      // of any team; empty: all
-    std::size_t newest = 0;  // so many of the newest; 0: all
+    std::string player;      // in any team; empty: all
+    std::size_t newest = 0;  // number of newest matches; 0: all
   };
-  // In the order in which they were played.
+  // In the order of play.
   tl::expected<std::vector<MatchResult>, std::string> matches(const Filter& filter) const;
-  // All, in the order in which they were given; of a file from before there were any: none.
+  // All, in the order of arrival. Empty for a file of a schema without answers.
   tl::expected<std::vector<Answers>, std::string> answers() const;
 
  private:
