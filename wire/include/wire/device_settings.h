@@ -1,9 +1,9 @@
-// The settings of the cabinet's micro-controller, and the report in which it tells them to the PC
-// that asks (kind 5 of wire/device_command.h), in the place of one frame: freestanding C++14, as
-// wire/device_frame.h, whose CRC it has.
+// The settings of the cabinet's micro-controller, and the report that it sends on request (kind 5
+// of wire/device_command.h) instead of one frame: freestanding C++14, like wire/device_frame.h,
+// whose CRC it uses.
 //
-// Layout of the settings (little endian), kDeviceSettingsBytes in all, as the controller keeps them
-// too; fields as in wire/device_command.h:
+// Layout of the settings (little endian), kDeviceSettingsBytes in total, also the controller's
+// stored form; fields as in wire/device_command.h:
 //   0  u8   version            kDeviceSettingsVersion
 //   1  u8   resolution
 //   2  u8   brightness
@@ -13,12 +13,12 @@
 //   6  8 x { u16 travel, u16 turn }
 //  38  u8   slide reversed     bit i: of rod i
 //  39  u8   spin reversed      the same
-// Layout of the report, kDeviceFrameBytes in all, packed as a frame is:
-//   0  u8   kind               kDeviceSettingsReport, which is no version of a frame
-//   1  u8   abilities          of the board: bit 0: it has sensors, for which resolution and ps2
-//                              are; bit 1: it can be gamepads
+// Layout of the report, kDeviceFrameBytes in total, framed like a frame:
+//   0  u8   kind               kDeviceSettingsReport, which is not a version of a frame
+//   1  u8   abilities          of the board: bit 0: it has sensors, to which resolution and ps2
+//                              apply; bit 1: it can be gamepads
 //   2  40 x u8                 the settings
-//  42  u16  sequence           of the question
+//  42  u16  sequence           of the request
 //  44  u16  crc                CRC-16/CCITT-FALSE over bytes 0..43
 #ifndef WIRE_DEVICE_SETTINGS_H
 #define WIRE_DEVICE_SETTINGS_H
@@ -33,11 +33,11 @@ static const uint8_t kDeviceSettingsReport = 0x81;
 static const uint8_t kHasSensors = 1, kCanBeGamepads = 2;  // bits of abilities
 
 struct StickScale {
-  uint16_t travel = 0, turn = 0;  // counts; 0: by the table's dimensions
+  uint16_t travel = 0, turn = 0;  // counts; 0: from the table's dimensions
 };
 
 struct DeviceSettings {
-  uint8_t resolution = 20;  // [100 counts/inch]: 78.7 counts/mm, which 16 bits hold for 0.4 m
+  uint8_t resolution = 20;  // [100 counts/inch]: 78.7 counts/mm; 16 bits hold 0.4 m
   uint8_t brightness = 64;
   uint8_t ps2 = 0;
   uint8_t switches = 0;
@@ -61,7 +61,8 @@ inline void encode_device_settings(const DeviceSettings& settings, uint8_t* out)
   out[39] = settings.spin_reversed;
 }
 
-// False, and settings untouched, unless version and ranges hold. in: kDeviceSettingsBytes.
+// Returns false, and leaves settings unchanged, unless version and ranges are valid. in:
+// kDeviceSettingsBytes.
 inline bool decode_device_settings(const uint8_t* in, DeviceSettings& settings) {
   if (in[0] != kDeviceSettingsVersion || in[5] != 0) return false;
   if (in[1] < 1 || in[1] > kMaxSensorResolution || in[4] > (kPulsesOff | kGamepads)) return false;
@@ -98,13 +99,14 @@ inline void encode_settings_report(const DeviceSettings& settings, uint8_t abili
   device_put16(out + 44, device_crc16(out, 44));
 }
 
-// It is one, of this version or of another.
+// True for a settings report of any version.
 inline bool is_settings_report(const uint8_t* in, size_t size) {
   return size == kDeviceFrameBytes && in[0] == kDeviceSettingsReport &&
          device_get16(in + 44) == device_crc16(in, 44);
 }
 
-// False, and out untouched, unless size, kind, version, CRC and all ranges hold.
+// Returns false, and leaves out unchanged, unless size, kind, version, CRC and all ranges are
+// valid.
 inline bool decode_settings_report(const uint8_t* in, size_t size, SettingsReport& out) {
   if (!is_settings_report(in, size) || in[1] > (kHasSensors | kCanBeGamepads)) return false;
   if (!decode_device_settings(in + 2, out.settings)) return false;

@@ -1,7 +1,7 @@
-// What the server says to people: every sentence that a Notice, a Refusal or a Bye carries, as a
-// form with places for what changes. They travel in English, as logs have them; a client knows the
-// same forms and shows them in the person's language. A Sentence is made from a form alone, so that
-// none is said that clients do not know.
+// The sentences that the server shows to people: every sentence of a Notice, a Refusal or a Bye, as
+// a form with placeholders. They are sent in English, as logs have them. A client knows the same
+// forms and shows them in the person's language. A Sentence is made from a form, so that clients
+// know all of them.
 #pragma once
 
 #include <array>
@@ -13,8 +13,8 @@
 
 namespace wire {
 
-// Name and English form. %1 .. %9 stand for words, each once; a word may be another sentence, or
-// several with "; " between them. Texts are cut to kMaxText bytes.
+// Name and English form. %1 .. %9 are placeholders, each used once. A placeholder may hold another
+// sentence, or several separated by "; ". Texts are truncated to kMaxText bytes.
 // clang-format off
 #define WIRE_SENTENCES(X) \
   /* who joins, and why not */ \
@@ -130,7 +130,7 @@ enum class Said : std::uint8_t { WIRE_SENTENCES(WIRE_NAME) };
 inline constexpr std::array kSentences{WIRE_SENTENCES(WIRE_FORM)};
 #undef WIRE_FORM
 
-// How many places the form has.
+// Number of placeholders of the form.
 constexpr int places_of(std::string_view form) {
   int places = 0;
   for (const char c : form) places += c == '%' ? 1 : 0;
@@ -140,7 +140,7 @@ constexpr int places_of(std::string_view form) {
 class Sentence {
  public:
   Sentence() = default;  // none
-  // Words of others (the operating system's, a library's), which no client knows.
+  // Text of other origin (operating system, library), which clients do not translate.
   static Sentence untranslated(std::string text);
 
   const std::string& text() const { return text_; }
@@ -158,7 +158,7 @@ class Sentence {
   std::string text_;
 };
 
-// Words in the order of the form's places: texts, whole numbers or sentences.
+// Fills the placeholders in order: texts, integers or sentences.
 template <Said said, class... Words>
 Sentence say(const Words&... words) {
   constexpr std::string_view form = kSentences[static_cast<std::size_t>(said)];
