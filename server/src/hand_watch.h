@@ -18,7 +18,8 @@ class HandWatch {
   void look(std::size_t source, const cabinet::RodInputs& rods, std::int64_t now_us,
             std::int64_t play_us);
 
-  // Since one of these rods, by bit, was last moved; since one was last live. rods != 0.
+  // Time since one of these rods (bit mask) last moved; time since one was last live.
+  // Precondition: rods != 0.
   std::int64_t still_us(std::size_t source, std::uint8_t rods, std::int64_t play_us) const;
   std::int64_t undriven_us(std::size_t source, std::uint8_t rods, std::int64_t now_us) const;
 

@@ -36,8 +36,8 @@ class KickVotes {
     int votes = 0, needed = 0;
     bool passed() const { return taken && votes >= needed; }
   };
-  // voters: the machines of all others who play now, each once, the voter's among them. A vote that
-  // passed is over, and the target out. Precondition: voters.size() >= kFewest.
+  // voters: the machines of all other current players, each once, including the voter's. A vote
+  // that passes is closed, and the target is removed. Precondition: voters.size() >= kFewest.
   Count cast(const std::string& voter, const Target& target, std::span<const std::string> voters,
              std::int64_t now_us);
   bool open_against(std::uint32_t client) const;
