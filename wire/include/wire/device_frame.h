@@ -1,18 +1,18 @@
 // The frame from the cabinet's micro-controller to the PC, shared by firmware and PC: freestanding
-// C++14, no library headers except <stdint.h> and <stddef.h>.
+// C++14, no library headers beyond <stdint.h> and <stddef.h>.
 //
-// Layout (little endian), kDeviceFrameBytes in total:
+// Layout (little endian), kDeviceFrameBytes in all:
 //   0  u8   version            kDeviceFrameVersion
 //   1  u8   flags              bit 0: a mouse was re-synchronised since the last frame
 //   2  u16  sequence           wraps
 //   4  u32  time_us            micro-controller's clock, wraps
-//   8  8 x { u16 slide, u16 spin }   cumulative counts, wrap: a lost frame loses no counts
+//   8  8 x { u16 slide, u16 spin }   cumulative counts, wrap: a lost frame loses nothing
 //  40  u8   present            bit i: mouse i answers
 //  41  u8   overflow           bit i: mouse i reported overflow since the last frame
 //  42  u8   quality            parity and framing errors since the last frame, saturating
 //  43  u8   index              bit i: the index mark of rod i is under its switch
 //  44  u16  crc                CRC-16/CCITT-FALSE over bytes 0..43
-// Version 1 has no index marks: its byte 43 is 0. The decoder accepts it too.
+// Version 1 has no index marks: its byte 43 is 0. It is read too.
 // Over USB HID: one 64-byte vendor report, bytes 46..63 zero. Over a serial line: COBS, then a 0.
 #ifndef WIRE_DEVICE_FRAME_H
 #define WIRE_DEVICE_FRAME_H

@@ -1,9 +1,9 @@
-// The settings of the cabinet's micro-controller, and the report that it sends on request (kind 5
-// of wire/device_command.h) instead of one frame: freestanding C++14, like wire/device_frame.h,
-// whose CRC it uses.
+// The settings of the cabinet's micro-controller, and the report in which it tells them to the PC
+// that asks (kind 5 of wire/device_command.h), in the place of one frame: freestanding C++14, as
+// wire/device_frame.h, whose CRC it has.
 //
-// Layout of the settings (little endian), kDeviceSettingsBytes in total, also the controller's
-// stored form; fields as in wire/device_command.h:
+// Layout of the settings (little endian), kDeviceSettingsBytes in all, as the controller keeps them
+// too; fields as in wire/device_command.h:
 //   0  u8   version            kDeviceSettingsVersion
 //   1  u8   resolution
 //   2  u8   brightness
@@ -13,12 +13,12 @@
 //   6  8 x { u16 travel, u16 turn }
 //  38  u8   slide reversed     bit i: of rod i
 //  39  u8   spin reversed      the same
-// Layout of the report, kDeviceFrameBytes in total, framed like a frame:
-//   0  u8   kind               kDeviceSettingsReport, which is not a version of a frame
-//   1  u8   abilities          of the board: bit 0: it has sensors, to which resolution and ps2
-//                              apply; bit 1: it can be gamepads
+// Layout of the report, kDeviceFrameBytes in all, packed as a frame is:
+//   0  u8   kind               kDeviceSettingsReport, which is no version of a frame
+//   1  u8   abilities          of the board: bit 0: it has sensors, for which resolution and ps2
+//                              are; bit 1: it can be gamepads
 //   2  40 x u8                 the settings
-//  42  u16  sequence           of the request
+//  42  u16  sequence           of the question
 //  44  u16  crc                CRC-16/CCITT-FALSE over bytes 0..43
 #ifndef WIRE_DEVICE_SETTINGS_H
 #define WIRE_DEVICE_SETTINGS_H
