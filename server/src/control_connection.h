@@ -21,7 +21,7 @@ class ControlConnection {
   enum class State : std::uint8_t {
     greeting,  // a Hello is due
     joined,
-    closing,  // was told the reason; further received data is discarded
+    closing,  // the reason was sent; further received data is discarded
     dead,
   };
 

@@ -21,9 +21,9 @@ namespace server {
 
 class InputPort {
  public:
-  // Max datagrams per tick, of each player and of strangers, so that a flood costs a bounded time.
-  // The rest waits in the socket. A player sends one per tick: this catches up after a stall of 64
-  // ms.
+  // Max datagrams per tick, of each player and of unknown senders, so that a flood costs a bounded
+  // time. The rest waits in the socket. A player sends one per tick: this catches up after a stall
+  // of 64 ms.
   static constexpr int kMaxPerTick = 64;
   static constexpr int kMaxStrayPerTick = 32;
 

@@ -433,7 +433,7 @@ void Server::finish(const wire::Sentence& reason) {
   impl_->finished = true;
   impl_->broadcaster.close();  // sends the last snapshot before the Bye
   impl_->control.stop(reason);
-  if (impl_->phones) impl_->phones->stop();  // has told them the reason
+  if (impl_->phones) impl_->phones->stop();  // sends them the reason
   if (impl_->recorder) impl_->recorder->finish(impl_->match);
   if (impl_->recorder && impl_->options.record_by_default_bytes > 0 && !impl_->was_played)
     ::unlink(impl_->options.record.c_str());

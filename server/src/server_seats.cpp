@@ -97,7 +97,7 @@ void Server::Impl::remember_name(std::uint32_t client) {
     if ((who->rods >> rod & 1) != 0) had_rod[rod] = who->at(rod);
 }
 
-// If a player of a team is absent, the match goes on: all are told who plays.
+// If a player of a team is absent, the match goes on. Notifies all of the stand-ins.
 void Server::Impl::watch_absences() {
   const foosball::MatchView& view = match.view();
   const bool in_match = view.screen != foosball::Screen::logo &&

@@ -9,8 +9,7 @@
 namespace wire {
 namespace {
 
-constexpr double kSlide = 1e7, kAngle = 1e6, kSlideRate = 1e6,
-                 kAngleRate = 1e3;  // per SI unit
+constexpr double kSlide = 1e7, kAngle = 1e6, kSlideRate = 1e6, kAngleRate = 1e3;  // per unit
 
 // value * per_unit, rounded to the nearest integer, saturating at +-limit.
 std::int64_t whole(double value, double per_unit, std::int64_t limit) {

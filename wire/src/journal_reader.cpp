@@ -86,8 +86,7 @@ std::string to_text(const JournalFormat& format) {
   return text.data();
 }
 
-// Identity of a format: kind, magic, version and layout hash begin every header in every version: 1
-// + 4 + 2 + 4 bytes.
+// In every version a header begins with kind, magic, version and layout hash: 1 + 4 + 2 + 4 bytes.
 std::optional<JournalFormat> other_journal_format(std::span<const std::byte> file) {
   constexpr std::size_t kIdentity = 11;
   if (file.size() < kRecordHead + kIdentity) return std::nullopt;
