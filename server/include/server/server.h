@@ -109,8 +109,7 @@ class Server {
   void finish(const wire::Sentence& reason);
 
   std::uint16_t port() const;
-  std::string phones()
-      const;  // where they join, http:// where they join, http://HOST:PORT/TOKEN; empty: not open
+  std::string phones() const;  // where they join, http://HOST:PORT/TOKEN; empty: closed
   const foosball::Match& match() const;
   bool replay_over() const;             // nothing left to play
   const Playback* replay() const;       // or null

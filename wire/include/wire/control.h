@@ -200,10 +200,9 @@ struct Answers {
 // Statistics of a team in a match, as stored in the results.
 struct TeamReport {
   std::uint32_t shots = 0, shots_on_target = 0, saves = 0, passes = 0, own_goals = 0;
-  float possession = 0.0f;  // since its last touch [s]; finite, as all here
-  float rating = 0.0f,
-        rating_change = 0.0f;  // mean Elo of its players after the match, and its change
-  float fastest_shot = 0.0f;   // [m/s]; 0: no shot, or unknown
+  float possession = 0.0f;                    // since its last touch [s]; finite, as all here
+  float rating = 0.0f, rating_change = 0.0f;  // mean Elo of its players after the match; change
+  float fastest_shot = 0.0f;                  // [m/s]; 0: no shot, or unknown
 };
 struct Fame {
   std::string name;
