@@ -16,7 +16,8 @@ std::string first_line(const std::string& path) {
   return line;
 }
 
-// Of this process' own control group (its line in /proc begins with "0::"); empty: there is none.
+// The file of the process's own control group (its line in /proc begins with "0::"), otherwise of
+// the root group; empty if there is none.
 std::string read_cpu_max() {
   const std::string own = first_line("/proc/self/cgroup");
   const std::string path = own.starts_with("0::") ? own.substr(3) : "";

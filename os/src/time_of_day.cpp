@@ -35,7 +35,7 @@ std::optional<std::int64_t> utc_seconds(std::string_view text) {
   parts.tm_min = number(14, 2);
   parts.tm_sec = number(17, 2);
   const std::time_t time = ::timegm(&parts);
-  // timegm() goes on where a day does not exist: 30 February becomes 2 March.
+  // timegm() normalises a day that does not exist: 30 February becomes 2 March.
   if (utc_text(time) != text) return std::nullopt;
   return time;
 }

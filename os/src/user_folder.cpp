@@ -5,7 +5,7 @@
 namespace os {
 namespace {
 
-// What is no absolute path is to be ignored.
+// The XDG specification requires that a path that is not absolute is ignored.
 std::string absolute(const char* variable) {
   const char* value = std::getenv(variable);
   return value != nullptr && value[0] == '/' ? value : "";

@@ -11,7 +11,7 @@ long os::testing::allocations() {
   return taken;
 }
 
-// Not inlined: g++ 12 would otherwise take the pair of malloc and free for a mismatch.
+// Not inlined: g++ 12 would otherwise report malloc and free as a mismatched pair.
 [[gnu::noinline]] void* operator new(std::size_t size) {
   ++taken;
   if (void* const memory = std::malloc(size == 0 ? 1 : size)) return memory;

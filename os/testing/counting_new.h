@@ -1,11 +1,11 @@
-// For tests that a warm loop takes no memory. Linking counting_new replaces the program's operator
-// new; it would hide leaks and overruns from the address sanitizer, so such tests are programs of
-// their own.
+// Counts allocations, for tests that a warm loop does not allocate. Linking counting_new replaces
+// the program's operator new. That would hide leaks and overruns from the address sanitizer, so
+// such tests are separate programs.
 #pragma once
 
 namespace os::testing {
 
-// How often this thread has taken memory. Other threads may allocate.
+// Number of allocations of this thread. Other threads may allocate.
 long allocations();
 
 }  // namespace os::testing

@@ -217,7 +217,7 @@ TEST(TimeOfDay, ATextOfItIsReadBackAndNoOtherIs) {
   EXPECT_TRUE(utc_seconds(utc_now()));
 }
 
-// A variable of the environment, as it was again at the end.
+// Sets a variable of the environment, and restores it at the end.
 class Variable {
  public:
   Variable(const char* name, const char* value) : name_(name) {

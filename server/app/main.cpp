@@ -1,4 +1,4 @@
-// space-foosball-server: options, devices, clock and randomness, handed to server_core.
+// space-foosball-server: passes options, devices, clock and random numbers to server_core.
 #include <fmt/core.h>
 #include <poll.h>
 #include <signal.h>
@@ -39,8 +39,8 @@ extern "C" void request_stop(int) {
   stop_requested.store(true, std::memory_order_relaxed);
 }
 
-// Threads made while the signals are blocked never take them: they go to the tick's thread, whose
-// sleep they end.
+// Threads created while signals are blocked never receive them. The tick thread does; they end its
+// sleep.
 class SignalsBlocked {
  public:
   SignalsBlocked() {
@@ -60,11 +60,11 @@ class SignalsBlocked {
 
 std::uint64_t random_number() {
   std::uint64_t number = 0;
-  if (::getrandom(&number, sizeof number, 0) != sizeof number) std::abort();  // no kernel we know
+  if (::getrandom(&number, sizeof number, 0) != sizeof number) std::abort();  // never expected
   return number;
 }
 
-// What a person reads, without anybody waiting for them to do so.
+// Console output; nothing waits for its reader.
 struct Outputs {
   server::LogWriter out{STDOUT_FILENO}, err{STDERR_FILENO};
 };
@@ -91,8 +91,8 @@ int fail(Outputs& outputs, int exit_code, const std::string& sentence) {
   return exit_code;
 }
 
-// Any thread, when the heap has no more: nothing here may take memory. The journal's file has all
-// but the last ticks.
+// Out-of-memory handler, called from any thread. It must not allocate. The journal file has all but
+// the last ticks.
 void leave_without_memory() {
   constexpr char kText[] =
       "space-foosball-server: out of memory: end other programs, or raise the limit of this one\n";
@@ -103,8 +103,8 @@ void leave_without_memory() {
   ::_exit(server::kExitFailed);
 }
 
-// Of the letters and digits that nobody takes for one another; 50 bits, of which each guess costs
-// a connection.
+// Uses only letters and digits that are not easily confused: 50 bits. Each guess costs a
+// connection.
 std::string make_password() {
   constexpr char kLetters[] = "23456789abcdefghjkmnpqrstuvwxyz";
   std::string password;
@@ -132,8 +132,8 @@ struct Devices {
   std::unique_ptr<cabinet::CabinetHaptics> haptics = std::make_unique<cabinet::CabinetHaptics>();
 };
 
-// That which is named, else that which space-foosball calibrate has kept for the controller, else
-// that of a sensor as it comes.
+// The named calibration; otherwise the one that space-foosball calibrate has stored for the
+// controller; otherwise the nominal one of the sensor.
 tl::expected<cabinet::Calibration, std::string> calibration_of(const std::string& address,
                                                                const std::string& named,
                                                                const server::Log& log) {
@@ -158,7 +158,7 @@ tl::expected<cabinet::Calibration, std::string> calibration_of(const std::string
   return cabinet::nominal_calibration();
 }
 
-// Says what has changed since it was last asked.
+// Logs each text only once.
 server::Log only_news(const server::Log& log) {
   return [log, told = std::make_shared<std::set<std::string>>()](server::LogLevel level,
                                                                  const std::string& text) {
@@ -166,7 +166,7 @@ server::Log only_news(const server::Log& log) {
   };
 }
 
-// For a controller that is plugged in while the server runs, or another in its place.
+// For a controller that is plugged in or replaced while the server runs.
 cabinet::CalibrationFinder finder(const std::string& address, const server::Log& log) {
   return [address, log]() -> std::optional<cabinet::Calibration> {
     auto found = calibration_of(address, {}, log);
@@ -226,7 +226,7 @@ tl::expected<Devices, std::string> open_devices(const app::Options& options,
   return devices;
 }
 
-// Beyond this machine nobody joins without a password: where none was chosen, one is made.
+// Remote clients need a password: if none was chosen, one is generated.
 bool wants_password(const app::Options& options) {
   const auto listen = os::parse_address(options.network.listen, 0);
   return !options.access.password && listen && !listen->is_loopback();
@@ -269,7 +269,7 @@ tl::expected<std::unique_ptr<server::Server>, server::StartError> start(const ap
   wanted.cabinet = !options.devices.empty();
   wanted.questionnaire = !options.no_questionnaire;
   wanted.await_client = options.await_client;
-  // Below the tick, which it must never hold up, and above all else.
+  // One below the tick, so that it never delays it, and above everything else.
   if (options.loop.paced && options.loop.real_time)
     wanted.send_priority = options.loop.priority - 1;
   wanted.log = log;
@@ -285,8 +285,8 @@ tl::expected<std::unique_ptr<server::Server>, server::StartError> start(const ap
   return made;
 }
 
-// The exit code, as far as the recording and the results that were written have a say in it.
-// asked_for: a recording that is made by default may fail.
+// The exit code by the recording and the results. asked_for: false for an automatic recording,
+// which may fail.
 int judge_record(const server::Server& server, bool asked_for, const server::Log& log) {
   const auto judge = [&log](const std::string& problem, int failed) {
     if (problem.empty()) return server::kExitOk;
@@ -299,7 +299,7 @@ int judge_record(const server::Server& server, bool asked_for, const server::Log
   return recording != server::kExitOk ? recording : results;
 }
 
-// The same for a replay. The summary says the verdict too.
+// The exit code by the replay. The summary contains the verdict too.
 int judge_replay(const server::Server& server, bool quiet, const server::Log& log) {
   const server::Playback* playback = server.replay();
   if (playback == nullptr) return server::kExitOk;
@@ -309,7 +309,7 @@ int judge_replay(const server::Server& server, bool quiet, const server::Log& lo
   return code;
 }
 
-// ... and as far as the network has: a run of which nothing was heard is none.
+// The exit code by the network: a run that sent nothing has failed.
 int judge_sending(const server::Server& server, const server::Log& log) {
   const server::Counters c = server.counters();
   if (c.send_errors == 0 || c.snapshots_sent > 0) return server::kExitOk;
@@ -386,11 +386,11 @@ int main(int argc, char** argv) {
   try {
     std::optional<Outputs> outputs;
     {
-      const SignalsBlocked blocked;  // the writers' threads take none
+      const SignalsBlocked blocked;  // the writer threads receive none
       outputs.emplace();
     }
     return run(argc, argv, *outputs);
-  } catch (const std::exception& error) {  // no thread to be had, above all
+  } catch (const std::exception& error) {  // mainly: no thread could be created
     const std::string text = std::string("space-foosball-server: ") + error.what() +
                              "; end other programs, or raise the limits of this one\n";
     [[maybe_unused]] const auto written = ::write(STDERR_FILENO, text.data(), text.size());

@@ -35,7 +35,7 @@ std::optional<server::Endpoint> parse_group(const std::string& text) {
   return server::Endpoint{parsed->host, *parsed->port};
 }
 
-// The file's first line.
+// The first line of the file.
 std::optional<std::string> read_password(const std::string& path) {
   std::ifstream file(path);
   std::string line;
@@ -233,7 +233,7 @@ void add_run(CLI::App& cli, Options& o, Raw& raw) {
   cli.add_flag("--quiet", o.quiet, "say only what is wrong");
 }
 
-// A bare path says by itself what it is.
+// The path itself tells the kind of device.
 std::string with_scheme(const std::string& device) {
   if (device.empty() || (device[0] != '/' && device.find(':') != std::string::npos)) return device;
   if (device.rfind("/dev/hidraw", 0) == 0) return "hid:" + device;
@@ -258,7 +258,7 @@ foosball::GameSetup setup_of(const Raw& raw) {
   return setup;
 }
 
-// The options that a refusal of a game is about.
+// The options that a rejection of a game refers to.
 std::vector<const char*> options_of(const wire::Sentence& refusal) {
   using wire::Said;
   const std::vector<const char*> end{"--goals", "--sets", "--minutes", "--change-sides"},
@@ -277,15 +277,15 @@ foosball::Layout layout_of(const Raw& raw) {
   return raw.layout == "paper" ? foosball::Layout::paper : foosball::Layout::tournament;
 }
 
-// Of what was given, whatever the mode makes of it.
+// Uses the given values, regardless of the mode.
 server::GameSite site_of(const Options& o, const Raw& raw) {
   foosball::MatchDesc given = o.match;
   given.layout = layout_of(raw);
   return server::site_of(given, o.computer[0] || o.computer[1], !o.devices.empty());
 }
 
-// Empty, or why the options cannot be played together: what a client would be told that asked for
-// the same.
+// Empty, or the reason why the options contradict each other: the same sentence as for a client's
+// request.
 std::string contradiction(const CLI::App& cli, const Options& o, const Raw& raw,
                           const server::GameSite& site) {
   const auto given = [&](const char* name) { return cli.get_option(name)->count() > 0; };
@@ -331,7 +331,7 @@ void translate(Options& o, const Raw& raw) {
   o.limits.seat_kept_us = std::llround(raw.keep_seats * 1e6);
   o.run.ticks = static_cast<std::uint64_t>(std::llround(std::ceil(raw.seconds / foosball::kTick)));
   o.recording_limits.bytes = static_cast<std::uint64_t>(raw.recordings_gb * (1 << 30));
-  // Beside the control port; of a free one any other.
+  // The port after the control port; any free one if that is not a fixed port below 65535.
   const int beside = o.network.port == 0 || o.network.port == 65535 ? 0 : o.network.port + 1;
   o.phones.port = static_cast<std::uint16_t>(raw.phone_port >= 0 ? raw.phone_port : beside);
   o.haptics = !raw.no_haptics;
@@ -341,8 +341,8 @@ void translate(Options& o, const Raw& raw) {
   for (std::string& device : o.devices) device = with_scheme(device);
 }
 
-// Takes the mice out of the devices: each its rod, those that name none a rod of team 0 that is
-// free, the midfield first. Empty, or what is wrong.
+// Moves the mice out of the devices and gives each its rod. Mice without a rod get free rods of
+// team 0, midfield first. Empty, or an error message.
 std::string take_mice(Options& o) {
   constexpr std::array<foosball::Line, 4> kOrder = {foosball::Line::midfield,
                                                     foosball::Line::attack, foosball::Line::goalie,
@@ -377,14 +377,14 @@ std::string take_mice(Options& o) {
   return {};
 }
 
-// Empty: there is no home.
+// Empty if there is no home.
 std::string own_characters() {
   const std::string data = os::data_folder();
   return data.empty() ? "" : data + "/space-foosball/characters";
 }
 
-// A challenge is played by the built-in ones; a folder that is named is read all the same, to be
-// compared with them.
+// A challenge uses the built-in characters. A named folder is loaded all the same, to be compared
+// with them.
 tl::expected<foosball::Characters, std::string> characters_of(const Raw& raw) {
   if (!raw.characters.empty()) return characters::load_characters(raw.characters);
   if (!foosball::chooses_rules(mode_of(raw.mode))) return foosball::built_in_characters();
@@ -393,7 +393,7 @@ tl::expected<foosball::Characters, std::string> characters_of(const Raw& raw) {
   return characters::load_more_characters(foosball::built_in_characters(), own);
 }
 
-// What --check-character prints: the file with nothing left out.
+// The output of --check-character: the file with all fields.
 tl::expected<std::string, std::string> checked(const std::string& path) {
   const auto character = characters::load_character(path);
   if (!character) return tl::unexpected(character.error());
@@ -439,7 +439,7 @@ tl::expected<Options, Leave> parse(int argc, const char* const* argv) {
   if (raw.list_tuning) {
     return tl::unexpected(Leave{server::kExitOk, profile::format_tuning(options.match.tuning)});
   }
-  if (!options.replay.empty()) return options;  // what is played is said by the recording
+  if (!options.replay.empty()) return options;  // the recording defines the game
   auto list = characters_of(raw);
   if (!list) return tl::unexpected(Leave{server::kExitUsage, list.error()});
   options.match.characters = std::move(*list);

@@ -13,7 +13,7 @@
 
 namespace app {
 
-// A mouse of the machine and the rod that it moves, 0..7.
+// A mouse of this machine and the rod that it controls, 0..7.
 struct Mouse {
   std::string name, path;
   int rod;
@@ -24,7 +24,7 @@ struct Options {
   std::array<bool, foosball::kTeams> computer{};
   bool computer_fills = false;
   foosball::PlayerSpec computer_player{};
-  std::uint32_t challenge_date = 0;  // given; 0: that of the day
+  std::uint32_t challenge_date = 0;  // given; 0: today's
   server::NetworkOptions network;
   server::AccessOptions access;
   server::ControlLimits limits;
@@ -34,15 +34,15 @@ struct Options {
   server::LoopOptions loop;
   std::vector<std::string> devices;
   std::vector<Mouse> mice;
-  std::string recordings;  // folder for a recording that is made without being asked for
+  std::string recordings;  // folder of automatic recordings
   server::RecordingLimits recording_limits;
   std::string calibration, record, replay, results, ready_file, stats_file;
   bool no_questionnaire = false;
-  bool password_was_made = false;  // for this run: it is to be said
+  bool password_was_made = false;  // generated for this run, and must be shown
   bool overwrite = false, await_client = false, quiet = false;
 };
 
-// What to print, and the exit code, when there is nothing to run: --help, or a bad value.
+// What to print, and the exit code, if there is nothing to run: --help, or an invalid value.
 struct Leave {
   int exit_code;
   std::string text;

@@ -52,7 +52,7 @@ void Broadcaster::send(std::span<const std::byte> datagram, std::uint64_t counte
   parcel.size = datagram.size();
   parcel.counter = counter;
   parcel.tick_ns = tick_ns;
-  parcel.to.assign(listeners_.begin(), listeners_.end());  // within what is reserved
+  parcel.to.assign(listeners_.begin(), listeners_.end());  // within the reserved capacity
   given_.store(given + 1, std::memory_order_release);
   work_.post();
 }
@@ -74,7 +74,7 @@ void Broadcaster::close() {
 void Broadcaster::run(int priority) {
   if (priority > 0) {
     const sched_param wanted{.sched_priority = priority};
-    ::sched_setscheduler(0, SCHED_FIFO, &wanted);  // refused: the loop has said so of its own
+    ::sched_setscheduler(0, SCHED_FIFO, &wanted);  // refused: the loop has logged the same refusal
   }
   os::drop_capabilities(false);
   std::uint32_t done = 0;
@@ -91,16 +91,17 @@ void Broadcaster::run(int priority) {
   }
 }
 
-// A core for this thread beside the tick's: asked anew now and then, for who runs the server may
-// move it. Within a quota of one core's time, waiting awake would take the tick's.
+// True if this thread has a core beside the tick's. Checked again from time to time, since an
+// administrator may change the affinity. With a quota of one core, busy-waiting would take the
+// tick's time.
 bool Broadcaster::spare_core() {
   constexpr std::uint32_t kEvery = 1024;  // a second
   if (looked_at_cores_++ % kEvery == 0) spare_core_ = os::usable_cores() > 1;
   return spare_core_;
 }
 
-// Awake, since to be woken takes as long as the tick does. Where that is in vain again and again
-// (ticks that take long, a machine without time to spare), it is left alone for a while.
+// Busy-waits, since a wake-up takes as long as the tick does. After several failures in a row (long
+// ticks, a loaded machine) it stops for a while.
 void Broadcaster::await(std::uint32_t done) {
   constexpr int kMostVain = 8, kRest = 1000;
   if (expected_.load(std::memory_order_acquire) != done + 1 || !spare_core()) return;
@@ -120,7 +121,7 @@ void Broadcaster::await(std::uint32_t done) {
 
 namespace {
 
-// Sent from the address that the client knows, on a machine that has several.
+// Sends from the address that the client knows, on a machine with several.
 template <class Info>
 std::size_t put_source(std::span<std::byte> control, int level, int type, const Info& info) {
   auto* head = reinterpret_cast<cmsghdr*>(control.data());
@@ -175,7 +176,7 @@ void Broadcaster::deliver(Parcel& parcel) {
       sent_.fetch_add(static_cast<std::uint64_t>(sent), std::memory_order_relaxed);
       bytes_.fetch_add(static_cast<std::uint64_t>(sent) * (parcel.size + wire::kSealBytes),
                        std::memory_order_relaxed);
-    } else {  // the first of the rest could not be sent: the others may
+    } else {  // the first of the rest failed; the others may succeed
       errors_.fetch_add(1, std::memory_order_relaxed);
       last_error_.store(errno, std::memory_order_relaxed);
       ++at;

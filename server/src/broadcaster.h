@@ -1,9 +1,9 @@
-// One datagram to every listener, or to the multicast group: encoded once, sealed for each, sent
-// with one system call, on a thread of its own.
+// Sends one datagram to every listener, or to the multicast group: encoded once, sealed for each
+// listener, sent with one system call on its own thread.
 //
-// On loopback the kernel delivers within the sender's call and wakes each receiver: 20 us for one
-// listener, 65 us for thirty. The tick only puts the datagram down and wakes this thread, 4 us
-// however many listen. See docs/decisions/0011.
+// On loopback the kernel delivers during the sender's call and wakes each receiver: 20 us for one
+// listener, 65 us for thirty. The tick only queues the datagram and wakes this thread, which takes
+// 4 us for any number of listeners. See docs/decisions/0011.
 #pragma once
 
 #include <netinet/in.h>
@@ -27,29 +27,29 @@ namespace server {
 
 class Broadcaster {
  public:
-  // fd: a non-blocking UDP socket, which must outlive this. capacity: listeners at most. priority:
-  // real-time, of the sending thread; 0, or where it is not permitted: an ordinary thread.
+  // fd: a non-blocking UDP socket, which must outlive this. capacity: max number of listeners.
+  // priority: real-time priority of the sender thread; 0, or if not permitted: an ordinary thread.
   Broadcaster(int fd, std::size_t capacity, int priority);
   ~Broadcaster();  // as close()
 
-  // The tick's thread; nothing here waits or takes memory.
+  // Tick thread; these calls never block and never allocate.
   struct Listener {
     std::uint32_t client = 0;  // and the id of its key; 0: a multicast group
     os::SocketAddress to;
-    os::SocketAddress from;  // of this machine's addresses; none: the kernel chooses
+    os::SocketAddress from;  // local address to send from; none: the kernel chooses
     wire::SealKey key{};
   };
   void add(const Listener& listener);
   void remove(std::uint32_t client);
-  // A datagram will be given soon: the thread wakes up now, beside the tick that makes it.
+  // A datagram will follow soon: wakes the thread now, in parallel with the tick that makes it.
   void expect();
-  // counter: rises from call to call, and is never used twice; see wire/seal.h.
-  // tick_ns: when the tick began, on the monotonic clock. A datagram that finds kParcels others
-  // still waiting is dropped, and counted as an error for each listener.
+  // counter: increases from call to call, and is never reused; see wire/seal.h. tick_ns: when the
+  // tick began, on the monotonic clock. If kParcels datagrams are pending, this one is dropped and
+  // counted as an error for each listener.
   void send(std::span<const std::byte> datagram, std::uint64_t counter, std::int64_t tick_ns);
 
-  void wait_sent();  // until the kernel has all that was given
-  void close();      // the same, and ends the thread
+  void wait_sent();  // until the kernel has every datagram
+  void close();      // waits like wait_sent(), then ends the thread
 
   std::uint64_t sent() const { return sent_.load(std::memory_order_relaxed); }
   std::uint64_t errors() const { return errors_.load(std::memory_order_relaxed); }
@@ -59,10 +59,10 @@ class Broadcaster {
   const SendStats& stats() const { return stats_; }
 
  private:
-  static constexpr std::uint32_t kParcels = 16;  // 16 ms of a thread that gets no time
-  // To look out for an expected datagram without going to sleep: three times what a tick takes.
+  static constexpr std::uint32_t kParcels = 16;  // 16 ms without processor time
+  // Busy-wait for an expected datagram before sleeping: three times the duration of a tick.
   static constexpr std::int64_t kLookOutNs = 150'000;
-  // With its own listeners: who comes and goes needs no word between the threads.
+  // Each parcel has its own list of listeners, so that changes need no other synchronisation.
   struct Parcel {
     std::array<std::byte, wire::kMaxDatagram> datagram;
     std::size_t size = 0;
@@ -70,7 +70,7 @@ class Broadcaster {
     std::int64_t tick_ns = 0;
     std::vector<Listener> to;
   };
-  // What the kernel is given for one listener.
+  // The kernel's input for one listener.
   struct Sealed {
     std::array<std::byte, wire::kMaxDatagram + wire::kSealBytes> bytes;
     alignas(cmsghdr) std::array<std::byte, CMSG_SPACE(sizeof(in6_pktinfo))> control;
@@ -91,12 +91,12 @@ class Broadcaster {
   std::atomic<bool> closing_{false};
   os::ThreadSignal work_;
 
-  // These and the stats: the sending thread's.
+  // These and the stats belong to the sender thread.
   std::vector<mmsghdr> messages_;
   std::vector<Sealed> sealed_;
   std::uint32_t looked_at_cores_ = 0;
   bool spare_core_ = false;
-  int vain_ = 0;  // waits in a row, awake, for a datagram that did not come in time
+  int vain_ = 0;  // consecutive busy-waits without a datagram in time
   SendStats stats_;
   std::atomic<std::uint64_t> sent_{0}, errors_{0}, bytes_{0};
   std::atomic<int> last_error_{0};

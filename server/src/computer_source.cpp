@@ -20,7 +20,7 @@ void ComputerSource::poll(std::int64_t now_us) {
   rods_ = {};
   if (mine_ == 0) return;
   ++counters_.frames;
-  // A rod that its hands have let go is still the computer's: it stays where it was left.
+  // A rod that is no longer driven still belongs to the computer: it holds its position.
   for (const int rod : rods_of_team(foosball::table_spec(view_.layout), team_)) {
     if ((mine_ >> rod & 1) == 0) continue;
     const foosball::RodTarget& target = targets_[rod];

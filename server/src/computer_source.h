@@ -1,4 +1,4 @@
-// A computer player as an input source: one look at the match a poll, so one poll a tick.
+// A computer player as an input source. It observes the match once per poll, so poll once per tick.
 #pragma once
 
 #include "cabinet/rod_input.h"
@@ -8,13 +8,13 @@ namespace server {
 
 class ComputerSource final : public cabinet::InputSource {
  public:
-  // view must outlive the source and be that of the tick before.
+  // view must outlive the source and be the view of the previous tick.
   ComputerSource(const foosball::ComputerPlayerDesc& desc, const foosball::MatchView& view);
 
-  // Another player takes its place, from the next poll on.
+  // Replaces the player from the next poll on.
   void replace(const foosball::ComputerPlayerDesc& desc);
-  // The rods that it plays from the next poll on, by bit, of its team's. The others are absent;
-  // none: nothing is computed.
+  // The team's rods that it plays from the next poll on (bit mask). The others are absent; with
+  // none, nothing is computed.
   void set_rods(std::uint8_t rods) { mine_ = rods; }
 
   void poll(std::int64_t now_us) override;

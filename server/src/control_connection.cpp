@@ -10,15 +10,15 @@
 namespace server {
 namespace {
 
-// Sent bytes are taken out of memory in pieces of this size while a peer reads without ever
-// catching up: smaller pieces move the unsent ones more often.
+// Sent bytes are erased in blocks of this size while a peer reads without ever catching up. Smaller
+// blocks would move the unsent bytes more often.
 constexpr std::size_t kSentBytesKept = 16 * 1024;
 
 bool would_block() {
   return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR;
 }
 
-// A peer that vanished without a word (power, cable) is noticed within about 10 s.
+// Detects a peer that disappeared without closing (power, cable) within about 10 s.
 void watch_for_silence(int fd) {
   const auto set = [fd](int level, int name, int value) {
     ::setsockopt(fd, level, name, &value, sizeof value);
@@ -69,7 +69,7 @@ bool ControlConnection::receive() {
 }
 
 void ControlConnection::seal(const wire::StreamKeys& keys) {
-  reader_ = {};  // nothing that came unsealed counts any more
+  reader_ = {};  // discards data received before the seal
   opener_.emplace(keys.to_server);
   sealer_.emplace(keys.to_client);
 }

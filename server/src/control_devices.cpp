@@ -1,5 +1,5 @@
-// What the controllers and mice of this machine do, for a host's screen. The tick is asked only
-// while somebody looks.
+// The state of this machine's controllers and mice, for a host's screen. The tick is only asked
+// while a host requests it.
 #include <sys/eventfd.h>
 
 #include <utility>
@@ -14,7 +14,7 @@ void ControlServer::tell_devices(const DeviceTable& table) {
   if (devices_.push(DeviceTable(table))) ::eventfd_write(wake_.get(), 1);
 }
 
-// They are the host's: nobody else has to know what hangs at the machine.
+// For hosts only: other clients have no need to know the machine's devices.
 void ControlServer::take_device_query(ControlConnection& connection) {
   const Seat* seat = seats_.find(connection.client);
   const bool may = seat != nullptr && seat->role == wire::Role::host;

@@ -1,4 +1,4 @@
-// What is played, as the host chooses it, and the challenge that goes with the days.
+// The game chosen by the host, and the challenge of the day.
 #include "control_server.h"
 #include "os/clock.h"
 #include "server/game_choice.h"
@@ -23,7 +23,7 @@ bool ControlServer::in_challenge() const {
   return game_ && game_->mode == number(wire::Mode::challenge);
 }
 
-// What is played is the host's to choose, as the tuning is. A challenge is that of today.
+// Only the host chooses the game, as for the tuning. A challenge is today's.
 void ControlServer::take_game(ControlConnection& connection, wire::Game game) {
   const Seat* seat = seats_.find(connection.client);
   const auto refuse_it = [&](const wire::Sentence& why_not) {
@@ -63,7 +63,7 @@ std::uint32_t ControlServer::challenge_day() const {
   return options_.date ? day_of(options_.date()) : 0;
 }
 
-// At midnight the next day's challenge is chosen, for the matches that begin from then on.
+// At midnight selects the challenge of the next day, for the matches that begin from then on.
 void ControlServer::follow_the_day() {
   if (!in_challenge() || !options_.teams_open || os::monotonic_us() < look_at_the_day_us_) return;
   look_at_the_day_us_ = os::monotonic_us() + kLookAtTheDayUs;

@@ -1,4 +1,4 @@
-// The part of ControlServer that puts players out: by vote, or by the host's word.
+// The part of ControlServer that removes players: by vote, or by the host.
 #include <algorithm>
 #include <utility>
 
@@ -21,8 +21,8 @@ std::int64_t minutes(std::int64_t us) {
 
 }  // namespace
 
-// Why this seat may not put that one out; empty: it may, or may vote for it. Who gives up the rods
-// while a vote is open does not escape it.
+// The reason why this seat may not remove the other one; empty: it may, or may vote for it. Giving
+// up the rods during a vote does not end the vote.
 wire::Sentence ControlServer::why_not_kick(const Seat& voter, const Seat* target) const {
   const bool host = voter.role == wire::Role::host;
   if (!options_.teams_open) return say<Said::recording_plays>();
@@ -35,7 +35,7 @@ wire::Sentence ControlServer::why_not_kick(const Seat& voter, const Seat* target
   return {};
 }
 
-// One machine, one vote, as for a pause.
+// One vote per machine, as for a pause.
 void ControlServer::take_kick(ControlConnection& connection, const wire::Kick& kick) {
   const Seat* voter = seats_.find(connection.client);
   if (voter == nullptr || !connection.requests.take(os::monotonic_us())) return;
@@ -64,7 +64,7 @@ void ControlServer::take_kick(ControlConnection& connection, const wire::Kick& k
        say<Said::would_put_out>(voter->name, target->name, count.votes, count.needed));
 }
 
-// The seat is free, its ticket worth nothing, and the machine has no rods until a match is over.
+// Frees the seat and invalidates its ticket. The machine gets no rods until a match is over.
 void ControlServer::put_out(Seat& seat, bool by_host) {
   const std::uint32_t client = seat.client;
   seat.put_out = true;
@@ -83,7 +83,7 @@ void ControlServer::put_out(Seat& seat, bool by_host) {
                  : say<Said::put_out_by_players>(minutes(KickVotes::kOutUs)));
 }
 
-// Empty: who comes from there, and is this client (0: none yet), may have rods.
+// The reason why this owner's client (0: not joined yet) may not have rods; empty: it may.
 wire::Sentence ControlServer::why_out(const std::string& owner, wire::Role role,
                                       std::uint32_t client) const {
   if (role == wire::Role::host) return {};
@@ -108,8 +108,8 @@ void ControlServer::watch_kicks(std::int64_t now_us) {
     clear_notice(wire::kKickTopics + target, "too few wanted it");
 }
 
-// Who leaves and joins anew, to watch or to play, is the one that the vote is about; so is whoever
-// else comes from that address meanwhile.
+// A vote follows a target that leaves and rejoins, to watch or to play. It also continues against
+// anyone else who joins from that address meanwhile.
 void ControlServer::carry_vote_over(const Seat& newcomer) {
   const auto before = kicks_.carry_over({newcomer.client, newcomer.name, newcomer.owner}, here());
   if (!before) return;

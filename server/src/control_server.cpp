@@ -18,18 +18,18 @@ using State = ControlConnection::State;
 using wire::Said;
 using wire::say;
 
-constexpr std::int64_t kClosingUs = 1'000'000;  // a peer told to go may take so long to read why
-constexpr std::int64_t kGoodbyeUs = 200'000;    // at our own end
-// Without descriptors left, accept(2) fails at once and poll(2) would spin.
+constexpr std::int64_t kClosingUs = 1'000'000;  // time for a rejected peer to read the reason
+constexpr std::int64_t kGoodbyeUs = 200'000;    // when the server ends
+// Without free descriptors, accept(2) fails at once and poll(2) would spin.
 constexpr std::int64_t kAcceptPauseUs = 100'000;
-// Lines that strangers cause in the log: so many at once, then one a second.
+// Log lines caused by untrusted clients: a burst, then one per second.
 constexpr int kLinesAtOnce = 20;
 constexpr std::int64_t kLineEveryUs = 1'000'000;
-// Rosters to all: so many at once, then one in so long, with all that has changed meanwhile. Each
-// one who comes and goes changes it.
+// Rosters to all: a burst, then one per interval with all changes since. Each client that joins or
+// leaves changes the roster.
 constexpr int kRostersAtOnce = 32;
 constexpr std::int64_t kRosterEveryUs = 50'000;
-// Told to go, and not gone yet.
+// Rejected connections that are not closed yet.
 constexpr std::size_t kMostClosing = 64;
 
 }  // namespace
@@ -116,10 +116,9 @@ ControlCounters ControlServer::counters() const {
 }
 
 // --- the thread
-// -----------------------------------------------------------------------------------
 
 void ControlServer::run() {
-  os::drop_capabilities(false);  // strangers' bytes are read here
+  os::drop_capabilities(false);  // untrusted bytes are read here
   while (!stopping_.load(std::memory_order_acquire)) {
     wait();
     watch_kicks(os::monotonic_us());
@@ -176,8 +175,8 @@ void ControlServer::wait() {
   if (polled_[0].revents & POLLIN) ::eventfd_read(wake_.get(), &count);
 }
 
-// At most so many a pass, so that a crowd at the door holds up nobody inside; poll() tells of the
-// rest.
+// Accepts a bounded number per pass, so that a flood of connections does not delay joined clients;
+// poll() reports the rest.
 void ControlServer::accept_all() {
   constexpr int kAtOnce = 32;
   for (int i = 0; i < kAtOnce; ++i) {
@@ -210,9 +209,8 @@ void ControlServer::admit_vouched() {
   }
 }
 
-// Who comes may always knock: where too many stand at the door, the one that has stood there
-// longest goes, of the network that has most of them. A client says Hello at once, and is in before
-// that reaches it.
+// Every new connection is accepted. If too many are greeting, drops the oldest of the network with
+// the most of them. A client sends its Hello at once, so it joins before that happens to it.
 void ControlServer::make_room_at_the_door() {
   std::map<std::string, int> crowd;
   int greeting = 0;
@@ -229,8 +227,8 @@ void ControlServer::make_room_at_the_door() {
     drop_oldest([](const auto& c) { return c->state == State::closing; });
   }
   if (greeting < options_.limits.greeting) return;
-  // Of networks with equally many the oldest of all goes: else it would be the same network's turn
-  // each time, and nobody from there would get in.
+  // Of networks with equal counts, drops the oldest connection of all. Otherwise the same network
+  // would lose each time, and nobody from there could join.
   int most = 0;
   for (const auto& [network, count] : crowd) most = std::max(most, count);
   drop_oldest([&](const auto& c) {
@@ -239,7 +237,7 @@ void ControlServer::make_room_at_the_door() {
   count(Count::crowded_out);
 }
 
-// At this machine there is no password to prove; but whoever knows a phone's token is no host.
+// On this machine no password is needed; but a phone with a token is never the host.
 bool ControlServer::trusted(const ControlConnection& connection) const {
   return !connection.vouched() && options_.access.trust_this_machine &&
          connection.peer().is_loopback();
@@ -269,9 +267,9 @@ void ControlServer::serve(ControlConnection& connection) {
   }
 }
 
-// A client's end may be known and not yet read: it comes behind what the client still said, which
-// may be its good-bye. Where the client had not read all it was sent, its end is a reset, which the
-// next send meets first.
+// The peer's end may be known before it is read. It comes after the client's last messages, which
+// may include a Bye. If the client had not read all it was sent, its end is a reset, and the next
+// send fails first.
 void ControlServer::hear_out(ControlConnection& connection) {
   while (connection.state == State::joined && connection.peer_left()) serve(connection);
 }
@@ -306,13 +304,13 @@ void ControlServer::handle(ControlConnection& connection, const wire::ControlMes
   }
 }
 
-// Takes no seat away, so that whoever sends may go on with the seats that it holds.
+// Never removes a seat, so that callers may keep references to seats.
 void ControlServer::send(ControlConnection& connection, const wire::ControlMessage& message) {
   if (connection.state == State::dead || connection.unread) return;
   connection.unread = !connection.send(message, options_.limits.unsent_bytes);
 }
 
-// Each one's going is news to the others, who may not read it either.
+// Each removal sends messages to the others, which may be slow as well: repeat until none is left.
 void ControlServer::drop_those_who_do_not_read() {
   for (bool again = true; again;) {
     const auto slow = std::ranges::find_if(
@@ -324,8 +322,7 @@ void ControlServer::drop_those_who_do_not_read() {
   }
 }
 
-// --- the ends of a connection
-// ---------------------------------------------------------------------
+// --- closing connections
 
 void ControlServer::refuse(ControlConnection& connection, wire::Refusal::Code code,
                            const wire::Sentence& reason) {
@@ -336,7 +333,7 @@ void ControlServer::refuse(ControlConnection& connection, wire::Refusal::Code co
   connection.close_softly(os::monotonic_us() + kClosingUs);
 }
 
-// A line that a stranger caused: the log is spared a crowd's.
+// Logs a line caused by an untrusted client, within a rate limit.
 void ControlServer::log(LogLevel level, const std::string& text) {
   if (!log_limit_.take(os::monotonic_us())) {
     ++unsaid_;
@@ -359,7 +356,7 @@ void ControlServer::drop(ControlConnection& connection, const std::string& why) 
   release(connection, Going::left);
 }
 
-// The connection is no longer one. A player who did not say good-bye is expected back.
+// Detaches the connection from its client. A player who did not send a Bye may return.
 void ControlServer::release(ControlConnection& connection, Going going) {
   connection.state = State::dead;
   if (connection.client == 0) return;
@@ -378,7 +375,6 @@ void ControlServer::expire(ControlConnection& connection) {
 }
 
 // --- between the threads
-// --------------------------------------------------------------------------
 
 void ControlServer::publish_notices() {
   wire::Notice notice;
@@ -389,7 +385,7 @@ void ControlServer::publish_notices() {
   }
 }
 
-// Of several, the last counts.
+// The last of several counts.
 void ControlServer::publish_tuning() {
   wire::Tuning tuning;
   bool any = false;
@@ -428,7 +424,7 @@ void ControlServer::tell(wire::Notice::Level level, std::uint32_t topic,
   publish({level, topic, text.text()});
 }
 
-// why: for who reads the messages; clients show nothing.
+// why: for readers of the messages; clients do not show it.
 void ControlServer::clear_notice(std::uint32_t topic, const std::string& why) {
   publish({wire::Notice::Level::cleared, topic, why});
 }
@@ -438,7 +434,7 @@ void ControlServer::answer(ControlConnection& connection, std::uint32_t topic,
   send(connection, wire::Notice{wire::Notice::Level::info, topic, text.text()});
 }
 
-// To all, and until it is cleared to each who joins.
+// Sends to all, and until cleared to each client that joins.
 void ControlServer::publish(const wire::Notice& notice) {
   for (auto& connection : connections_) {
     if (connection->state == State::joined) send(*connection, notice);

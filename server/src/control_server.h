@@ -1,11 +1,13 @@
-// The control port: a thread of its own that speaks wire/control.h with every client over TCP and
-// hands the tick's thread what concerns the match, through queues that never wait.
+// The control port: a thread that speaks wire/control.h with every client over TCP. It passes what
+// concerns the match to the tick thread, through queues that never block.
 //
-// poll(2) in place of an asynchronous library: one thread, some hundred connections at most, each a
-// reader, a capped buffer and a deadline. See docs/decisions/0010 and 0040.
+// It uses poll(2) instead of an asynchronous library: one thread, at most a few hundred
+// connections, each with a reader, a bounded buffer and a deadline. See docs/decisions/0010 and
+// 0040.
 //
-// Who connects is at the door until it has said Hello; who has, has a seat (seats.h). The two have
-// limits of their own, so that a crowd at the door takes nobody's place inside.
+// A new connection is in the greeting state until it has sent a Hello; after that it has a seat
+// (seats.h). Each state has its own limits, so that a flood of new connections cannot take a
+// player's seat.
 #pragma once
 
 #include <poll.h>
@@ -46,31 +48,32 @@ namespace server {
 struct ControlEvent {
   enum class Kind : std::uint8_t {
     joined,
-    away,  // lost, and expected back: its rods hold
+    away,  // lost, seat reserved: its rods hold
     back,  // with new keys
-    rods,  // has others now
-    name,  // of who plays these rods, or of the client
+    rods,  // changed
+    name,  // of the player of these rods, or of the client
     left,  // for good
     request,
-    game,     // can be played, as far as can be known before the tick
+    game,     // valid, as far as known before the tick
     answers,  // to the questionnaire
   };
   Kind kind = Kind::joined;
-  // Counts up, never used twice. Of a request: whose it is; 0: it was voted for.
+  // Increases, never reused. Of a request: its client; 0: a vote decided it.
   std::uint32_t client = 0;
   std::uint8_t team = wire::kWatchOnly;         // joined, rods
-  RodSet rods = 0;                              // joined, back, rods: all that it has
-                                                // name: whose it is; none: the client's own
+  RodSet rods = 0;                              // joined, back, rods: all its rods
+                                                // name: rods of that player; none: the client
+                                                // itself
   std::uint64_t token = 0;                      // joined, back, rods
-  std::array<char, wire::kMaxName + 1> name{};  // joined, rods, name: ended by a zero
+  std::array<char, wire::kMaxName + 1> name{};  // joined, rods, name: zero-terminated
   wire::SealKey input_key{}, snapshot_key{};
-  os::FileDescriptor socket;    // joined, back, rods: of who has rods for the first time
-  os::SocketAddress listener;   // joined, back: where its snapshots go; port 0: nowhere
-  os::SocketAddress heard_at;   // joined, back: from where; of this machine's addresses
+  os::FileDescriptor socket;    // joined, back, rods: when it gets rods for the first time
+  os::SocketAddress listener;   // joined, back: destination of its snapshots; port 0: none
+  os::SocketAddress heard_at;   // joined, back: local address that received it
   foosball::Command request{};  // request
   wire::Game game;              // game: date: of a challenge
-  bool put_out = false;         // left: by others, not of its own will
-  wire::Answers answers;        // answers: of one team's rods that were asked and had not answered
+  bool put_out = false;         // left: removed by others
+  wire::Answers answers;        // answers: for rods of one team, asked and not yet answered
 };
 
 struct ControlOptions {
@@ -80,14 +83,14 @@ struct ControlOptions {
   int udp = -1;  // the port's UDP socket, which must outlive the server
   std::uint16_t udp_port = 0;
   foosball::Layout layout{};
-  wire::Characters characters;        // said to each who joins
+  wire::Characters characters;        // sent to each client that joins
   GameSite site;                      // at the start
   std::function<std::string()> date;  // ServerOptions::date; called on the control thread
   std::uint32_t challenge_date = 0;   // ServerOptions::challenge_date
   std::optional<Endpoint> multicast;
-  wire::SealKey group_key{};              // with multicast: everybody's
-  bool teams_open = true;                 // false: a recording plays, nobody can take a team
-  std::string phones;                     // where phones join, for players to see; empty: nowhere
+  wire::SealKey group_key{};              // with multicast: shared by all clients
+  bool teams_open = true;                 // false: a replay is shown, and no team can be taken
+  std::string phones;                     // where phones join, shown to players; empty: not open
   std::function<std::uint64_t()> random;  // secrets; called on the control thread
   Log log;                                // called on the control thread
 };
@@ -100,26 +103,29 @@ class ControlServer {
 
   // Tick thread.
   bool next_event(ControlEvent& event) { return events_.pop(event); }
-  // Sent to all and, until cleared, to each who joins. Dropped and counted if 64 are waiting.
+  // Sent to all, and until cleared to each client that joins. Dropped and counted if 64 are
+  // pending.
   void notify(wire::Notice::Level level, std::uint32_t topic, const wire::Sentence& text);
   void clear(std::uint32_t topic, const std::string& text);  // text: for the log
-  // Sent to all, and to each who joins until another is. False: try again in the next tick.
+  // Sent to all, and to each client that joins until it is replaced. False: retry in the next tick.
   bool tell_tuning(const wire::Tuning& tuning);
   bool tell_game(const wire::Game& game);  // the same
-  // A match was won that is kept: who has rods may answer. cabinet_rods: those that its own hands
-  // have, who are asked at the first host's at this machine. Left out if 8 are waiting.
+  // A match that is stored was won: asks the clients that have rods. cabinet_rods: rods of the
+  // server's own devices, whose players are asked at the first host on this machine. Dropped if 8
+  // are pending.
   void ask(std::uint32_t match, RodSet cabinet_rods);
-  // The same for a report; left out if 8 are waiting.
+  // The same for a report; dropped if 8 are pending.
   void report(const wire::Report& report);
-  // A host has asked for them since the last tell_devices().
+  // True if a host has requested the devices since the last tell_devices().
   bool devices_asked() const { return devices_asked_.load(std::memory_order_acquire); }
   void tell_devices(const DeviceTable& table);
-  // A match that was played is over: who was put out may play again.
+  // A match that was played is over: removed players may play again.
   void match_is_over();
-  // A connection that another port has let in, as a player's: it says Hello as any other, needs no
-  // password, and is never the host. One thread of its own. False: 16 are waiting, or it ends.
+  // Takes a connection that another port has accepted, with the rights of a player: it sends a
+  // Hello like any other, needs no password, and is never the host. Call from one thread. False: 16
+  // are pending, or the server is ending.
   bool adopt(VouchedConnection&& connection);
-  // Says Bye to all, waits a moment for it to be sent, and ends the thread.
+  // Sends Bye to all, waits briefly until it is sent, and ends the thread.
   void stop(const wire::Sentence& reason);
 
   ControlCounters counters() const;  // any thread
@@ -147,10 +153,10 @@ class ControlServer {
     kCount
   };
 
-  // How a client goes: for good, or lost, so that its seat is kept.
+  // How a client goes: for good, or lost with a reserved seat.
   enum class Going : std::uint8_t { left, lost };
 
-  // control_server.cpp: the thread, the door, the ends of connections, notices
+  // control_server.cpp: the thread, new connections, closing connections, notices
   void run();
   void wait();
   void accept_all();
@@ -182,7 +188,7 @@ class ControlServer {
   void log(LogLevel level, const std::string& text);
   void say_goodbye();
 
-  // control_table.cpp: who sits where, and who may what
+  // control_table.cpp: seats and permissions
   void answer_knock(ControlConnection& connection, const wire::Knock& knock);
   void greet(ControlConnection& connection, const wire::Hello& hello);
   bool resume(ControlConnection& connection, const wire::Hello& hello);
@@ -201,7 +207,7 @@ class ControlServer {
   void take_game(ControlConnection& connection, wire::Game game);
   void choose(const wire::Game& game, std::uint32_t client);
   bool in_challenge() const;
-  std::uint32_t challenge_day() const;  // that of a challenge chosen now; 0: unknown
+  std::uint32_t challenge_day() const;  // of a challenge chosen now; 0: unknown
   void follow_the_day();
   void take_answers(ControlConnection& connection, const wire::Answers& answers);
   // control_devices.cpp
@@ -236,34 +242,35 @@ class ControlServer {
   std::atomic<std::uint32_t> matches_over_{0};
   std::uint32_t matches_over_seen_ = 0;
   PasswordTries password_tries_;
-  std::map<std::uint32_t, wire::Notice> notices_;  // standing, by topic
-  std::deque<ControlEvent> untold_;                // the tick has not been told yet
+  std::map<std::uint32_t, wire::Notice> notices_;  // active, by topic
+  std::deque<ControlEvent> untold_;                // not yet passed to the tick
   std::vector<pollfd> polled_;
   std::uint32_t last_client_ = 0;
   std::int64_t accept_after_us_ = 0;
   bool roster_changed_ = false;
   RateLimit roster_limit_;
-  // Events that may wait for the tick, which takes eight a millisecond: beyond, nobody joins.
+  // Limit of events pending for the tick, which takes eight per millisecond. Above it, nobody may
+  // join.
   static constexpr std::size_t kMostUntold = 256;
   static constexpr std::int64_t kLookAtTheDayUs = 1'000'000;
   std::int64_t look_at_the_day_us_ = 0;
   std::uint32_t followed_day_ = 0;
   RateLimit log_limit_;
-  std::uint64_t unsaid_ = 0;  // lines that the log was spared
+  std::uint64_t unsaid_ = 0;  // number of suppressed log lines
 
   SpscQueue<ControlEvent, 1024> events_;
   SpscQueue<VouchedConnection, 16> vouched_;
   SpscQueue<wire::Notice, 64> outbound_;
   SpscQueue<wire::Tuning, 8> tunings_;
   SpscQueue<wire::Game, 8> games_;
-  std::optional<wire::Game> game_;  // as it was last told
+  std::optional<wire::Game> game_;  // as last sent
   std::atomic<bool> devices_asked_{false};
   SpscQueue<DeviceTable, 2> devices_;
-  DeviceTable device_table_;  // taken out of it
+  DeviceTable device_table_;  // taken from devices_
   SpscQueue<wire::Report, 8> reports_;
-  std::optional<wire::Report> report_;                // the last one
+  std::optional<wire::Report> report_;                // the latest one
   SpscQueue<wire::Questionnaire, 8> questionnaires_;  // rods: the cabinet's
-  std::optional<wire::Tuning> tuning_;                // of the match, as it was last told
+  std::optional<wire::Tuning> tuning_;                // of the match, as last sent
   std::array<std::atomic<std::uint64_t>, static_cast<std::size_t>(Count::kCount)> counts_{};
   std::atomic<bool> stopping_{false};
   std::string bye_reason_;  // written before stopping_

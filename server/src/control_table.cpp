@@ -1,4 +1,4 @@
-// The part of ControlServer that decides who sits where, and who may what.
+// The part of ControlServer that assigns seats and checks permissions.
 #include <algorithm>
 #include <bit>
 #include <utility>
@@ -19,12 +19,12 @@ using State = ControlConnection::State;
 using wire::Said;
 using wire::say;
 
-// Topics of notices: of a seat that is kept; of a vote, see wire/limits.h; of a claim.
+// Topics of notices: of a reserved seat; of a vote, see wire/limits.h; of a claim.
 constexpr std::uint32_t kAwayTopic = 1'000'000;
 constexpr std::uint32_t kClaimTopic = 300;
-// More seats than the roster names would not be seen.
+// The roster cannot list more seats.
 constexpr std::size_t kMostSeats = wire::kMaxSeats;
-// Of a request that was voted for.
+// Client id of a request that was decided by a vote.
 constexpr std::uint32_t kEverybody = 0;
 
 std::uint32_t vote_topic(const foosball::Command& request) {
@@ -41,8 +41,7 @@ wire::Sentence asks_for(const foosball::Command& request, const std::string& nam
 
 }  // namespace
 
-// --- who comes in
-// ---------------------------------------------------------------------------------
+// --- joining
 
 void ControlServer::answer_knock(ControlConnection& connection, const wire::Knock& knock) {
   const auto role = static_cast<wire::Role>(knock.role);
@@ -75,14 +74,14 @@ void ControlServer::answer_knock(ControlConnection& connection, const wire::Knoc
 }
 
 void ControlServer::greet(ControlConnection& connection, const wire::Hello& hello) {
-  // Whoever gave up waiting has asked anew since, and must not find its place taken by its own
-  // ghost.
+  // A client that gave up waiting has tried again since. Its abandoned connection must not take its
+  // seat.
   if (connection.peer_left()) {
     count(Count::gave_up);
     release(connection, Going::left);
     return;
   }
-  // Sealed, it could not be read without the right password.
+  // A readable sealed message proves that the password was right.
   if (std::exchange(connection.try_charged, false)) password_tries_.refund(connection.peer());
   if (!connection.sealed() && trusted(connection)) connection.role = wire::Role::host;
   if (hello.version != wire::kControlVersion) {
@@ -100,8 +99,7 @@ void ControlServer::greet(ControlConnection& connection, const wire::Hello& hell
   }
 }
 
-// True when the client has its seat again, or is refused. A ticket of a seat that is gone counts as
-// none.
+// Returns true if the client has its seat again, or was rejected. An expired ticket counts as none.
 bool ControlServer::resume(ControlConnection& connection, const wire::Hello& hello) {
   if (hello.session != options_.session) return false;
   Seat* seat = seats_.find_ticket(hello.ticket);
@@ -110,7 +108,8 @@ bool ControlServer::resume(ControlConnection& connection, const wire::Hello& hel
     refuse(connection, wire::Refusal::Code::full, say<Said::server_overloaded>());
     return true;
   }
-  // The connection before may look alive still: the cable was drawn, the address is another.
+  // The previous connection may still look open: the cable was unplugged, or the address has
+  // changed.
   for (auto& other : connections_) {
     if (other->client != seat->client) continue;
     other->client = 0;
@@ -121,7 +120,7 @@ bool ControlServer::resume(ControlConnection& connection, const wire::Hello& hel
   kicks_.moved(seat->client, seat->owner);
   const bool was_away = seat->away();
   if (!welcome(connection, *seat, ControlEvent::Kind::back, hello.udp_port)) {
-    if (!was_away) lose_seat(seat->client);  // its old connection is gone: the time of grace begins
+    if (!was_away) lose_seat(seat->client);  // its old connection is closed: the reservation starts
     return true;
   }
   seat->away_since_us = -1;
@@ -133,7 +132,7 @@ bool ControlServer::resume(ControlConnection& connection, const wire::Hello& hel
   return true;
 }
 
-// True when there is a place, and rods if it asks for some.
+// Returns true if there is a free seat, and free rods if it requests some.
 bool ControlServer::admit_to_table(ControlConnection& connection, const wire::Hello& hello,
                                    RodSet& rods) {
   const auto& limits = options_.limits;
@@ -181,7 +180,7 @@ std::string ControlServer::owner_of(const ControlConnection& connection) {
   return connection.peer().owner(connection.heard_at());
 }
 
-// Whoever has left and is not known to have: his rods are free.
+// Handles disconnections that are not processed yet, so that these rods become free.
 void ControlServer::hear_out_leavers(RodSet wanted) {
   for (std::size_t i = 0; i < connections_.size(); ++i) {
     ControlConnection& connection = *connections_[i];
@@ -225,7 +224,7 @@ wire::SealKey ControlServer::random_key() {
   return key;
 }
 
-// For its inputs; none for who only watches.
+// The socket for its inputs; none for a watcher.
 os::FileDescriptor ControlServer::client_socket(const ControlConnection& connection,
                                                 const os::SocketAddress& listener) {
   auto local = connection.heard_at();
@@ -234,8 +233,8 @@ os::FileDescriptor ControlServer::client_socket(const ControlConnection& connect
   return opened ? std::move(*opened) : os::FileDescriptor();
 }
 
-// Says Welcome, and tells the tick first: who has it is in the very next tick. False, and refused,
-// if it cannot be.
+// Passes the client to the tick before it sends the Welcome, so that the next tick knows it.
+// Returns false, after a rejection, if that fails.
 bool ControlServer::welcome(ControlConnection& connection, Seat& seat, ControlEvent::Kind kind,
                             std::uint16_t udp_port) {
   ControlEvent event;
@@ -290,10 +289,9 @@ bool ControlServer::welcome(ControlConnection& connection, Seat& seat, ControlEv
   return true;
 }
 
-// --- who has which rods
-// ---------------------------------------------------------------------------
+// --- assignment of rods
 
-// A seat that gives up its rods watches, and may have rods again, of either team.
+// A seat that gives up its rods watches, and may have rods of either team again.
 void ControlServer::take_claim(ControlConnection& connection, const wire::Claim& claim) {
   Seat* seat = seats_.find(connection.client);
   if (seat == nullptr || !connection.requests.take(os::monotonic_us())) return;
@@ -335,7 +333,7 @@ void ControlServer::take_claim(ControlConnection& connection, const wire::Claim&
   roster_changed_ = true;
 }
 
-// Who changes the name while a match is played is another player for it (docs/rules.md).
+// A client that changes its name during a match counts as another player (docs/rules.md).
 void ControlServer::take_names(ControlConnection& connection, const wire::Names& names) {
   Seat* seat = seats_.find(connection.client);
   if (seat == nullptr || untold_.size() > kMostUntold ||
@@ -433,8 +431,7 @@ void ControlServer::send_roster() {
   }
 }
 
-// --- what they ask for
-// ----------------------------------------------------------------------------
+// --- requests
 
 void ControlServer::take_request(ControlConnection& connection, const wire::MatchRequest& asked) {
   if (!well_formed(asked)) {
@@ -459,9 +456,8 @@ void ControlServer::take_request(ControlConnection& connection, const wire::Matc
 }
 
 // --- the questionnaire
-// ---------------------------------------------------------------------------
 
-// Who has rods, and is there; a cabinet's own hands have no client of their own.
+// Asks connected clients with rods; the players of a cabinet have no client of their own.
 void ControlServer::publish_questionnaires() {
   wire::Questionnaire won;
   while (questionnaires_.pop(won)) {
@@ -479,7 +475,7 @@ void ControlServer::publish_questionnaires() {
   }
 }
 
-// Each rod that was asked answers once: nobody answers for others, or twice.
+// Each rod that was asked answers once: nobody can answer for others, or twice.
 void ControlServer::take_answers(ControlConnection& connection, const wire::Answers& answers) {
   Seat* seat = seats_.find(connection.client);
   if (seat == nullptr || !connection.requests.take(os::monotonic_us())) {
@@ -523,8 +519,9 @@ bool ControlServer::hand_on(std::uint32_t client, const foosball::Command& comma
   return true;
 }
 
-// One machine, one vote, however many seats it has: more connections are no more people. Those who
-// are away do not vote, and nobody waits for them, but before a match ends without a result.
+// One vote per machine, for any number of seats: more connections are not more people. Disconnected
+// players do not vote and are not waited for, except on a restart, which would end a match without
+// a result.
 bool ControlServer::put_to_vote(const Seat& seat, const foosball::Command& command) {
   std::vector<std::string> voters;
   for (const Seat& s : seats_.all()) {

@@ -1,5 +1,5 @@
-// What the server's devices do now, for a host's screen: filled by the tick without taking memory,
-// and made a message by the control thread.
+// The current state of the server's devices, for a host's screen. The tick fills it without
+// allocating; the control thread makes a message of it.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ namespace server {
 
 struct DeviceTable {
   struct Line {
-    std::array<char, wire::kMaxName + 1> name{};  // ended by a zero
+    std::array<char, wire::kMaxName + 1> name{};  // zero-terminated
     cabinet::DeviceState state = cabinet::DeviceState::missing;
     cabinet::SourceCounters counters;
     cabinet::RodInputs rods{};
@@ -26,7 +26,7 @@ struct DeviceTable {
   std::array<Line, wire::kMaxDevices> lines;
 };
 
-// Of more than kMaxDevices, the first.
+// Uses the first kMaxDevices devices.
 void fill(DeviceTable& table, const std::vector<std::unique_ptr<cabinet::Device>>& devices,
           std::int64_t now_us);
 wire::Devices to_wire(const DeviceTable& table);

@@ -58,7 +58,7 @@ void DeviceWatch::look(const std::vector<std::unique_ptr<cabinet::Device>>& devi
   for (std::uint32_t i = 0; i < devices.size(); ++i) {
     Watched& watched = watched_[i];
     const DeviceState state = devices[i]->state();
-    // Until anything was told, the time runs from the beginning, whatever the device tries.
+    // Before the first report, the time runs from the beginning, through all changes of state.
     if (watched.state != state && watched.told) watched.since_us = now_us;
     watched.state = state;
     if (!due(watched, now_us)) continue;

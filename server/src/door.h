@@ -1,5 +1,5 @@
-// Limits against crowds: how many lines a stranger can cause in the log, and how many passwords a
-// machine and a network may try.
+// Rate limits for untrusted clients: log lines that they cause, and password attempts per machine
+// and network.
 #pragma once
 
 #include <cstdint>
@@ -10,23 +10,23 @@
 
 namespace server {
 
-// So many at once, then so many a second.
+// Allows a burst, then a steady rate.
 class RateLimit {
  public:
   RateLimit(int at_once, std::int64_t every_us) : at_once_(at_once), every_us_(every_us) {}
-  // False: too many.
+  // False: over the limit.
   bool take(std::int64_t now_us);
 
  private:
   int at_once_;
   std::int64_t every_us_;
-  std::int64_t paid_until_us_ = 0;  // each one moves it on by every_us_
+  std::int64_t paid_until_us_ = 0;  // each event advances it by every_us_
 };
 
-// A RateLimit for each of many, by name.
+// One RateLimit per name.
 class RateLimits {
  public:
-  // Names remembered, each with its own account; all others together have one.
+  // Number of names with their own limit; all further names share one.
   static constexpr std::size_t kNames = 1024;
 
   RateLimits(int at_once, std::int64_t every_us) : at_once_(at_once), every_us_(every_us) {}
@@ -42,17 +42,17 @@ class RateLimits {
   std::map<std::string, std::int64_t> paid_until_us_;
 };
 
-// Passwords tried. A try is charged when it begins, so that many connections at once are no way
-// round the limit, and refunded when the password was right. Charged twice: to the machine, so that
-// neighbours do not lock each other out, and to its network, so that whoever has 2^64 addresses
-// has few guesses all the same.
+// Limits password attempts. An attempt is counted when it begins, so that parallel connections
+// cannot avoid the limit, and refunded if the password was right. It counts for the machine, so
+// that neighbours do not lock each other out, and for its network, so that an owner of 2^64
+// addresses also has few attempts.
 class PasswordTries {
  public:
-  // As many at once as there may be seats of one address.
+  // Burst size: the max number of seats of one address.
   static constexpr int kAtOnce = 8, kNetworkAtOnce = 32;
   static constexpr std::int64_t kEveryUs = 10'000'000, kNetworkEveryUs = 2'500'000;
 
-  // False: too many.
+  // False: over the limit.
   bool charge(const os::SocketAddress& from, std::int64_t now_us);
   void refund(const os::SocketAddress& to);
 

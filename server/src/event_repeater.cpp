@@ -27,7 +27,8 @@ wire::EventSnapshot to_wire(const foosball::Event& event, std::uint32_t id) {
   return out;
 }
 
-// A free slot; else, for what is no hit, that of the oldest hit; else none.
+// A free slot; otherwise, for an event that is not a hit, the slot of the oldest hit; otherwise
+// none.
 EventRepeater::Slot* EventRepeater::place_for(foosball::EventKind kind) {
   const auto free = std::find_if(slots_.begin(), slots_.end(), [](auto& s) { return s.left == 0; });
   if (free != slots_.end()) return &*free;

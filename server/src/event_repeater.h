@@ -1,5 +1,5 @@
-// Events of the match on their way into snapshots: each gets an id and is in 8 snapshots one after
-// the other, so that seven lost datagrams in a row still show it.
+// Repeats the match's events in snapshots: each gets an id and appears in 8 consecutive snapshots,
+// so that it survives the loss of seven datagrams in a row.
 #pragma once
 
 #include <array>
@@ -18,10 +18,10 @@ class EventRepeater {
  public:
   static constexpr int kRepeats = 8;
 
-  // Takes in a tick's events. Where more than wire::kMaxEvents are under way at a time, a hit gives
-  // way to what decides the match; what found no place, or lost it, is counted.
+  // Adds a tick's events. If more than wire::kMaxEvents are active, hits are dropped in favour of
+  // events that decide the match. Dropped events are counted.
   void add(std::span<const foosball::Event> events);
-  // Those of this snapshot, oldest first.
+  // The events of this snapshot, oldest first.
   void fill(std::vector<wire::EventSnapshot>& out);
 
   std::uint64_t dropped() const { return dropped_; }
@@ -29,7 +29,7 @@ class EventRepeater {
  private:
   struct Slot {
     wire::EventSnapshot event;
-    int left = 0;  // snapshots still to be in; 0: free
+    int left = 0;  // remaining snapshots; 0: free slot
   };
   Slot* place_for(foosball::EventKind kind);
 

@@ -2,7 +2,7 @@
 
 namespace server {
 
-// A match that is shown while nobody plays shakes no hand.
+// A demonstration match causes no pulses.
 void HapticDesk::feel(std::span<const foosball::Event> events, const foosball::MatchView& view,
                       const RodDesk& desk, std::int64_t now_us) {
   if (!on_ || view.attract) return;

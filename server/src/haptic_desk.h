@@ -1,6 +1,6 @@
-// From the hits of a tick to whoever has the rods, in the same tick: pulses, bounded
-// (cabinet/haptics.h), to the cabinet's controller and to phones. Clients with a screen feel by the
-// events of their snapshots. Waits for nothing and takes no memory.
+// Converts the hits of a tick, in the same tick, to bounded pulses (cabinet/haptics.h) for the
+// drivers of the rods: the cabinet's controller and phones. Clients with a screen use the events of
+// their snapshots instead. Never blocks, never allocates.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ namespace server {
 
 class HapticDesk {
  public:
-  // To the client, whatever it is.
+  // Sends to the client, of any kind.
   using ToClient = std::function<void(std::uint32_t client, const cabinet::HapticPulse& pulse)>;
 
   explicit HapticDesk(bool on) : on_(on) {}
@@ -24,7 +24,7 @@ class HapticDesk {
 
   void feel(std::span<const foosball::Event> events, const foosball::MatchView& view,
             const RodDesk& desk, std::int64_t now_us);
-  std::uint64_t pulses() const { return pulses_; }  // of rods that a hand has
+  std::uint64_t pulses() const { return pulses_; }  // for rods that a hand has
 
  private:
   bool on_;

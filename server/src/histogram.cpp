@@ -6,8 +6,8 @@
 
 namespace server {
 
-// Values below 2^kStepBits have a bucket each; above, the octave and the kStepBits bits after the
-// leading one name the bucket.
+// Values below 2^kStepBits have one bucket each. Above, the octave and the kStepBits bits after the
+// leading bit select the bucket.
 int Histogram::bucket_of(std::uint64_t value) {
   if (value < (1u << kStepBits)) return static_cast<int>(value);
   const int shift = static_cast<int>(std::bit_width(value)) - 1 - kStepBits;

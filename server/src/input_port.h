@@ -1,9 +1,9 @@
-// The UDP port's receiving side: input datagrams of joined players. All else is counted and
-// dropped.
+// The receiving side of the UDP port: input datagrams of joined players. All other datagrams are
+// counted and dropped.
 //
-// Each player has a socket of its own, which the kernel fills with what comes from its address and
-// port alone, and a share of the tick of its own: no flood takes another player's inputs away. What
-// comes from elsewhere stays in the shared socket, of which a few are looked at, for the count.
+// Each player has its own socket, which only receives from the player's address and port, and its
+// own quota per tick: a flood cannot displace another player's inputs. Datagrams from elsewhere
+// arrive at the shared socket; a few of them are read per tick, to count them.
 #pragma once
 
 #include <sys/socket.h>
@@ -21,13 +21,14 @@ namespace server {
 
 class InputPort {
  public:
-  // At most so many a tick, of each player and of strangers, so that a flood costs a bounded time;
-  // the rest waits in its socket. A player sends one a tick: this makes up a stall of 64 ms at
-  // once.
+  // Max datagrams per tick, of each player and of unknown senders, so that a flood costs a bounded
+  // time. The rest waits in the socket. A player sends one per tick: this catches up after a stall
+  // of 64 ms.
   static constexpr int kMaxPerTick = 64;
   static constexpr int kMaxStrayPerTick = 32;
 
-  // fd: the port's non-blocking UDP socket, which must outlive this. capacity: players at most.
+  // fd: the port's non-blocking UDP socket, which must outlive this. capacity: max number of
+  // players.
   InputPort(int fd, std::uint64_t session, std::size_t capacity);
 
   struct Key {
@@ -35,10 +36,10 @@ class InputPort {
     std::uint64_t token = 0;
     wire::SealKey seal{};
   };
-  // The client's datagrams come by this socket, and go to source. Replaces what it had.
+  // Reads the client's datagrams from this socket into source. Replaces an existing entry.
   void add(const Key& key, os::FileDescriptor socket, RemoteSource& source);
-  // Its datagrams go to this source from now on, none: nowhere; what was heard of it counts on, so
-  // that nothing old is taken for new. False: it was never added.
+  // Sends its datagrams to this source from now on; null: discards them. Keeps the replay window,
+  // so that old datagrams are still rejected. False: the client was never added.
   bool redirect(std::uint32_t client, RemoteSource* source);
   void remove(std::uint32_t client);
 
@@ -65,7 +66,7 @@ class InputPort {
   std::uint64_t session_;
   std::vector<Player> players_;
   InputCounters counters_;
-  // One byte more than the longest: what fills it was too long.
+  // One byte more than the longest valid datagram: a full buffer means it was too long.
   std::array<std::array<std::byte, kMaxSealed + 1>, kBatch> buffers_;
   std::array<iovec, kBatch> parts_{};
   std::array<mmsghdr, kBatch> messages_{};

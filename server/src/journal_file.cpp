@@ -21,7 +21,7 @@
 namespace server {
 namespace {
 
-using Clock = std::chrono::steady_clock;  // when to sync; decides nothing of the match
+using Clock = std::chrono::steady_clock;  // for sync times; does not affect the match
 
 bool begins_as_a_recording(const std::string& path) {
   const os::FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
@@ -40,18 +40,19 @@ std::string errno_text(int number) {
   return std::strerror(number);
 }
 
-// Empty, or why it must not be written. File systems without locks have none to ask for.
+// Empty, or the reason why it must not be written. File systems without locks are accepted.
 std::string lock(int file) {
   if (::flock(file, LOCK_EX | LOCK_NB) == 0) return {};
   if (errno != EWOULDBLOCK) return {};
   return "another server is writing it; choose another name, or end that server";
 }
 
-// Makes the file an empty one. Empty, or why it must stay as it is and what to do.
+// Truncates an existing recording if allowed. Empty, or the reason why the file must not be
+// changed, and what to do.
 std::string objection(int file, const JournalFileOptions& options) {
   struct stat about {};
   if (::fstat(file, &about) != 0) return errno_text(errno) + "; try again";
-  if (S_ISCHR(about.st_mode)) return {};  // as /dev/null is, which any number may write
+  if (S_ISCHR(about.st_mode)) return {};  // such as /dev/null: any number may write it
   if (std::string why = lock(file); !why.empty()) return why;
   if (!S_ISREG(about.st_mode) || about.st_size == 0) return {};
   if (!begins_as_a_recording(options.path)) {
@@ -66,7 +67,7 @@ std::string objection(int file, const JournalFileOptions& options) {
 
 }  // namespace
 
-// The file and the thread's side of it.
+// The file and the state of the journal thread.
 class JournalFile::Writer {
  public:
   Writer(const JournalFileOptions& options, os::FileDescriptor file, os::FileDescriptor wake)
@@ -83,7 +84,7 @@ class JournalFile::Writer {
     closing_.store(true, std::memory_order_release);
     signal();
   }
-  // An eventfd's counter cannot be full with this many writes, so the call never waits.
+  // Never blocks: the counter of an eventfd cannot overflow with this number of writes.
   void signal() {
     const std::uint64_t one = 1;
     [[maybe_unused]] const ssize_t ignored = ::write(wake_.get(), &one, sizeof one);
@@ -115,7 +116,7 @@ class JournalFile::Writer {
   std::atomic<Failure> failure_{Failure::none};
   std::atomic<int> error_number_{0};
   std::atomic<bool> closing_{false};
-  // The thread's own.
+  // Used by the journal's thread only.
   bool unsynced_ = false;
   Clock::time_point synced_ = Clock::now();
 };
@@ -150,7 +151,7 @@ void JournalFile::Writer::run() {
   }
 }
 
-// Until something was written, or what was written must be synced.
+// Waits for data to write, or until written data must be synced.
 void JournalFile::Writer::wait_for_work() {
   int timeout_ms = -1;
   if (unsynced_) {
@@ -164,7 +165,7 @@ void JournalFile::Writer::wait_for_work() {
   [[maybe_unused]] const ssize_t ignored = ::read(wake_.get(), &count, sizeof count);
 }
 
-// False if the disk failed. A pipe or a device has no disk to wait for: EINVAL.
+// False if the disk failed. A pipe or a device cannot be synced: EINVAL.
 bool JournalFile::Writer::sync() {
   const bool ok = ::fdatasync(file_.get()) == 0 || errno == EINVAL;
   if (!ok) fail(Failure::write_failed, errno);
@@ -173,13 +174,13 @@ bool JournalFile::Writer::sync() {
   return ok;
 }
 
-// A pipe is full: until its reader takes something. False when it has not until the end.
+// Waits until the reader of a full pipe takes data. False if it has not by the end.
 bool JournalFile::Writer::wait_writable() {
-  constexpr int kLook_ms = 20;  // at whether the end has come meanwhile
+  constexpr int kLook_ms = 20;  // interval of the check for the end
   std::optional<Clock::time_point> closing_since;
   while (true) {
     pollfd ready{file_.get(), POLLOUT, 0};
-    if (::poll(&ready, 1, kLook_ms) != 0) return true;  // write() says what is wrong, if anything
+    if (::poll(&ready, 1, kLook_ms) != 0) return true;  // write() reports an error, if there is one
     if (!closing_.load(std::memory_order_acquire)) continue;
     const auto now = Clock::now();
     if (!closing_since) closing_since = now;
@@ -189,7 +190,7 @@ bool JournalFile::Writer::wait_writable() {
   }
 }
 
-// False when the file can take no more. A record cut in two by that is where its reader stops.
+// False if the file accepts no more. A record that is truncated by that is where a reader stops.
 bool JournalFile::Writer::drain() {
   for (auto piece = ring_.peek(); !piece.empty(); piece = ring_.peek()) {
     const ssize_t size = ::write(file_.get(), piece.data(), piece.size());
@@ -209,14 +210,13 @@ bool JournalFile::Writer::drain() {
   return true;
 }
 
-// --- the tick's side
-// -----------------------------------------------------------------------------
+// --- the tick thread's side
 
-// O_NONBLOCK: a pipe without a reader is refused, a full one waited for by poll(), which can be
-// ended. Of files it says nothing.
+// O_NONBLOCK: a pipe without a reader is rejected; a full pipe is waited for by poll(), which can
+// be interrupted. It has no effect on files.
 tl::expected<std::unique_ptr<JournalFile>, std::string> JournalFile::create(
     const JournalFileOptions& options) {
-  constexpr mode_t kMode = 0666;  // less what the umask says
+  constexpr mode_t kMode = 0666;  // minus the umask
   const auto refused = [&](const std::string& why) {
     return tl::unexpected("cannot record to " + options.path + ": " + why);
   };
@@ -273,8 +273,8 @@ void JournalFile::push() {
   encoded_.clear();
 }
 
-// The thread gives a full pipe close_patience; a call of the system that does not return is left
-// alone after twice that, with what it needs.
+// The thread gives a full pipe close_patience. A system call that does not return is abandoned
+// after twice that time, together with the data it uses.
 void JournalFile::close() {
   if (!thread_.joinable()) return;
   if (!failed()) {

@@ -5,7 +5,7 @@
 
 namespace server {
 
-// That a vote failed protects nobody from the next: a friend would begin votes that are to fail.
+// A failed vote does not protect its target: otherwise a friend could begin votes that fail.
 KickVotes::Count KickVotes::cast(const std::string& voter, const Target& target,
                                  std::span<const std::string> voters, std::int64_t now_us) {
   auto vote =
@@ -17,7 +17,7 @@ KickVotes::Count KickVotes::cast(const std::string& voter, const Target& target,
   }
   if (std::ranges::find(vote->in_favour, voter) == vote->in_favour.end())
     vote->in_favour.push_back(voter);
-  // Of those who have left since, no vote counts.
+  // Votes of players who have left do not count.
   const auto here = [&](const std::string& who) {
     return std::ranges::find(voters, who) != voters.end();
   };

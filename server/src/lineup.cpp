@@ -41,7 +41,7 @@ void Lineup::excuse(std::string_view name) {
     if (Row* row = find(team, Kind::person, name.substr(0, wire::kMaxName))) row->excused = true;
 }
 
-// Without a seat at the end, or away for too long in all, counted from when he came.
+// Without a seat at the end, or absent for too long in total since the player joined.
 bool Lineup::has_left(const Row& row, std::uint64_t return_ticks) const {
   if (row.kind != Kind::person || row.excused) return false;
   const auto away = static_cast<double>(ticks_ + 1 - row.first - row.ticks);

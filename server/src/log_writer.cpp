@@ -23,19 +23,20 @@ struct LogWriter::State {
   void run();
   bool put(const std::string& text);
 
-  // Its own: a thread that is given up may still write when the caller's number is another file's.
+  // A duplicate: an abandoned thread may still write when the caller's descriptor refers to another
+  // file.
   const os::FileDescriptor owned;
-  std::mutex mutex;  // all below; never held while writing
+  std::mutex mutex;  // guards all members below; never locked while writing
   std::condition_variable wake, idle;
   std::string waiting;
   std::uint64_t dropped = 0, dropped_unsaid = 0;
   bool writing = false, closing = false;
 };
 
-// False when the reader has gone, or the writer is given up.
+// False if the reader has gone, or the writer is abandoned.
 bool LogWriter::State::put(const std::string& text) {
   for (std::size_t at = 0; at < text.size();) {
-    // A pipe that is writable takes PIPE_BUF bytes at once.
+    // A writable pipe accepts PIPE_BUF bytes at once.
     pollfd polled{owned.get(), POLLOUT, 0};
     constexpr int kLookAgainMs = 100;
     const int ready = ::poll(&polled, 1, kLookAgainMs);

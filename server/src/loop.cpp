@@ -18,7 +18,7 @@ namespace {
 class MonotonicClock final : public LoopClock {
  public:
   std::int64_t now_ns() override { return os::monotonic_ns(); }
-  // A signal ends the sleep early; the tick then comes to see that it should stop.
+  // A signal ends the sleep early, so that the tick sees the request to stop.
   int sleep_until(std::int64_t deadline_ns) override { return os::sleep_until_ns(deadline_ns); }
 };
 
@@ -37,7 +37,7 @@ TickLoop::TickLoop(const LoopOptions& options, Log log, LoopClock& clock)
     : options_(options), log_(std::move(log)), clock_(clock) {}
 
 void TickLoop::ask_for_rights() {
-  // Without real-time priority the kernel may round a sleep up by 50 us; ask it not to.
+  // Without real-time priority the kernel may delay a wake-up by 50 us; minimise that.
   ::prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
   if (options_.cpu >= 0) {
     cpu_set_t set;
@@ -49,14 +49,14 @@ void TickLoop::ask_for_rights() {
   }
   if (!options_.real_time) return;
   const sched_param priority{.sched_priority = options_.priority};
-  // Reset on fork: threads and children made later are ordinary ones.
+  // Reset on fork: threads and processes created later are ordinary ones.
   const bool fifo = ::sched_setscheduler(0, SCHED_FIFO | SCHED_RESET_ON_FORK, &priority) == 0;
   log_(fifo ? LogLevel::info : LogLevel::warning,
        fifo ? "real-time priority " + std::to_string(options_.priority)
             : "no real-time priority" + because() +
                   "; on a busy machine ticks will be late (give CAP_SYS_NICE)");
-  // What is mapped now, which is all that a tick touches. Not the future: where the limit is low,
-  // that would make a later allocation of another thread fail.
+  // Locks the current mappings, which are all that a tick touches. Not future ones: with a low
+  // limit, a later allocation of another thread would fail.
   const bool locked = ::mlockall(MCL_CURRENT) == 0;
   log_(locked ? LogLevel::info : LogLevel::warning,
        locked
@@ -64,7 +64,7 @@ void TickLoop::ask_for_rights() {
            : "memory not locked" + because() + "; a page may be swapped out (give CAP_IPC_LOCK)");
 }
 
-// Whole periods that have passed are left out.
+// Skips full periods that have passed.
 std::int64_t TickLoop::next_deadline(std::int64_t deadline, std::int64_t now) {
   const std::int64_t next = deadline + kPeriodNs;
   if (!options_.paced || now < next + kPeriodNs) return next;
@@ -73,7 +73,7 @@ std::int64_t TickLoop::next_deadline(std::int64_t deadline, std::int64_t now) {
   return next + missed * kPeriodNs;
 }
 
-// A kernel that refuses to wait (an emulator, a sandbox) costs a core, not the match its pace.
+// A kernel that cannot wait (an emulator, a sandbox) costs a core, but the match keeps its pace.
 void TickLoop::wait_until(std::int64_t deadline) {
   const int error = clock_.sleep_until(deadline);
   if (error == 0 || error == EINTR) return;
@@ -86,7 +86,7 @@ void TickLoop::wait_until(std::int64_t deadline) {
 
 void TickLoop::run(const std::function<bool(std::int64_t, const LoopStats&)>& tick) {
   if (options_.paced) ask_for_rights();
-  if (options_.drop_rights) os::drop_capabilities(true);  // it has what they were for
+  if (options_.drop_rights) os::drop_capabilities(true);  // their purpose is fulfilled
   const std::int64_t start = clock_.now_ns();
   std::int64_t deadline = start + kPeriodNs;
   for (bool go_on = true; go_on;) {

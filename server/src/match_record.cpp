@@ -11,7 +11,7 @@
 
 namespace server {
 
-// The wire counts foosball's and cabinet's enumerations without knowing them; here both are known.
+// wire mirrors the enumerations of foosball and cabinet without knowing them; this file knows both.
 static_assert(wire::kTeamCount == foosball::kTeams);
 static_assert(wire::kLayoutCount == foosball::kLayouts);
 static_assert(wire::kScreenCount == foosball::kScreens);
@@ -194,7 +194,7 @@ foosball::MatchDesc from_header(const wire::JournalHeader& header) {
   for (std::size_t i = 0; i < header.tuning.size(); ++i) {
     match.tuning.*foosball::kTuningFields[i].value = std::bit_cast<double>(header.tuning[i]);
   }
-  // What cannot be played is left out, and then refused by Match::create.
+  // Invalid characters become an empty list, which Match::create rejects.
   match.characters = characters::from_record({header.characters}).value_or(foosball::Characters{});
   return match;
 }

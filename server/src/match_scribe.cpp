@@ -57,7 +57,7 @@ results::MatchResult MatchScribe::result(const foosball::MatchView& view,
                                          const Players& players) const {
   results::MatchResult result;
   result.layout = name_of(match_.layout);
-  const bool in_sets = view.rules.sets_to_win > 1;  // then they are what is counted
+  const bool in_sets = view.rules.sets_to_win > 1;  // then the sets decide
   const int to_win = in_sets ? view.rules.sets_to_win : view.rules.goals_to_win;
   result.goals_to_win = static_cast<std::uint32_t>(to_win);
   result.max_goals = static_cast<std::uint32_t>(in_sets ? to_win : view.rules.max_goals);

@@ -1,4 +1,4 @@
-// Looks once a second of ticks at how many were missed in it.
+// Checks after each second of ticks how many ticks were missed in it.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ class OverloadWatch {
   static constexpr std::uint64_t kWindow = 1000;  // ticks
   static constexpr std::uint64_t kTolerated = 50;
 
-  // Both counted since the start; called each tick.
+  // Both count from the start. Call each tick.
   News look(std::uint64_t ticks, std::uint64_t missed) {
     if (ticks - ticks_ < kWindow) return News::none;
     const bool overloaded = missed - missed_ > kTolerated;

@@ -10,13 +10,13 @@
 namespace server {
 namespace {
 
-constexpr std::size_t kMostHead = 4096;              // bytes of a request
-constexpr std::size_t kMostToControl = 64 * 1024;    // that wait to be taken
-constexpr auto kFarewell = std::chrono::seconds(1);  // to read why, before the end
+constexpr std::size_t kMostHead = 4096;              // bytes of a request's head
+constexpr std::size_t kMostToControl = 64 * 1024;    // pending bytes
+constexpr auto kFarewell = std::chrono::seconds(1);  // time to read the reason before the end
 constexpr std::string_view kScanAnew = "Scan the code on the game's screen anew.\n";
 constexpr std::string_view kNoRoom = "All places for phones are taken: try again later.\n";
 
-// The same time for every wrong token.
+// Constant time for every wrong token.
 bool same_secret(std::string_view a, std::string_view b) {
   if (a.size() != b.size()) return false;
   unsigned differs = 0;
@@ -131,7 +131,7 @@ void PhoneCaller::answer(const Request& request, std::size_t bytes) {
   open_socket(request);
 }
 
-// Nothing of it may be kept, or shown inside another page; it loads nothing.
+// The page must not be cached or framed by another page; it loads nothing.
 void PhoneCaller::send_page() {
   house_.count(Count::pages);
   const std::string_view page = phone_page();
@@ -151,7 +151,7 @@ void PhoneCaller::send_page() {
   send_and_close(std::move(bytes));
 }
 
-// most: bytes that the answer may have; where it has more, there is none.
+// most: max size of the answer [bytes]; a larger answer is not sent.
 void PhoneCaller::send_sentence(std::string_view status, std::string_view sentence,
                                 std::size_t most) {
   std::string bytes =
@@ -181,7 +181,7 @@ void PhoneCaller::send_and_close(std::string&& bytes) {
                     });
 }
 
-// What is closed with something unread is reset, and the peer may lose the answer.
+// Closing with unread data would reset the connection, and the peer could lose the answer.
 void PhoneCaller::read_out() {
   buffer_.clear();
   beast::get_lowest_layer(socket_).async_read_some(
@@ -220,7 +220,7 @@ void PhoneCaller::read_message() {
     if (self->dead_) return;
     if (!error) return self->take_message();
     const bool left = error == websocket::error::closed;
-    // Whoever goes on purpose is not expected back.
+    // A deliberate close frees the seat.
     if (left && self->socket_.reason().code == websocket::close_code::normal && self->link_open_) {
       self->says_bye_ = true;
       wire::encode_control(wire::Bye{"the page was closed"}, self->link_out_);
@@ -233,7 +233,7 @@ void PhoneCaller::read_message() {
   });
 }
 
-// One at a time, and no more than the pace allows: the others wait in the kernel.
+// Reads one message at a time, within the rate limit; the others wait in the kernel.
 void PhoneCaller::take_message() {
   if (closing_) return;
   if (!pace_limit_.take(os::monotonic_us())) {
@@ -258,7 +258,7 @@ void PhoneCaller::take_message() {
 void PhoneCaller::follow(PhoneGuest::Outcome&& outcome) {
   if (turned_away_) return;
   if (guest_.greeted() && !inside_) {
-    // Others may have come in since the upgrade. Who is refused takes nobody's place.
+    // Others may have joined since the upgrade. A rejected phone takes no slot.
     const bool room = house_.has_room();
     inside_ = room;
     turned_away_ = !room;
@@ -309,7 +309,7 @@ void PhoneCaller::write_next() {
                       });
 }
 
-// The peer has a moment to answer the close.
+// Gives the peer a moment to answer the close.
 void PhoneCaller::close_socket(websocket::close_code code) {
   if (closing_ || dead_) return;
   closing_ = true;
@@ -355,7 +355,7 @@ void PhoneCaller::read_link() {
       [self = shared_from_this()](const Error& error, std::size_t size) {
         if (self->dead_ || self->closing_) return;
         if (error) {
-          // Its seat has another connection, or the server ends.
+          // Another connection took its seat, or the server ends.
           self->end_when_told_ = true;
           if (self->to_phone_.empty()) self->close_socket(websocket::close_code::going_away);
           return;

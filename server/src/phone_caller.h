@@ -1,10 +1,10 @@
-// One TCP connection on the port for phones, from its first byte to its end: an HTTP request, which
-// is answered with the page, with a sentence or with a WebSocket; then a phone's messages. All on
-// the port's thread. Strangers' bytes are read by Boost.Beast under caps; nothing here asserts.
+// One TCP connection on the port for phones. It begins with an HTTP request, which is answered with
+// the page, with a sentence, or with a WebSocket; the phone's messages follow. Everything runs on
+// the port's thread. Boost.Beast reads the untrusted bytes under limits; nothing here asserts.
 //
-// A caller has 5 s to become a phone that has said hello, counted from the connection, so that no
-// trickle of bytes holds a place. Bytes a second, messages a second and a message's length are
-// bounded; a reply to who has not shown the token is never longer than the request.
+// A connection has 5 s to become a phone that has sent a hello. The time counts from the
+// connection, so that slow senders hold no slot. Bytes per second, messages per second and message
+// length are limited. Without the token, a reply is never longer than the request.
 #pragma once
 
 #include <array>
@@ -40,7 +40,7 @@ using Error = boost::system::error_code;
 
 class PhoneCaller;
 
-// What a caller needs of the port.
+// The interface of the port to its callers.
 class PhoneHouse {
  public:
   enum class Count : std::size_t {
@@ -66,7 +66,7 @@ class PhoneHouse {
   virtual void take(const PhoneInputEvent& event) = 0;
   virtual void count(Count which) = 0;
   virtual void log(LogLevel level, const std::string& text) = 0;
-  virtual void gone(PhoneCaller* caller) = 0;  // it may be destroyed now
+  virtual void gone(PhoneCaller* caller) = 0;  // may be destroyed now
 };
 
 class PhoneCaller final : public std::enable_shared_from_this<PhoneCaller> {
@@ -78,8 +78,8 @@ class PhoneCaller final : public std::enable_shared_from_this<PhoneCaller> {
               const os::SocketAddress& peer);
 
   void begin();
-  void drop();             // at once
-  void leave_when_told();  // the server ends: at once, or behind what is being sent
+  void drop();             // immediately
+  void leave_when_told();  // the server ends: after pending output, if there is any
   bool inside() const { return inside_; }
   const os::SocketAddress& peer() const { return peer_; }
   std::uint32_t client() const { return guest_.client(); }

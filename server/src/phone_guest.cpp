@@ -63,7 +63,7 @@ PhoneGuest::Outcome PhoneGuest::hear(const wire::PhoneRequest& request) {
   return out;
 }
 
-// To watch first: which rods are free is in the Roster.
+// Joins as a watcher first: the Roster says which rods are free.
 void PhoneGuest::greet(const wire::PhoneHello& hello, Outcome& out) {
   greeted_ = true;
   wire::Hello said;
@@ -75,7 +75,7 @@ void PhoneGuest::greet(const wire::PhoneHello& hello, Outcome& out) {
 }
 
 void PhoneGuest::claim(const wire::PhoneClaim& claim, Outcome& out) {
-  if (client_ == 0) return;  // not in yet: the page asks again
+  if (client_ == 0) return;  // not joined yet: the page requests again
   const auto pair = static_cast<RodPair>(claim.pair);
   if (pair == RodPair::none) {
     out.to_control.emplace_back(wire::Claim{0, wire::kWatchOnly});
@@ -85,7 +85,8 @@ void PhoneGuest::claim(const wire::PhoneClaim& claim, Outcome& out) {
   }
 }
 
-// The phone's counter begins anew with each connection, and so does that of what is handed on.
+// The phone's counter restarts with each connection, and so does the counter of the inputs passed
+// on.
 void PhoneGuest::drive(const wire::PhoneInput& input, Outcome& out) {
   const auto pair = static_cast<RodPair>(state_.pair);
   if (client_ == 0 || pair == RodPair::none) return;
@@ -131,8 +132,8 @@ PhoneGuest::Outcome PhoneGuest::hear(const wire::ControlMessage& message) {
   return out;
 }
 
-// Which pairs nobody else has, and which this phone has. Rods that are no pair, of a seat that
-// another kind of client had before, are none.
+// Updates the free pairs and this phone's own pair. Rods that do not form a pair, of a seat that
+// another kind of client had before, count as none.
 void PhoneGuest::look_at(const wire::Roster& roster, Outcome& out) {
   const wire::Seat* me = seat_of(roster, client_);
   if (me == nullptr) return;

@@ -1,6 +1,5 @@
-// What one phone says, and what it is told, as another client of the control port: the phone's
-// messages (wire/phone_message.h) against control messages (wire/control.h). It has no socket and
-// no clock; who carries the bytes is the phone port.
+// Translates between a phone's messages (wire/phone_message.h) and the control messages of a client
+// (wire/control.h). It has no socket and no clock; the phone port transports the bytes.
 #pragma once
 
 #include <array>
@@ -16,15 +15,15 @@
 
 namespace server {
 
-// Rods as a phone has them: two lines of a team.
+// The rods of a phone: two lines of a team.
 struct RodPairOf {
   RodSet rods = 0;
   std::array<int, wire::kPhoneRods> by_x{};  // the rods, the one at -x first
 };
-// Precondition: team 0 or 1, pair no RodPair::none.
+// Precondition: team is 0 or 1, pair is not RodPair::none.
 RodPairOf rods_of_pair(foosball::Layout layout, int team, wire::RodPair pair);
 
-// To the tick: what a phone wants of its rods.
+// To the tick: a phone's rod targets.
 struct PhoneInputEvent {
   std::uint32_t client = 0;
   wire::InputDatagram input;
@@ -34,21 +33,21 @@ class PhoneGuest {
  public:
   explicit PhoneGuest(foosball::Layout layout) : layout_(layout) {}
 
-  // What follows from one message.
+  // The result of one message.
   struct Outcome {
     std::vector<wire::ControlMessage> to_control;
     std::vector<wire::PhoneReply> to_phone;
     std::optional<PhoneInputEvent> input;
-    bool end = false;  // of the connection, behind to_phone
+    bool end = false;  // close the connection after to_phone
   };
-  // A phone's message. One that is out of place ends the connection.
+  // Handles a phone's message. One that is out of sequence ends the connection.
   Outcome hear(const wire::PhoneRequest& request);
-  // The control port's answer.
+  // Handles the control port's answer.
   Outcome hear(const wire::ControlMessage& message);
 
-  bool greeted() const { return greeted_; }         // has said hello
-  std::uint32_t client() const { return client_; }  // 0: not welcomed yet
-  // Which of the phone's rods this is; nothing: none.
+  bool greeted() const { return greeted_; }         // has sent a hello
+  std::uint32_t client() const { return client_; }  // 0: no Welcome yet
+  // Index of the rod among the phone's rods; nothing: not one of them.
   std::optional<std::uint8_t> index_of(int rod) const;
 
  private:
@@ -61,10 +60,10 @@ class PhoneGuest {
   foosball::Layout layout_;
   bool greeted_ = false;
   std::uint32_t client_ = 0;
-  std::uint32_t sequence_ = 0;        // of the inputs handed on
-  std::uint32_t phone_sequence_ = 0;  // of the last one that came
-  bool driven_ = false;               // one has come
-  wire::PhoneState state_;            // as it was last told
+  std::uint32_t sequence_ = 0;        // of the inputs passed on
+  std::uint32_t phone_sequence_ = 0;  // of the last input received
+  bool driven_ = false;               // an input was received
+  wire::PhoneState state_;            // as last sent
   bool told_ = false;
 };
 

@@ -1,4 +1,4 @@
-// The page that phones are served: server/phone/page.html, embedded by server/phone/embed.py.
+// The page that phones load: server/phone/page.html, embedded by server/phone/embed.py.
 #pragma once
 
 #include <string_view>

@@ -19,13 +19,13 @@
 namespace server {
 namespace {
 
-// Without descriptors left, accept(2) fails at once, again and again.
+// Without free descriptors, accept(2) fails at once, repeatedly.
 constexpr auto kAcceptPause = std::chrono::milliseconds(100);
 constexpr auto kGoodbye = std::chrono::milliseconds(200);
 constexpr int kLinesAtOnce = 20;
 constexpr std::int64_t kLineEveryUs = 1'000'000;
 
-// Of the letters and digits that nobody takes for one another: 20 of 31 are 99 bits.
+// Uses only letters and digits that are not easily confused: 20 of 31 give 99 bits.
 std::string make_token(const std::function<std::uint64_t()>& random) {
   constexpr char kLetters[] = "23456789abcdefghjkmnpqrstuvwxyz";
   std::string token;
@@ -33,11 +33,11 @@ std::string make_token(const std::function<std::uint64_t()>& random) {
   return token;
 }
 
-// At which of this machine's addresses others reach it: where it listens, or, of all of them, the
-// one that its route to the world begins at. No packet is sent.
+// The address where other machines reach this one: the listening address, or, if that is "any", the
+// source address of its route to the Internet. No packet is sent.
 std::string host_for_others(const os::SocketAddress& listen) {
   if (!listen.is_any()) return listen.host();
-  for (const char* far : {"192.0.2.1", "2001:db8::1"}) {  // of documentation alone: RFC 5737, 3849
+  for (const char* far : {"192.0.2.1", "2001:db8::1"}) {  // documentation: RFC 5737, 3849
     const auto to = os::parse_address(far, 9);
     const os::FileDescriptor fd(::socket(to->family(), SOCK_DGRAM | SOCK_CLOEXEC, 0));
     if (!fd || ::connect(fd.get(), to->generic(), to->size()) != 0) continue;
@@ -94,7 +94,7 @@ struct PhonePort::Impl final : PhoneHouse {
   asio::io_context io_{1};
   asio::posix::stream_descriptor listener_, wake_;
   asio::steady_timer pause_, goodbye_;
-  std::vector<std::shared_ptr<PhoneCaller>> callers_;  // in the order in which they came
+  std::vector<std::shared_ptr<PhoneCaller>> callers_;  // in order of arrival
   RateLimit log_limit_{kLinesAtOnce, kLineEveryUs};
   bool ending_ = false;
   SpscQueue<PhoneInputEvent, 1024> inputs_;
@@ -118,7 +118,7 @@ PhonePort::Impl::Impl(PhonePortOptions given, os::FileDescriptor listener, os::F
   wake_.assign(wake.release());
 }
 
-// By accept4(2) itself, which gives the address and the flags at once.
+// Uses accept4(2) directly, which returns the address and sets the flags in one call.
 void PhonePort::Impl::accept_next() {
   listener_.async_wait(asio::posix::stream_descriptor::wait_read, [this](const Error& error) {
     if (error || ending_) return;
@@ -150,7 +150,7 @@ void PhonePort::Impl::admit(os::FileDescriptor socket, const os::SocketAddress& 
   callers_.back()->begin();
 }
 
-// As at the control port: the oldest of the network that has most of them goes.
+// As on the control port: drops the oldest of the network with the most of them.
 void PhonePort::Impl::make_room_at_the_door() {
   std::map<std::string, int> crowd;
   int greeting = 0;
@@ -192,7 +192,7 @@ void PhonePort::Impl::hear_the_tick() {
     ::eventfd_read(wake_.native_handle(), &times);
     PhonePulseEvent event;
     while (pulses_.pop(event)) {
-      const auto keep = callers_;  // one that does not read is dropped meanwhile
+      const auto keep = callers_;  // a slow one is dropped during the loop
       for (const auto& caller : keep)
         if (caller->client() == event.client) caller->pulse(event);
     }
@@ -201,11 +201,11 @@ void PhonePort::Impl::hear_the_tick() {
 }
 
 void PhonePort::Impl::run() {
-  os::drop_capabilities(false);  // strangers' bytes are read here
+  os::drop_capabilities(false);  // untrusted bytes are read here
   io_.run();
 }
 
-// What is still to be told goes out, or 0.2 s are over.
+// Ends after pending messages are sent, or after 0.2 s.
 void PhonePort::Impl::end() {
   ending_ = true;
   Error ignored;
@@ -228,7 +228,7 @@ tl::expected<std::unique_ptr<PhonePort>, SocketError> PhonePort::open(PhonePortO
   try {
     return std::unique_ptr<PhonePort>(new PhonePort(
         std::make_unique<Impl>(std::move(options), std::move(*listener), std::move(wake))));
-  } catch (const boost::system::system_error& error) {  // no descriptor left
+  } catch (const boost::system::system_error& error) {  // no free descriptor
     return tl::unexpected(SocketError{error.code().value()});
   }
 }

@@ -64,7 +64,7 @@ void Playback::extend(Bytes longer) {
 }
 
 void Playback::go_to(const Place& place) {
-  // Whichever is longer holds the bytes of both.
+  // The longer file contains the bytes of both.
   if (place.file->size() > file_->size()) file_ = place.file;
   reader_ = place.file == file_ ? place.reader : place.reader.over(*file_);
   ticks_ = place.ticks;

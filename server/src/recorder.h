@@ -1,4 +1,4 @@
-// A match's journal on disk: what goes into it, and when, is server/record_schedule.h.
+// A match's journal on disk; server/record_schedule.h defines its content.
 #pragma once
 
 #include <memory>
@@ -14,7 +14,7 @@ class Recorder {
   Recorder(std::unique_ptr<JournalFile> file, const wire::JournalHeader& header)
       : file_(std::move(file)), schedule_(*file_, header) {}
 
-  // After the match was stepped with the tick.
+  // Call after the match was stepped with the tick.
   void add(const wire::JournalTick& tick, const foosball::Match& match) {
     schedule_.add(tick, match);
   }

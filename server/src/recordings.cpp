@@ -22,15 +22,15 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kNameLength = 17;  // of 2026-11-23_070542
 constexpr std::size_t kHead = wire::kMaxJournalHeader + 8;
-// A whole recording has its last standing within the first; one that was cut off has it about a
-// second of play and a keyframe before its end.
+// A complete recording has its last standing within the first size. A truncated one has it about
+// one second of play and one keyframe before its end.
 constexpr std::array<std::size_t, 2> kTails{512, 256 * 1024};
 
 std::string keep_mark(const std::string& path) {
   return path + ".keep";
 }
 
-// The moment of a name that new_recording() gives, without folder.
+// The time in a file name of new_recording(), without folder.
 std::optional<std::time_t> moment_of(const std::string& name) {
   std::tm parts{};
   int read = 0;
@@ -46,7 +46,7 @@ std::optional<std::time_t> moment_of(const std::string& name) {
   return moment == -1 ? std::nullopt : std::optional(moment);
 }
 
-// The name is one of ours and nothing else: it may be dropped.
+// True if new_recording() made the name: such a file may be deleted.
 bool is_ours(const std::string& name) {
   const std::string rest = name.size() > kNameLength ? name.substr(kNameLength) : "";
   const bool numbered =
@@ -56,7 +56,7 @@ bool is_ours(const std::string& name) {
   return moment_of(name) && (rest == ".sfr" || numbered);
 }
 
-// Whoever writes a recording holds a lock on it.
+// A server that writes a recording holds a lock on it.
 bool is_locked(int file) {
   if (::flock(file, LOCK_SH | LOCK_NB) != 0) return errno == EWOULDBLOCK;
   ::flock(file, LOCK_UN);
@@ -77,7 +77,7 @@ std::vector<std::byte> read_at(int file, std::uint64_t from, std::size_t size) {
   return bytes;
 }
 
-// Empty, or what is wrong with the file's beginning.
+// Empty, or the error in the beginning of the file.
 std::string read_head(int file, RecordingSummary& into, wire::JournalHeader& header) {
   const auto head = read_at(file, 0, kHead);
   if (head.empty()) return " is empty: nothing was recorded; it can be removed.";
@@ -116,7 +116,7 @@ struct Droppable {
   std::uint64_t bytes;
 };
 
-// Oldest first: the names sort by time.
+// Oldest first: names sort by time.
 std::vector<Droppable> droppable(const std::string& folder) {
   std::vector<Droppable> found;
   std::error_code error;
@@ -133,7 +133,7 @@ std::vector<Droppable> droppable(const std::string& folder) {
   return found;
 }
 
-// Until there is room for one more.
+// Deletes recordings until one more fits.
 void drop_oldest(const std::string& folder, const RecordingLimits& limits) {
   std::vector<Droppable> all = droppable(folder);
   std::size_t count = all.size();

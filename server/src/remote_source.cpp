@@ -3,7 +3,7 @@
 namespace server {
 namespace {
 
-// A rod that no hand moves any more stays where it is.
+// A rod that is no longer driven holds its position.
 void let_go(cabinet::RodInput& rod) {
   if (rod.status != cabinet::RodStatus::live) return;
   rod.status = cabinet::RodStatus::held;
@@ -27,7 +27,7 @@ void RemoteSource::set_rods(std::uint8_t rods) {
 }
 
 bool RemoteSource::accept(const wire::InputDatagram& input, std::int64_t now_us) {
-  // As a signed difference, so that a counter that wraps goes on.
+  // A signed difference, so that a counter may wrap.
   const auto ahead = static_cast<std::int32_t>(input.sequence - sequence_);
   if (heard_ && ahead <= 0) {
     ++counters_.stale;

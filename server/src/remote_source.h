@@ -1,4 +1,4 @@
-// The rods of one client as it sends them.
+// The rods of one client, from its input datagrams.
 #pragma once
 
 #include <cstdint>
@@ -11,21 +11,21 @@ namespace server {
 
 class RemoteSource final : public cabinet::InputSource {
  public:
-  // A client sends at least 20 datagrams a second; after five missing ones its rods hold.
+  // A client sends at least 20 datagrams per second; after five missing ones its rods hold.
   static constexpr std::int64_t kSilenceUs = 250'000;
 
   explicit RemoteSource(const std::string& name) : name_(name) {}
 
-  // Another client, or none, is to be heard here from now on: forgets all.
+  // Assigns the source to another client or to none: clears all state.
   void reset(std::int64_t now_us);
-  // The client has these rods, by bit, from now on; of those that it gives up nothing is kept.
+  // Sets the client's rods (bit mask). Clears the state of rods that it gives up.
   void set_rods(std::uint8_t rods);
-  // The client connects anew: its rods stay where they are, its count begins anew. Its silence goes
-  // on: a connection moves no rod.
+  // The client reconnects: its rods stay in place and its sequence restarts. Its silence continues,
+  // since a connection moves no rod.
   void resume() { heard_ = false; }
-  // Since its last datagram; of a client that has sent none, since it came.
+  // Time since its last datagram, or since reset() if it has sent none.
   std::int64_t silent_us(std::int64_t now_us) const { return now_us - heard_us_; }
-  // Rods of others are not looked at. False for a datagram no newer than one accepted.
+  // Ignores rods of others. False for a datagram that is not newer than the last accepted one.
   bool accept(const wire::InputDatagram& input, std::int64_t now_us);
 
   void poll(std::int64_t now_us) override;

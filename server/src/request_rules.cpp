@@ -5,7 +5,7 @@
 namespace server {
 namespace {
 
-// The kinds after it are the server's own.
+// The kinds after it are reserved for the server.
 constexpr auto kRequestKinds = static_cast<std::uint8_t>(foosball::Command::Kind::feed) + 1;
 static_assert(kRequestKinds == wire::kRequestKindCount);
 
@@ -45,7 +45,7 @@ foosball::Command command_of(const wire::MatchRequest& request) {
 
 Ruling rule(wire::Role role, std::uint8_t team, const foosball::Command& request) {
   using Kind = foosball::Command::Kind;
-  // Tuning changes the game of all: the host decides.
+  // Tuning changes the game for all: only the host may.
   if (request.kind == Kind::tune) return role == wire::Role::host ? Ruling::yes : Ruling::no;
   const bool for_all = request.kind == Kind::pause || request.kind == Kind::restart;
   if (role == wire::Role::watcher) return Ruling::no;
@@ -53,7 +53,7 @@ Ruling rule(wire::Role role, std::uint8_t team, const foosball::Command& request
     if (team == wire::kWatchOnly) return Ruling::no;
     return for_all ? Ruling::vote : request.team == team ? Ruling::yes : Ruling::no;
   }
-  // A host who plays does not play for the others.
+  // A host who plays does not decide for the other team.
   return for_all || team == wire::kWatchOnly || request.team == team ? Ruling::yes : Ruling::no;
 }
 

@@ -1,4 +1,5 @@
-// Which requests of a client count: those that exist, that it may have, and not too many of them.
+// Decides which requests of a client count: valid ones that it is allowed to make, within a rate
+// limit.
 #pragma once
 
 #include <cstdint>
@@ -11,17 +12,17 @@
 namespace server {
 
 bool well_formed(const wire::MatchRequest& request);
-// What it asks of the match. Precondition: well_formed(). A kind that takes no value has none, so
-// that all who ask for it ask one question.
+// The match command of the request. Precondition: well_formed(). The value is 0 for a kind that
+// takes none, so that all votes for it are equal.
 foosball::Command command_of(const wire::MatchRequest& request);
 
-// What becomes of a well-formed request: a host's and one for the own team is done, what concerns
-// both teams is put to the vote, a watcher has none.
+// The ruling on a well-formed request. A host's request, or one that concerns only the client's own
+// team, is granted. What concerns both teams needs a vote. A watcher gets nothing.
 enum class Ruling : std::uint8_t { no, vote, yes };
 Ruling rule(wire::Role role, std::uint8_t team, const foosball::Command& request);
 
-// One client's: so many at once, then so many a second. A hand at the keys needs no more, and a
-// restart and what follows it costs the tick more than play does.
+// Rate limit of one client: a burst, then a steady rate. It suffices for a person at the keys. It
+// is needed because a restart costs the tick more than play does.
 class RequestAllowance : public RateLimit {
  public:
   static constexpr int kAtOnce = 16;

@@ -26,7 +26,7 @@ class ResultsLog::Keeper {
     std::variant<results::MatchResult, results::Answers> what;
   };
 
-  // Tick thread. A semaphore's release() never waits.
+  // Tick thread. A semaphore's release() never blocks.
   bool add(Entry&& entry) {
     const bool taken = incoming_.push(std::move(entry));
     if (!taken) lost_.fetch_add(1, std::memory_order_relaxed);
@@ -69,9 +69,9 @@ class ResultsLog::Keeper {
   std::uint64_t kept() const { return kept_.load(std::memory_order_relaxed); }
   std::uint64_t answers() const { return answers_.load(std::memory_order_relaxed); }
 
-  // The thread.
+  // The results thread.
   void run() {
-    keep();  // opens the file: what is wrong with it is told at once
+    keep();  // opens the file, so that an error is reported at once
     bool closing = false;
     while (!closing) {
       if (waiting_.empty()) {
@@ -97,11 +97,11 @@ class ResultsLog::Keeper {
   std::atomic<bool> reported_{false};
   mutable std::mutex mutex_;
   Report report_;                  // not taken by the tick yet
-  wire::Sentence problem_, told_;  // told_: to the tick
-  // The thread's own.
+  wire::Sentence problem_, told_;  // told_: last reported to the tick
+  // Used by the results thread only.
   std::optional<results::Store> store_;
   std::deque<Entry> waiting_;
-  // Of the last matches, by number: where they are in the store, and whose answers it has.
+  // The last matches by number: their id in the store, and the rods that have answered.
   struct Kept {
     std::int64_t id;
     std::uint32_t answered = 0;  // rods
@@ -109,8 +109,8 @@ class ResultsLog::Keeper {
   std::map<std::uint32_t, Kept> matches_;
 };
 
-// An error is the file's. What the store would refuse for what it says is lost here: it would be
-// refused again and again, and hold up what waits behind it.
+// An error concerns the file. An entry with invalid content is dropped here: the store would reject
+// it again and again, and it would block the entries behind it.
 tl::expected<std::int64_t, std::string> ResultsLog::Keeper::keep(const Entry& entry) {
   const auto lose = [this] {
     lost_.fetch_add(1, std::memory_order_relaxed);
@@ -138,7 +138,7 @@ tl::expected<std::int64_t, std::string> ResultsLog::Keeper::keep(const Entry& en
   return id;
 }
 
-// What cannot be read is not reported: play goes on without it.
+// Data that cannot be read is not reported: play goes on without it.
 void ResultsLog::Keeper::report(std::uint32_t number) {
   const auto matches = store_->matches({.player = {}, .newest = kRated});
   if (!matches || matches->empty()) return;
@@ -158,7 +158,8 @@ void ResultsLog::Keeper::report(std::uint32_t number) {
   reported_.store(true, std::memory_order_release);
 }
 
-// A store that has failed is closed and opened anew the next time: the file may be another then.
+// A store that has failed is closed and opened again the next time: the file may be another one
+// then.
 void ResultsLog::Keeper::keep() {
   if (!store_) {
     auto opened = results::Store::open(options_.path, results::Access::create);
@@ -190,7 +191,7 @@ ResultsLog::ResultsLog(const ResultsLogOptions& options)
   std::promise<void> end;
   ended_ = end.get_future();
   thread_ = std::thread([keeper = keeper_, end = std::move(end)]() mutable {
-    os::drop_capabilities(true);  // it opens its file again after a failure
+    os::drop_capabilities(true);  // it reopens its file after a failure
     keeper->run();
     end.set_value();
   });

@@ -1,6 +1,6 @@
-// Keeps results in their file on a thread of its own: the tick hands them on and never waits. A
-// file that is damaged, locked or cannot be made stops nothing: it is told, and results wait, as
-// many as there is room for, until the file takes them or the program ends.
+// Stores results in their file on its own thread: the tick passes them on and never waits. A file
+// that is damaged, locked or cannot be created is reported, but stops nothing. Results stay queued,
+// up to the queue's capacity, until the file accepts them or the program ends.
 #pragma once
 
 #include <array>
@@ -21,51 +21,54 @@ namespace server {
 
 struct ResultsLogOptions {
   std::string path;
-  std::chrono::milliseconds retry_period{10'000};   // while results wait
-  std::chrono::milliseconds close_patience{4'000};  // a locked file is given results::kBusy_ms
+  std::chrono::milliseconds retry_period{10'000};   // while results are pending
+  std::chrono::milliseconds close_patience{4'000};  // for a locked file: results::kBusy_ms
 };
 
 class ResultsLog {
  public:
   static constexpr std::size_t kWaiting = 64;  // results; a match takes minutes
-  // For a report ratings are of so many of the newest matches, and so many of the best are named.
+  // A report computes ratings from this many of the newest matches, and names this many of the best
+  // players.
   static constexpr std::size_t kRated = 10'000, kFame = 8;
 
   explicit ResultsLog(const ResultsLogOptions& options);
-  ~ResultsLog();  // closes, if close() was not called
+  ~ResultsLog();  // calls close() if it was not called
 
-  // Tick thread, as is answer(). False: too many are waiting, this one is lost and counted. number:
-  // the caller's, for answer(); counts up.
+  // Tick thread, like answer(). Returns false if the queue is full: the result is lost and counted.
+  // number: chosen by the caller for answer(); increases.
   bool add(results::MatchResult result, std::uint32_t number = 0);
-  // A player's answers after the match of that number, which they are kept with; lost and counted
-  // if it was lost. Not two for one rod: the store refuses the second.
+  // A player's answers after the match of that number, stored with it; lost and counted if the
+  // match was lost. At most one per rod: the store rejects the second.
   bool answer(const results::Answers& answers, std::uint32_t number);
-  // Tries once more to keep what waits, and ends the thread; within close_patience, else the thread
-  // is left alone. Not for the loop while it runs.
+  // Tries once more to store pending results, and ends the thread. If that takes longer than
+  // close_patience, the thread is abandoned. Do not call from the running loop.
   void close();
 
-  // Any thread. Empty, or the sentence that says why results are not kept now.
+  // Any thread. Empty, or the sentence with the reason why results cannot be stored now.
   std::string problem() const;
-  // Tick thread: it is another one than at the last call. False too while the thread is writing it.
+  // Tick thread. True if the problem has changed since the last call. Also false while the thread
+  // writes it.
   bool problem_changed(wire::Sentence& problem);
-  // What is kept now: the last match of this run, and who plays best in all of them.
+  // The latest stored data: the last match of this run, and the best players of all matches.
   struct Report {
-    std::uint32_t number = 0;  // add()'s; 0: none yet
+    std::uint32_t number = 0;  // of add(); 0: none yet
     results::MatchResult match;
     std::array<double, results::kTeams> rating{}, change{};  // mean of the team's players
     std::vector<results::Standing> fame;                     // best first
   };
-  // Tick thread: there is another one than at the last call. False too while it is being written.
+  // Tick thread. True if there is a new report since the last call. Also false while it is being
+  // written.
   bool report_changed(Report& report);
   std::uint64_t kept() const;     // matches
-  std::uint64_t answers() const;  // kept
+  std::uint64_t answers() const;  // stored
 
  private:
   class Keeper;
 
   std::string path_;
   std::chrono::milliseconds close_patience_;
-  std::shared_ptr<Keeper> keeper_;  // the thread's too, which may outlast this object
+  std::shared_ptr<Keeper> keeper_;  // shared with the thread, which may outlive this object
   std::future<void> ended_;
   std::thread thread_;
 };

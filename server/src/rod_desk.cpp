@@ -16,7 +16,7 @@ std::array<double, cabinet::kRods> slide_limits(const foosball::TableSpec& table
   return limits;
 }
 
-// The two computers must not think alike, nor as the match's own dice fall.
+// The seeds of the two computers differ from each other and from the match's.
 std::uint64_t computer_seed(std::uint64_t match_seed, int team) {
   return match_seed * 0x9E3779B97F4A7C15u + 1 + static_cast<std::uint64_t>(team);
 }
@@ -73,7 +73,7 @@ void RodDesk::follow(const foosball::MatchView& view) {
   }
 }
 
-// Sources that hands drive: first the clients', then the devices'.
+// Hand-driven sources: first the clients, then the devices.
 const cabinet::RodInput& RodDesk::hand(std::size_t source, int rod) const {
   if (source < places_.size()) return places_[source].remote->rods()[rod];
   return devices_[source - places_.size()]->rods()[rod];
@@ -132,7 +132,7 @@ RemoteSource* RodDesk::seat(std::uint32_t client, std::uint8_t rods, std::int64_
   vacated_ &= static_cast<std::uint8_t>(~rods);
   place->rods = rods;
   place->remote->set_rods(rods);
-  // Who takes rods, or gives some up, is there.
+  // A client that takes or gives up rods is present.
   hand_watch_.restart(static_cast<std::size_t>(place - places_.begin()), now_us, play_us_);
   assign_all();
   return rods != 0 ? place->remote.get() : nullptr;
@@ -148,7 +148,7 @@ void RodDesk::back(std::uint32_t client) {
   if (client != 0 && place != places_.end()) place->lost = false;
 }
 
-// One who is there to take rods.
+// True if a present team mate could take rods.
 bool RodDesk::has_team_mate(std::uint32_t client, std::uint8_t rods, std::int64_t now_us) const {
   std::array<bool, foosball::kTeams> wanted{};
   for (int rod = 0; rod < foosball::kRods; ++rod)
@@ -163,7 +163,7 @@ bool RodDesk::has_team_mate(std::uint32_t client, std::uint8_t rods, std::int64_
   });
 }
 
-// Whose rods the computer plays already is not offered: the game would stop for it.
+// Rods that the computer already plays are not offered: the game would stop for the offer.
 bool RodDesk::may_be_offered(std::uint32_t client, std::uint8_t rods, std::int64_t now_us) const {
   return (rods & stand_ins_) == 0 && has_team_mate(client, rods, now_us);
 }
@@ -178,7 +178,7 @@ void RodDesk::leave(std::uint32_t client, std::int64_t now_us) {
   change(client, 0, now_us);
 }
 
-// Of the client's rods those of a team of which it has none among the new ones.
+// The client's rods of each team of which the new rods contain none.
 std::uint8_t RodDesk::given_up(std::uint32_t client, std::uint8_t rods) const {
   const auto place = std::ranges::find(places_, client, &Place::client);
   if (client == 0 || place == places_.end()) return 0;
@@ -202,7 +202,7 @@ RemoteSource* RodDesk::change(std::uint32_t client, std::uint8_t rods, std::int6
   return source;
 }
 
-// The device that has the rod, else the client; as assign_all() has it.
+// The device that has the rod, otherwise the client; consistent with assign_all().
 std::size_t RodDesk::owner(int rod) const {
   for (std::size_t i = 0; i < devices_.size(); ++i) {
     if (devices_[i]->rods()[rod].status != cabinet::RodStatus::absent) return places_.size() + i;
@@ -225,7 +225,7 @@ bool RodDesk::silent(std::size_t source, std::uint8_t rods, std::int64_t now_us)
   return silent_us >= kStandInAfterUs;
 }
 
-// Nothing is heard of the hand, or it has done nothing for long.
+// The hand is silent, or idle for too long.
 bool RodDesk::gone(std::size_t source, std::uint8_t rods, std::int64_t now_us) const {
   return silent(source, rods, now_us) || hand_watch_.still_us(source, rods, play_us_) >= kIdleUs;
 }
@@ -244,7 +244,7 @@ void RodDesk::look_at_hands(bool in_match, bool in_play, std::int64_t now_us) {
   }
 }
 
-// A client's and a device's rods of a team are one player's: two may stand at one cabinet.
+// The rods of one team at one source count as one player: two players may share a cabinet.
 std::uint8_t RodDesk::rods_of_gone(bool& somebody, std::int64_t now_us) {
   std::array<std::size_t, foosball::kRods> owners;
   for (int rod = 0; rod < foosball::kRods; ++rod) owners[rod] = owner(rod);
@@ -274,7 +274,7 @@ bool RodDesk::watch_absences(bool in_match, bool in_play, std::int64_t now_us) {
   bool somebody = false;
   std::uint8_t stand_ins = rods_of_gone(somebody, now_us), offered = 0;
   if (!in_match) vacated_ = 0;
-  // Nobody keeps up a match that all have left: it ends by the rule for idle ones.
+  // Without any present player there are no stand-ins: the match ends by the rule for idle matches.
   if (!in_match || !somebody) stand_ins = 0;
   for (int rod = 0; somebody && rod < foosball::kRods; ++rod) {
     const auto bit = static_cast<std::uint8_t>(1u << rod);
@@ -318,8 +318,7 @@ void RodDesk::assign_all() {
   computed_ = shown_ ? foosball::kAllRods : static_cast<std::uint8_t>(computed);
 }
 
-// A computer plays with the rods in mind that are really its own: a device may have one of those
-// that it would have.
+// Tells each computer which rods it really has: a device may have some of those assigned to it.
 void RodDesk::poll(std::int64_t now_us) {
   unsigned rods = computed_;
   for (int rod = 0; rod < foosball::kRods; ++rod) {

@@ -54,7 +54,8 @@ int Seats::of_machine(const os::SocketAddress& peer) const {
 
 namespace {
 
-// What results call those who are no person with a name: "computer 5", "cabinet", "nobody".
+// Names that the results use for players who are not named persons: "computer 5", "cabinet",
+// "nobody".
 bool is_name_of_results(std::string_view name) {
   return name == "cabinet" || name == "nobody" || name == "computer" ||
          name.starts_with("computer ");
@@ -90,7 +91,7 @@ std::string Seats::free_name(const std::string& wanted, const Seat& seat, std::u
   for (int number = reserved ? 1 : 2;; ++number) {
     const std::string tail = " (" + std::to_string(number) + ")";
     std::string name = wanted.substr(0, wire::kMaxName - tail.size());
-    // No part of a letter stays: what follows its first byte is 10xxxxxx.
+    // Does not split a UTF-8 character: its bytes after the first are 10xxxxxx.
     while (name.size() < wanted.size() && !name.empty() &&
            (static_cast<unsigned char>(wanted[name.size()]) & 0xC0u) == 0x80u) {
       name.pop_back();

@@ -20,7 +20,7 @@
 namespace server {
 namespace {
 
-// A match rebuilds its world at a restart's serve: no more than two of them in one tick.
+// A restart's serve rebuilds the match's world: this bounds them to two per tick.
 constexpr std::size_t kMostCommands = 8;
 static_assert(kMostCommands <= wire::kMaxJournalCommands);
 
@@ -117,13 +117,12 @@ ControlOptions Server::Impl::control_options() const {
   return out;
 }
 
-// --- what comes in
-// --------------------------------------------------------------------------------
+// --- inputs
 
 void Server::Impl::take_control_events() {
   next.commands.clear();
   ControlEvent event;
-  // Each event makes one command at most. Those beyond wait in the queue for the next tick.
+  // Each event makes at most one command. Further events wait in the queue for the next tick.
   while (next.commands.size() < kMostCommands && control.next_event(event)) {
     switch (event.kind) {
       case ControlEvent::Kind::joined:
@@ -160,7 +159,7 @@ void Server::Impl::take_control_events() {
   }
 }
 
-// Hears the client's inputs, and sends it snapshots.
+// Receives the client's inputs, and sends it snapshots.
 void Server::Impl::listen_to(ControlEvent& event) {
   RemoteSource* source = desk.remote(event.client);
   if (source != nullptr && event.socket) {
@@ -189,7 +188,7 @@ void Server::Impl::take_request(const ControlEvent& event) {
     const bool pause = event.request.value != 0;
     if (pause) paused_by_watcher = event.client != 0 && !plays(event.client);
     pause_outlasts_wait = waiting && pause;
-    if (waiting) return;  // it stands still already, until somebody is heard
+    if (waiting) return;  // already paused until a player is heard
   }
   next.commands.push_back(to_record(event.request));
 }
@@ -204,7 +203,7 @@ void Server::Impl::take_game(const wire::Game& asked) {
   desk.choose_player(player_of(opponent));
 }
 
-// At most so many a tick, as of a client's socket; the rest waits.
+// A bounded number per tick, as for a client's socket; the rest waits.
 void Server::Impl::take_phone_inputs(std::int64_t now_us) {
   constexpr int kMostPerTick = 64;
   PhoneInputEvent event;
@@ -213,13 +212,13 @@ void Server::Impl::take_phone_inputs(std::int64_t now_us) {
   }
 }
 
-// False when there is no tick to step: a client is awaited, or a recording is over.
+// False if there is no tick to step: still waiting for a client, or a recording is over.
 bool Server::Impl::gather(std::int64_t now_us) {
   input.receive(now_us);
   take_phone_inputs(now_us);
   const bool begun = !options.await_client || clients_ever > 0;
   if (!options.replay) {
-    gather_live(now_us);  // before the beginning too: devices are not to run over
+    gather_live(now_us);  // even before the first tick, so that devices do not overflow
     return begun;
   }
   if (!begun) return false;
@@ -251,8 +250,7 @@ void Server::Impl::gather_live(std::int64_t now_us) {
                                });
 }
 
-// --- what goes out
-// --------------------------------------------------------------------------------
+// --- outputs
 
 void Server::Impl::put_drivers(wire::Snapshot& out) const {
   if (options.replay) return put_replay_drivers(next, out);
@@ -278,7 +276,7 @@ void Server::Impl::watch_journal() {
   notify(Topic::journal, recorder->file().problem());
 }
 
-// Clients show it, and move their own rods by it.
+// Clients show it, and use it to predict their own rods.
 void Server::Impl::watch_tuning() {
   const foosball::Tuning& now = match.view().tuning;
   if (tuning_told == now) return;
@@ -288,7 +286,7 @@ void Server::Impl::watch_tuning() {
   if (control.tell_tuning(tuning)) tuning_told = now;
 }
 
-// Clients show it, and choose from there.
+// Clients show it, and use it as the start of a choice.
 void Server::Impl::watch_game() {
   const foosball::MatchView& view = match.view();
   const wire::Game now = to_game(view.setup, opponent, view.setup_waits || desk.player_waits());
@@ -302,7 +300,7 @@ void Server::Impl::show_devices(std::int64_t now_us) {
   control.tell_devices(device_table);
 }
 
-// Once a second: whether anything of it has reached the network.
+// Checks once a second whether any snapshot was sent.
 void Server::Impl::watch_sending() {
   constexpr std::uint64_t kEveryTicks = 1000;
   if (snapshot.sequence % kEveryTicks != 0) return;
@@ -324,8 +322,7 @@ void Server::Impl::notify(Topic topic, const wire::Sentence& text, const std::st
   control.notify(wire::Notice::Level::warning, number, text);
 }
 
-// --- the face
-// -------------------------------------------------------------------------------------
+// --- public interface
 
 tl::expected<std::unique_ptr<Server>, StartError> Server::create(ServerOptions options) {
   using Kind = StartError::Kind;
@@ -390,7 +387,7 @@ void Server::set_cabinet_haptics(std::unique_ptr<cabinet::HapticSink> sink) {
 
 void Server::tick(std::int64_t now_us) {
   Impl& s = *impl_;
-  const std::int64_t began_ns = os::monotonic_ns();  // measures, decides nothing
+  const std::int64_t began_ns = os::monotonic_ns();  // for measurement only
   s.tick_us = now_us;
   s.take_control_events();
   s.broadcaster.expect();
@@ -398,12 +395,12 @@ void Server::tick(std::int64_t now_us) {
     step_recorded(s.match, s.next);
     ++s.ticks;
     s.events.add(s.match.events());
-    s.broadcast(now_us, began_ns);  // first of all: a hand waits for it
+    s.broadcast(now_us, began_ns);  // first, to minimise latency
     if (!s.options.replay) s.haptics.feel(s.match.events(), s.match.view(), s.desk, now_us);
     if (s.recorder) s.recorder->add(s.next, s.match);
     const foosball::MatchView& view = s.match.view();
     if (view.screen == foosball::Screen::play && !view.attract) s.was_played = s.playing = true;
-    // What is shown at the logo while nobody plays ends no match, nor does a choice of characters.
+    // A demonstration match, or choosing characters, does not end a match.
     if (view.screen == foosball::Screen::logo && std::exchange(s.playing, false))
       s.control.match_is_over();
     if (s.results) s.keep_result();
@@ -434,9 +431,9 @@ void Server::clear(Topic topic, const std::string& text) {
 void Server::finish(const wire::Sentence& reason) {
   if (impl_->finished) return;
   impl_->finished = true;
-  impl_->broadcaster.close();  // the last snapshot before the Bye
+  impl_->broadcaster.close();  // sends the last snapshot before the Bye
   impl_->control.stop(reason);
-  if (impl_->phones) impl_->phones->stop();  // has told them why
+  if (impl_->phones) impl_->phones->stop();  // sends them the reason
   if (impl_->recorder) impl_->recorder->finish(impl_->match);
   if (impl_->recorder && impl_->options.record_by_default_bytes > 0 && !impl_->was_played)
     ::unlink(impl_->options.record.c_str());

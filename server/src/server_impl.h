@@ -1,6 +1,6 @@
-// The server's parts and its state. Split over server.cpp (what comes in, what goes out, the face),
-// server_seats.cpp (who plays which rods) and server_results.cpp (results, the questionnaire and
-// the report).
+// The server's parts and state. The code is split over server.cpp (inputs, outputs, public
+// interface), server_seats.cpp (assignment of rods) and server_results.cpp (results, questionnaire,
+// report).
 #pragma once
 
 #include <array>
@@ -65,7 +65,7 @@ struct Server::Impl {
   void take_game(const wire::Game& asked);
   void watch_game();
   void show_devices(std::int64_t now_us);
-  // Empty: the notice is cleared, and the log has over.
+  // An empty text clears the notice; then `over` goes to the log.
   void notify(Topic topic, const wire::Sentence& text, const std::string& over = {},
               std::uint32_t index = 0);
   ControlOptions control_options() const;
@@ -76,7 +76,7 @@ struct Server::Impl {
     std::uint8_t team;
     RodSet rods;
     Name name;
-    std::array<Name, foosball::kRods> players{};  // by rod; empty: the one of this name
+    std::array<Name, foosball::kRods> players{};  // by rod; empty: same as name
     const Name& at(int rod) const { return players[rod][0] != 0 ? players[rod] : name; }
   };
   static wire::SealKey random_key(const std::function<std::uint64_t()>& random);
@@ -98,31 +98,31 @@ struct Server::Impl {
   std::unique_ptr<Recorder> recorder;  // or none
   MatchScribe scribe;
   Lineup lineup;
-  bool not_counted_told = false, leavers_told = false;  // notices that stand
+  bool not_counted_told = false, leavers_told = false;  // active notices
   std::unique_ptr<ResultsLog> results;                  // or none
-  std::uint32_t matches = 0;                            // handed to it
+  std::uint32_t matches = 0;                            // passed to it
   std::vector<Client> clients;
   std::uint64_t clients_ever = 0;
-  std::int64_t tick_us = 0;                     // the clock at the tick under way
-  std::array<Name, foosball::kRods> had_rod{};  // who was lost, or left, with the rod
-  bool playing = false;                         // people have played since the logo was last seen
-  bool stand_ins_told = false, offer_told = false;  // notices that stand
-  bool waiting = false;                             // paused, for nobody is heard
-  bool pause_outlasts_wait = false;                 // somebody asked for one meanwhile
+  std::int64_t tick_us = 0;                         // the clock at the current tick
+  std::array<Name, foosball::kRods> had_rod{};      // last player of the rod, lost or left
+  bool playing = false;                             // people have played since the last logo screen
+  bool stand_ins_told = false, offer_told = false;  // active notices
+  bool waiting = false;                             // paused, since no player sends anything
+  bool pause_outlasts_wait = false;                 // somebody requested a pause meanwhile
   bool paused_by_watcher = false;                   // by a host who only watches
   std::uint64_t ticks = 0;
   std::uint64_t sent_seen = 0, errors_seen = 0;
   bool sending_fails = false;
   std::optional<foosball::Tuning> tuning_told;
-  Opponent opponent;  // as chosen last
+  Opponent opponent;  // as last chosen
   std::optional<wire::Game> game_told;
   bool replay_over = false, journal_told = false, finished = false;
-  bool was_played = false;  // somebody has, and not the computers for show
+  bool was_played = false;  // by people, not only by computers as a demonstration
 
-  wire::JournalTick next;  // the inputs of the tick under way
+  wire::JournalTick next;  // the inputs of the current tick
   wire::Snapshot snapshot;
   std::array<std::byte, wire::kMaxDatagram> datagram;
-  std::unique_ptr<PhonePort> phones;  // or none; it hands connections to control
+  std::unique_ptr<PhonePort> phones;  // or none; it passes connections to control
   ControlServer control;              // last: its thread ends first
 };
 

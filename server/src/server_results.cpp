@@ -1,4 +1,4 @@
-// What is kept of finished matches, what players answer about them, and what clients are told.
+// Storage of finished matches, the players' answers, and reports to clients.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -9,7 +9,8 @@
 
 namespace server {
 
-// Who plays in this tick. A person has the rods of his seat, unless the computer stands in.
+// Counts the players of this tick. A person plays the rods of the seat, unless the computer stands
+// in.
 void Server::Impl::count_players() {
   const foosball::MatchView& view = match.view();
   if (view.screen != foosball::Screen::play || view.paused || view.attract) return;
@@ -40,7 +41,7 @@ void Server::Impl::count_players() {
   }
 }
 
-// Of the last tick. What is shown while nobody plays is nobody's match.
+// Stores the result of the last tick. A demonstration match is not stored.
 void Server::Impl::keep_result() {
   foosball::RodTargets targets;
   for (int rod = 0; rod < foosball::kRods; ++rod) targets[rod] = from_grid(next.rods[rod]);
@@ -88,7 +89,7 @@ MatchScribe::Players Server::Impl::players() const {
   return players;
 }
 
-// Why: they have left it, or came too late.
+// The reason: they left, or joined too late.
 void Server::Impl::tell_who_is_not_rated_as_the_team(const results::MatchResult& result) {
   std::string late, left;
   for (const results::Team& team : result.teams) {
@@ -111,7 +112,7 @@ void Server::Impl::watch_results() {
   notify(Topic::results, problem, "results are kept again");
 }
 
-// Clients show it at the match's end and on the logo.
+// Clients show it at the end of the match and on the logo screen.
 void Server::Impl::tell_report() {
   ResultsLog::Report kept;
   if (!results || !results->report_changed(kept)) return;

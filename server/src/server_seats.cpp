@@ -1,4 +1,4 @@
-// Who comes and goes, and who plays which rods meanwhile.
+// Clients joining and leaving, and the assignment of rods.
 #include <algorithm>
 #include <bit>
 #include <string>
@@ -97,7 +97,7 @@ void Server::Impl::remember_name(std::uint32_t client) {
     if ((who->rods >> rod & 1) != 0) had_rod[rod] = who->at(rod);
 }
 
-// A team keeps its match when one of it is away: all are told who plays.
+// If a player of a team is absent, the match goes on. Notifies all of the stand-ins.
 void Server::Impl::watch_absences() {
   const foosball::MatchView& view = match.view();
   const bool in_match = view.screen != foosball::Screen::logo &&
@@ -108,7 +108,7 @@ void Server::Impl::watch_absences() {
   const bool changed = desk.watch_absences(in_match, in_play, tick_us);
   wait_for_players(in_match);
   if (!changed) return;
-  for (int rod = 0; rod < foosball::kRods; ++rod) {  // at a cabinet nobody has a name
+  for (int rod = 0; rod < foosball::kRods; ++rod) {  // players at a cabinet have no name
     if ((desk.stand_ins() >> rod & 1) != 0 && desk.of_device(rod)) had_rod[rod] = {};
   }
   for (const Client& client : clients) {
@@ -127,8 +127,8 @@ void Server::Impl::watch_absences() {
   tell(Topic::offer, offer_told, offer, "no rods are offered any more");
 }
 
-// A match of whose players nobody is heard stands still until somebody is, so that a gap in the
-// only player's line costs no goals. It ends by the rule for idle ones all the same.
+// Pauses a match while none of its players is heard, so that a network outage of the only player
+// costs no goals. The rule for idle matches still ends it.
 void Server::Impl::wait_for_players(bool in_match) {
   const foosball::MatchView& view = match.view();
   const bool play = in_match && view.screen == foosball::Screen::play;
@@ -148,7 +148,8 @@ bool Server::Impl::plays(std::uint32_t client) const {
   });
 }
 
-// The players' pause ends with the last of them; a host's who watches, with the last who is there.
+// A pause by players ends when the last player leaves; a pause by a watching host, when the last
+// client leaves.
 bool Server::Impl::pause_is_abandoned() const {
   if (clients.empty()) return true;
   return !paused_by_watcher && std::none_of(clients.begin(), clients.end(), [](const Client& c) {
@@ -156,8 +157,8 @@ bool Server::Impl::pause_is_abandoned() const {
   });
 }
 
-// Which teams computers play, so that the match knows whose absence counts; and the hand that ends
-// a match that is shown.
+// Tells the match which teams computers play, so that it knows whose absence counts, and when a
+// hand ends a demonstration match.
 void Server::Impl::tell_match() {
   const foosball::MatchView& view = match.view();
   if (view.attract) {

@@ -16,7 +16,7 @@ void put_pose(const vp::SE3& T_world_body, wire::PoseVelocity& out) {
                      static_cast<float>(q.w)};
 }
 
-// A man's origin lies on the rod's axis, so his turn does not move it.
+// A man's origin lies on the rod's axis, so that the rotation does not move it.
 wire::ManState man_state(const foosball::TableSpec& table, int rod, int man,
                          const foosball::RodState& state) {
   wire::ManState out;

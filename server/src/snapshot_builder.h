@@ -1,4 +1,4 @@
-// From the match's view to the snapshot on the wire: the one place where they meet.
+// Converts the match's view to the wire snapshot. It is the only place that does.
 #pragma once
 
 #include "cabinet/rod_input.h"
@@ -8,11 +8,13 @@
 
 namespace server {
 
-// All that the match's view says: poses and velocities of ball and men, rods, score, screen. The
-// fields of the datagram itself, the rods' status and source and the events are left alone.
+// Fills everything that the match's view contains: poses and velocities of ball and men, rods,
+// score, screen. Does not write the datagram's own fields, the rods' status and source, or the
+// events.
 void build_snapshot(const foosball::MatchView& view, wire::Snapshot& snapshot);
 
-// Who drives the rods of a replay: a rod that the recording moves is live, the others are held.
+// Sets status and source of the rods of a replay: a rod that the recording moves is live, the
+// others are held.
 void put_replay_drivers(const wire::JournalTick& tick, wire::Snapshot& snapshot);
 
 }  // namespace server

@@ -23,12 +23,12 @@ tl::expected<os::FileDescriptor, SocketError> bound_socket(int type,
                                                            const os::SocketAddress& address) {
   os::FileDescriptor fd(::socket(address.family(), type | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   if (!fd) return tl::unexpected(last_error());
-  // TCP: a restart does not wait for the last run's closed connections. On UDP it would let two
-  // servers share a port.
+  // TCP: a restart does not wait for closed connections of the last run. For UDP, the option would
+  // let two servers share a port.
   if (type == SOCK_STREAM && !set_option(fd.get(), SOL_SOCKET, SO_REUSEADDR, 1)) {
     return tl::unexpected(last_error());
   }
-  // "::" hears both families, whatever the system's default is.
+  // "::" receives both families, regardless of the system's default.
   if (address.is_ipv6() && !set_option(fd.get(), IPPROTO_IPV6, IPV6_V6ONLY, 0)) {
     return tl::unexpected(last_error());
   }
@@ -38,7 +38,7 @@ tl::expected<os::FileDescriptor, SocketError> bound_socket(int type,
   return fd;
 }
 
-// One hop: a group is for this table's network, not for the next one.
+// One hop: the group is for the table's network only.
 bool prepare_multicast(int fd, const os::SocketAddress& address) {
   if (address.is_ipv6()) {
     return set_option(fd, IPPROTO_IPV6, IPV6_MULTICAST_HOPS, 1) &&
@@ -55,12 +55,12 @@ bool prepare_udp(int fd, const NetworkOptions& options, const os::SocketAddress&
          (!options.multicast || prepare_multicast(fd, address));
 }
 
-constexpr int kBacklog = 128;  // a crowd at the door must not fill the kernel's queue at once
+constexpr int kBacklog = 128;  // so that a flood of connections does not fill the queue at once
 
 tl::expected<PortPair, SocketError> open_once(const NetworkOptions& options,
                                               os::SocketAddress address) {
-  // UDP first: its port is one socket's alone, so that of two servers that start at one moment one
-  // has both ports. TCP's SO_REUSEADDR lets both bind, and then listen(2) may fail for both.
+  // UDP first: a UDP port belongs to one socket, so that of two servers that start simultaneously
+  // one gets both ports. TCP's SO_REUSEADDR lets both bind, and then listen(2) may fail for both.
   auto udp = bound_socket(SOCK_DGRAM, address);
   if (!udp) return tl::unexpected(udp.error());
   if (!prepare_udp(udp->get(), options, address)) return tl::unexpected(last_error());
@@ -72,7 +72,7 @@ tl::expected<PortPair, SocketError> open_once(const NetworkOptions& options,
   return PortPair{std::move(*tcp), std::move(*udp), port};
 }
 
-// While it lives, another UDP socket may be bound to the socket's port.
+// Allows another UDP socket to bind to the socket's port during its lifetime.
 class Shareable {
  public:
   explicit Shareable(int fd) : fd_(fd) { set_option(fd_, SOL_SOCKET, SO_REUSEADDR, 1); }
@@ -113,7 +113,7 @@ tl::expected<PortPair, SocketError> open_ports(const NetworkOptions& options) {
   const auto address = os::parse_address(options.listen, options.port);
   if (!address) return tl::unexpected(SocketError{});
   auto ports = open_once(options, *address);
-  // A free UDP port whose TCP twin is taken: another free one will do.
+  // The TCP port with the number of this free UDP port is in use: try another free one.
   constexpr int kMaxTries = 16;
   for (int i = 1; i < kMaxTries && options.port == 0 && !ports && ports.error().occupied(); ++i) {
     ports = open_once(options, *address);

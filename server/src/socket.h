@@ -1,4 +1,4 @@
-// Sockets as the server needs them: opened with all options set, or a reason.
+// Opens sockets with all options set, or returns the reason why not.
 #pragma once
 
 #include <cerrno>
@@ -13,10 +13,10 @@
 namespace server {
 
 struct SocketError {
-  int number = 0;  // errno, or 0: the options name no address
+  int number = 0;  // errno, or 0: the options contain no valid address
   bool occupied() const { return number == EADDRINUSE; }
 };
-// What is wrong and what to do.
+// Error message: what is wrong and what to do.
 std::string sentence(const NetworkOptions& options, const SocketError& error);
 
 // One TCP listener and one UDP socket, both non-blocking, bound to the same port number.
@@ -26,15 +26,15 @@ struct PortPair {
 };
 tl::expected<PortPair, SocketError> open_ports(const NetworkOptions& options);
 
-// A UDP socket of its own for one client: bound to the shared port too, and connected to the
-// client's address, so that the kernel puts into it what comes from there and nothing else. A flood
-// from elsewhere fills the shared socket and not this one. shared: the port's socket. local: where
-// the client reached the server.
+// A UDP socket for one client. It is bound to the shared port and connected to the client's
+// address, so that it only receives that client's datagrams. A flood from elsewhere fills the
+// shared socket, not this one. shared: the port's socket. local: the server's address that the
+// client reached.
 tl::expected<os::FileDescriptor, SocketError> open_client_socket(int shared,
                                                                  const os::SocketAddress& local,
                                                                  const os::SocketAddress& client);
 
-// Whether the kernel knows a way to the group, from the address that the server listens at. The
+// Checks that the kernel has a route to the group from the address that the server listens at. The
 // error is a sentence.
 tl::expected<void, std::string> can_reach(const Endpoint& group, const NetworkOptions& options);
 

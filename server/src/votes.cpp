@@ -5,7 +5,7 @@
 namespace server {
 namespace {
 
-// One question: whoever asks for it, of whichever team.
+// Votes agree on kind and value, whoever asks and for either team.
 bool same_question(const foosball::Command& a, const foosball::Command& b) {
   return a.kind == b.kind && a.value == b.value;
 }
@@ -20,7 +20,7 @@ Votes::Count Votes::cast(const std::string& voter, const foosball::Command& requ
   if (std::ranges::find(vote->in_favour, voter) == vote->in_favour.end()) {
     vote->in_favour.push_back(voter);
   }
-  // Of those who have left since, no vote counts.
+  // Votes of players who have left do not count.
   const auto here = [&](const std::string& who) {
     return std::ranges::find(voters, who) != voters.end();
   };

@@ -1,5 +1,4 @@
-// What concerns everybody at the table is done when more than half of the machines that play want
-// it.
+// Votes on requests that concern both teams: they need more than half of the machines that play.
 #pragma once
 
 #include <cstdint>
@@ -19,10 +18,10 @@ class Votes {
     int votes = 0, needed = 0;
     bool passed() const { return votes >= needed; }
   };
-  // voters: all who may vote now, each once, the voter among them. A vote that passed is over.
+  // voters: all who may vote now, each once, including the voter. A vote that passes is closed.
   Count cast(const std::string& voter, const foosball::Command& request,
              std::span<const std::string> voters, std::int64_t now_us);
-  // The next vote whose time is over, forgotten by this call. False: none.
+  // Removes the next expired vote. False: none.
   bool expire(std::int64_t now_us, foosball::Command& request);
   bool any() const { return !open_.empty(); }
 

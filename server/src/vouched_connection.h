@@ -1,4 +1,5 @@
-// A connection that another port than the control port has let in, such as a phone's by its token.
+// A connection that a port other than the control port has accepted, such as a phone's by its
+// token.
 #pragma once
 
 #include "os/file_descriptor.h"
@@ -8,7 +9,7 @@ namespace server {
 
 struct VouchedConnection {
   os::FileDescriptor socket;         // a stream of control messages
-  os::SocketAddress peer, heard_at;  // the other machine's, and this one's, for limits and votes
+  os::SocketAddress peer, heard_at;  // remote and local address, for limits and votes
 };
 
 }  // namespace server

@@ -43,7 +43,7 @@ ProbeClient::ProbeClient(std::uint16_t port, const std::string& from, const std:
     : server_(os::parse_address(to, port).value_or(os::loopback(port))) {
   const auto mine = os::parse_address(from, 0).value_or(os::loopback(0));
   udp_ = ::socket(mine.family(), SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  const int buffer = 4 << 20;  // a stalled test machine loses nothing
+  const int buffer = 4 << 20;  // so that a stalled test machine loses nothing
   ::setsockopt(udp_, SOL_SOCKET, SO_RCVBUF, &buffer, sizeof buffer);
   const bool udp_bound = ::bind(udp_, mine.generic(), mine.size()) == 0;
 

@@ -1,5 +1,5 @@
-// A client reduced to its sockets, for tests and the loop benchmark: joins, listens, sends what it
-// is told, good or bad. Every wait has a deadline and ends as soon as something arrives.
+// A minimal client for tests and the loop benchmark: joins, listens, and sends any message, valid
+// or not. Every wait has a deadline and ends as soon as something arrives.
 #pragma once
 
 #include <cstdint>
@@ -19,9 +19,9 @@ namespace server {
 
 class ProbeClient {
  public:
-  static constexpr int kPatienceMs = 5000;  // long enough for a busy machine; never slept through
+  static constexpr int kPatienceMs = 5000;  // long enough for a loaded machine
 
-  // from: the loopback address it connects from and listens at; to: the server's.
+  // from: the loopback address to connect from and to listen at; to: the server's address.
   explicit ProbeClient(std::uint16_t port, const std::string& from = "127.0.0.1",
                        const std::string& to = "127.0.0.1");
   ~ProbeClient();
@@ -34,19 +34,19 @@ class ProbeClient {
   int udp() const { return udp_; }
   std::uint16_t udp_port() const;
 
-  // --- control ----------------------------------------------------------------------------------
+  // --- control
   wire::Hello hello(std::uint8_t team = wire::kWatchOnly) const;
   bool say(const wire::ControlMessage& message);
-  bool send_raw(std::span<const std::byte> bytes);  // false when the server has closed
-  // The next message that is no Roster, no Tuning, no Game, no Report and no list of Characters;
-  // nothing at the deadline or when the server has closed.
+  bool send_raw(std::span<const std::byte> bytes);  // false if the server has closed
+  // The next message that is not a Roster, Tuning, Game, Report or list of Characters; nothing at
+  // the deadline or if the server has closed.
   std::optional<wire::ControlMessage> hear(int patience_ms = kPatienceMs);
-  const wire::Roster& roster() const { return roster_; }  // the last one heard
+  const wire::Roster& roster() const { return roster_; }  // the last one received
   const std::optional<wire::Tuning>& tuning() const { return tuning_; }
   const std::optional<wire::Game>& game() const { return game_; }
   const wire::Characters& characters() const { return characters_; }
   const std::optional<wire::Report>& report() const { return report_; }
-  // The next message of this kind, throwing away others.
+  // The next message of this type; discards others.
   template <class Message>
   std::optional<Message> hear_a(int patience_ms = kPatienceMs) {
     while (auto message = hear(patience_ms)) {
@@ -54,24 +54,25 @@ class ProbeClient {
     }
     return std::nullopt;
   }
-  // Until all that the server tells of what this client has said is heard, a Roster too. Two pings:
-  // a Roster goes out at the end of a pass, behind the answers to what was read in it. False when
-  // the server has closed.
+  // Waits for all effects of this client's messages, including a Roster. Uses two pings: a Roster
+  // is sent at the end of a pass, after the answers to that pass's messages. False if the server
+  // has closed.
   bool catch_up();
-  // Hello and its answer.
+  // Sends a Hello and returns the answer.
   std::optional<wire::Welcome> join(std::uint8_t team = wire::kWatchOnly, std::uint8_t rods = 0);
   std::optional<wire::Welcome> join(const wire::Hello& hello);
-  // Again to the seat of that Welcome.
+  // Resumes the seat of that Welcome.
   std::optional<wire::Welcome> resume(const wire::Welcome& before);
-  // Knock and its answer: all is sealed from now on. False when the server does not answer so.
+  // Sends a Knock and handles the answer: everything is sealed from then on. False if the server
+  // does not answer correctly.
   bool prove(const std::string& password, wire::Role role = wire::Role::player);
-  // True once the server has closed the connection; throws away what comes before.
+  // True once the server has closed the connection; discards earlier messages.
   bool sees_close(int patience_ms = kPatienceMs);
-  void leave();        // without a word
-  void say_goodbye();  // and leave
+  void leave();        // without a Bye
+  void say_goodbye();  // sends a Bye, then leaves
 
-  // --- datagrams --------------------------------------------------------------------------------
-  bool send_input(const wire::InputDatagram& input);  // sealed as the Welcome says
+  // --- datagrams
+  bool send_input(const wire::InputDatagram& input);  // sealed as the Welcome defines
   std::vector<std::byte> sealed(const wire::InputDatagram& input);
   bool send_datagram(std::span<const std::byte> bytes);
   std::optional<wire::Snapshot> snapshot(int patience_ms = kPatienceMs);

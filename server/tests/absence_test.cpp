@@ -1,4 +1,4 @@
-// Whose rods the computer plays because no hand does: the desk alone, in fake time.
+// The rods that the computer plays because no hand drives them: RodDesk alone, in simulated time.
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -54,7 +54,7 @@ class Absence : public testing::Test {
     ::send(controller, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
   }
 
-  // Time passes; who sends is heard, and who moves goes to and fro by 10 mm.
+  // Advances time. Sending sources send; moving ones oscillate by 10 mm.
   void pass(std::int64_t us) {
     for (; us > 0; us -= kStepUs) {
       now += kStepUs;
@@ -72,7 +72,7 @@ class Absence : public testing::Test {
       desk.poll(now);
     }
   }
-  // Who drives the rods of a team: none, cabinet, client, Computer, mixed.
+  // The driver of a team's rods: none, cabinet, client, Computer, mixed.
   char driver(int team) {
     std::string who;
     for (const int rod : foosball::rods_of_team(foosball::table_spec({}), team))

@@ -1,4 +1,4 @@
-// Once warm, a tick takes no memory: an allocation may wait for a lock or for the kernel.
+// Once warm, a tick does not allocate: an allocation may wait for a lock or for the kernel.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ class WarmTick : public testing::Test {
  protected:
   void TearDown() override { ::unlink(path.c_str()); }
 
-  // What so many ticks take from the heap.
+  // Number of allocations in this many ticks.
   long taken(int ticks) {
     const long before = os::testing::allocations();
     table.tick(ticks);
@@ -33,12 +33,11 @@ class WarmTick : public testing::Test {
   }};
 };
 
-// Through the second of the journal's keyframes, eleven of its hashes, and whatever the match
-// brings.
+// Covers the second of the journal's keyframes, eleven of its hashes, and all events of the match.
 TEST_F(WarmTick, TakesNoMemoryWithTwoComputersARecordingAndAListener) {
   ProbeClient watcher(table.port());
   ASSERT_TRUE(watcher.join());
-  // From the logo to the characters, and on to play.
+  // From the logo to the character selection, and on to play.
   int asked = 0;
   for (const auto screen : {foosball::Screen::selection, foosball::Screen::play}) {
     ASSERT_TRUE(table.tick_until([&] {
@@ -59,14 +58,14 @@ TEST_F(WarmTick, TakesNoMemoryWithTwoComputersARecordingAndAListener) {
   EXPECT_TRUE(table.tick_until([&] { return table->counters().journal_bytes > written; }));
   EXPECT_EQ(table->journal_problem(), "");
   EXPECT_NE(table->match().view().screen, foosball::Screen::logo);
-  EXPECT_GT(os::testing::allocations(), 0);  // the counter counts
+  EXPECT_GT(os::testing::allocations(), 0);  // the counter works
 }
 
 TEST_F(WarmTick, TakesNoMemoryWhenAClientTakesATeamAndGivesItBack) {
   table.tick(100);
   for (int round = 0; round < 3; ++round) {
     ProbeClient player(table.port());
-    ASSERT_TRUE(player.join(0));  // welcomed: the next tick has it
+    ASSERT_TRUE(player.join(0));  // welcomed: the next tick knows it
     EXPECT_EQ(taken(1), 0);
     EXPECT_EQ(table->clients(), 1);
     player.leave();
@@ -96,7 +95,7 @@ TEST_F(WarmTick, TakesNoMemoryWhileAHostLooksAtTheDevices) {
   EXPECT_EQ(during, 0);
 }
 
-// A phone that swings its rods, and feels three hits.
+// A phone that swings its rods, and receives three pulses.
 TEST(WarmPhones, TakeNoMemoryInATickWithInputsOrPulses) {
   Lockstep table([](ServerOptions& o) {
     o.phones.open = true;
@@ -138,7 +137,7 @@ TEST(WarmPhones, TakeNoMemoryInATickWithInputsOrPulses) {
   EXPECT_EQ(taken, 0);
 }
 
-// The best players have worlds of their own (foosball/src/computer_forecast.h).
+// The best players simulate worlds of their own (foosball/src/computer_forecast.h).
 class BestPlayersTick : public testing::Test {
  protected:
   BestPlayersTick()
@@ -167,7 +166,7 @@ class BestPlayersTick : public testing::Test {
     return os::testing::allocations() - before;
   }
   struct Taken {
-    int ticks = 0;  // that took memory
+    int ticks = 0;  // that allocated
     long sum = 0, most = 0;
   };
   Taken taken_in(int ticks) {
@@ -193,7 +192,7 @@ TEST_F(BestPlayersTick, TakesNoMemoryWhileTheComputerStandsInForAPlayer) {
   ASSERT_TRUE(seat);
   wire::InputDatagram input{.session = seat->session, .token = seat->token};
   for (wire::InputRod& rod : input.rods) rod = {true, 0.0f, 0.0, 0.0f, 0.0f};
-  const auto play = [&](int seconds) {  // Bob's hand is heard all the while
+  const auto play = [&](int seconds) {  // Bob's hand sends all the time
     Taken all;
     for (int i = 0; i < seconds; ++i) {
       ++input.sequence;
@@ -213,7 +212,7 @@ TEST_F(BestPlayersTick, TakesNoMemoryWhileTheComputerStandsInForAPlayer) {
   EXPECT_LT(stood_in.sum, 40);
 }
 
-// The one change in play that takes memory. docs/decisions/0050 says how long it takes.
+// The only change during play that allocates. docs/decisions/0050 gives its duration.
 TEST_F(BestPlayersTick, TakesMemoryForNewWorldsWhenTheTuningChangesAPartATick) {
   EXPECT_EQ(taken_in(1'000).sum, 0);
   const double gravity = table->match().view().tuning.gravity + 0.5;
@@ -231,11 +230,11 @@ TEST_F(BestPlayersTick, TakesMemoryForNewWorldsWhenTheTuningChangesAPartATick) {
               at_once, making.sum, making.ticks, making.most);
   EXPECT_LT(at_once, 1'500);
   EXPECT_LT(making.most, 400);
-  taken_in(500);  // the match's new world meets its sizes
+  taken_in(500);  // the match's new world reaches its sizes
   EXPECT_EQ(taken_in(2'000).sum, 0);
 }
 
-// A match with more contacts has a larger keyframe than any before it.
+// A match with more contacts has a larger keyframe than all before it.
 TEST(WarmJournal, TakesNoMemoryForTheLargestEntries) {
   const std::string path = temp_path("journal");
   auto file = JournalFile::create({.path = path});

@@ -17,7 +17,7 @@
 namespace server {
 namespace {
 
-// Takes n snapshots; each must be the next one.
+// Receives n snapshots; each must follow the one before.
 void expect_in_order(ProbeClient& client, int n) {
   std::uint64_t last = 0;
   for (int i = 0; i < n; ++i) {
@@ -124,7 +124,7 @@ class InputTest : public testing::Test {
     in.rods[7] = {true, slide, 0.0, 0.0f, 0.0f};  // the other team's
     return in;
   }
-  // A datagram on loopback is there when sendto() returns.
+  // On loopback a datagram has arrived when sendto() returns.
   InputCounters counters() {
     table.tick();
     return table->counters().input;
@@ -145,7 +145,7 @@ TEST_F(InputTest, IsInTheSnapshotOfTheVeryNextTick) {
   EXPECT_EQ(snapshot->rods[0].source, 2);  // a client
   EXPECT_GT(snapshot->rods[0].slide_rate, 0.0f);
   EXPECT_EQ(snapshot->rods[7].source, 0);
-  // The rod goes to a new driver's position without a jump: within a second.
+  // The rod moves to a new driver's position within a second, without a jump.
   for (std::uint32_t i = 2; i < 52; ++i) {
     player.send_input(input(i, 0.02f));
     table.tick(20);
@@ -180,7 +180,7 @@ TEST_F(InputTest, CountsAndIgnoresStrangersAndWatchers) {
   EXPECT_EQ(c.accepted, 0u);
 }
 
-// All that a stranger may have at hand, by what it is.
+// All datagrams that an attacker may have, by kind.
 std::vector<std::pair<std::string, std::vector<std::byte>>> requests_of_a_stranger(
     ProbeClient& player, const wire::InputDatagram& input) {
   std::vector<std::pair<std::string, std::vector<std::byte>>> all;
@@ -215,7 +215,8 @@ std::vector<std::pair<std::string, std::vector<std::byte>>> requests_of_a_strang
   return all;
 }
 
-// docs/decisions/0040: nothing that a stranger sends from a made-up address floods who has it.
+// docs/decisions/0040: a datagram with a forged source address cannot flood the owner of that
+// address.
 TEST_F(InputTest, NoDatagramOfAStrangerIsAnsweredByMoreThanItself) {
   const os::FileDescriptor stranger(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   const auto any = os::loopback(0), server = os::loopback(table.port());
@@ -254,9 +255,9 @@ TEST_F(InputTest, CountsEveryTruncationTurnedBitAndOversize) {
   const std::vector<std::byte> oversized(1400, std::byte{0x5A});
   player.send_datagram(oversized);
   ++refused;
-  table.tick(4);  // a tick takes only so many
+  table.tick(4);  // a tick reads a limited number
   const InputCounters c = counters();
-  EXPECT_EQ(c.bad + c.foreign, refused);  // foreign: a bit of the key's id
+  EXPECT_EQ(c.bad + c.foreign, refused);  // foreign: a flipped bit in the key's id
   EXPECT_EQ(c.accepted, 0u);
   player.send_datagram(good);
   EXPECT_EQ(counters().accepted, 1u) << "what was refused moved nothing";
@@ -267,7 +268,8 @@ TEST_F(InputTest, HoldsTheRodsWhenThePlayerVanishesAndLetsTheNextOneTakeThem) {
   table.tick(200);
   player.leave();
   ASSERT_TRUE(table.tick_until([&] { return table->clients() == 0; }));
-  // The rod was still on its way to the 20 mm asked for, and would go 4 mm on if it did not hold.
+  // The rod was still moving to its target of 20 mm, and would move 4 mm further if it did not
+  // hold.
   const double where = table->match().view().rods[0].slide;
   EXPECT_LT(where, 0.018);
   table.tick(200);

@@ -1,4 +1,4 @@
-// The thread that sends: everything given is sent in order or counted, and nothing is left behind.
+// The sender thread: every datagram is sent in order or counted, and none is left pending.
 #include "broadcaster.h"
 
 #include <gtest/gtest.h>
@@ -27,8 +27,8 @@ wire::SealKey key_of(std::uint32_t client) {
   return {static_cast<std::byte>(client), std::byte{7}};
 }
 
-// The number in each datagram that has arrived, sealed for that client. On loopback one is there
-// once it was sent.
+// The numbers in the datagrams that have arrived, sealed for that client. On loopback a datagram
+// arrives as it is sent.
 std::vector<int> arrived(const os::FileDescriptor& fd, std::uint32_t client) {
   wire::DatagramOpener opener(key_of(client), client);
   std::vector<int> out;
@@ -70,14 +70,14 @@ TEST_F(Sending, ReachesEachListenerInOrderAndNoneThatLeft) {
 
 TEST_F(Sending, SendsAllThatWasGivenBeforeItEnds) {
   add(1, os::local_address(one.get()));
-  for (int i = 0; i < 16; ++i) give(i);  // as many as can wait
+  for (int i = 0; i < 16; ++i) give(i);  // as many as fit into the queue
   out.close();
   EXPECT_EQ(arrived(one, 1).size(), 16u);
   EXPECT_EQ(out.stats().cost.count(), 16u);
   EXPECT_EQ(out.stats().to_wire.count(), 16u);
 }
 
-// Given faster than the thread may send: each is sent or counted, and the order stays.
+// Queued faster than the thread can send: each is sent or counted, and the order is kept.
 TEST_F(Sending, WhatFindsNoPlaceIsCountedForEachListener) {
   add(1, os::local_address(one.get()));
   add(2, os::local_address(two.get()));
@@ -100,7 +100,8 @@ TEST_F(Sending, AListenerThatCannotBeReachedCostsTheOthersNothing) {
   EXPECT_EQ(arrived(two, 2), (std::vector<int>{7}));
 }
 
-// Expected early, late, in vain or not at all: it only says when the thread wakes.
+// Expected early, late, without a datagram, or not at all: expect() only decides when the thread
+// wakes.
 TEST_F(Sending, WhatWasExpectedArrivesOnceAndWhatWasNotToo) {
   add(1, os::local_address(one.get()));
   std::vector<int> given;

@@ -1,4 +1,4 @@
-// The control port on real sockets: crowds of strangers, passwords and votes.
+// The control port on real sockets: floods of connections, passwords and votes.
 #include "control_fixture.h"
 #include "door.h"
 #include "seats.h"
@@ -6,9 +6,10 @@
 namespace server {
 namespace {
 
-// --- crowds --------------------------------------------------------------------------------------
+// --- floods of connections
 
-// 500 connections that send a byte now and then: a newcomer is in at once, and who is in stays in.
+// 500 connections that send a byte now and then: a new client joins at once, and joined clients
+// stay.
 TEST(Door, ACrowdOfSlowConnectionsKeepsNobodyOut) {
   Lockstep table;
   ProbeClient inside(table.port());
@@ -29,20 +30,20 @@ TEST(Door, ACrowdOfSlowConnectionsKeepsNobodyOut) {
   EXPECT_GE(table->counters().control.crowded_out, 400u);
 }
 
-// With one connection each the oldest goes, not always that of the same address.
+// With one connection per address the oldest is dropped, not always that of the same address.
 TEST(Door, ACrowdOfAddressesKeepsNoAddressOut) {
   Lockstep table([](ServerOptions& o) { o.limits.greeting = 3; });
   std::vector<ProbeClient> crowd;
   for (const char* from : {"127.0.0.5", "127.0.0.6"}) crowd.emplace_back(table.port(), from);
   ProbeClient first(table.port(), "127.0.0.2"), last(table.port(), "127.0.0.9");
-  crowd.emplace_back(table.port(), "127.0.0.7");  // two have gone for it and the last
+  crowd.emplace_back(table.port(), "127.0.0.7");  // two are dropped for it and the last
   ASSERT_TRUE(table.wait_until([&] { return table->counters().control.crowded_out == 2; }));
   EXPECT_TRUE(crowd[0].sees_close() && crowd[1].sees_close());
   EXPECT_TRUE(first.join());
   EXPECT_TRUE(last.join());
 }
 
-// Names reach the log, and others' screens: wire::clean_name() is asked.
+// Names reach the log and other clients' screens: they must pass wire::clean_name().
 TEST(Door, NamesShowAllThatTheyHave) {
   Lockstep table;
   const std::pair<std::string, std::string> names[] = {
@@ -87,7 +88,7 @@ TEST(Door, TheLogIsSparedACrowdsLines) {
   EXPECT_LT(std::count(log.begin(), log.end(), '\n'), 100);
 }
 
-// --- beyond this machine (where loopback is not trusted, it stands for one) ----------------------
+// --- remote clients (simulated by loopback clients that are not trusted)
 
 void want_password(ServerOptions& o) {
   o.access.trust_this_machine = false;
@@ -103,7 +104,7 @@ TEST(Password, LetsInWhoKnowsItAndNobodyElse) {
   ASSERT_TRUE(refusal);
   EXPECT_EQ(refusal->code, Code::password);
 
-  ASSERT_TRUE(wrong.prove("open sesame!"));  // the exchange itself tells nobody
+  ASSERT_TRUE(wrong.prove("open sesame!"));  // the exchange itself does not reveal it
   EXPECT_FALSE(wrong.join(0));
   EXPECT_TRUE(table.tick_until([&] { return table->counters().control.wrong_passwords == 1; }));
 
@@ -138,7 +139,7 @@ TEST(Password, IsGuessedSlowly) {
   EXPECT_TRUE(neighbour.prove("open sesame") && neighbour.join(0)) << "from another machine";
 }
 
-// Many connections at once are no way round the limit.
+// Parallel connections do not avoid the limit.
 TEST(Password, IsChargedWhenItIsTriedAndNotWhenItIsFoundWrong) {
   Lockstep table(want_password);
   std::vector<std::unique_ptr<ProbeClient>> guesses;
@@ -200,7 +201,7 @@ TEST(Votes, TwoPlayersFromAfarRestartTogetherAndAWatcherNever) {
       [&] { return table->match().view().screen != foosball::Screen::selection; }));
 }
 
-// A restart leaves the match without a result: the one who is losing it needs the other's vote.
+// A restart ends the match without a result, so the losing player needs the other's vote.
 TEST(Votes, NobodyRestartsAloneWhileTheOpponentsSeatIsKept) {
   Lockstep table([](ServerOptions& o) {
     want_password(o);

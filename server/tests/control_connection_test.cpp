@@ -1,4 +1,4 @@
-// What one connection keeps in memory for a peer that reads slowly.
+// Memory use of one connection whose peer reads slowly.
 #include "control_connection.h"
 
 #include <gtest/gtest.h>
@@ -17,12 +17,12 @@ class ControlConnectionTest : public testing::Test {
   void SetUp() override {
     std::array<int, 2> ends{-1, -1};
     ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()), 0);
-    const int small = 4096;  // so that the peer is behind at once
+    const int small = 4096;  // so that the peer falls behind at once
     ::setsockopt(ends[0], SOL_SOCKET, SO_SNDBUF, &small, sizeof small);
     connection.emplace(os::FileDescriptor(ends[0]), os::SocketAddress{}, 0);
     peer = os::FileDescriptor(ends[1]);
   }
-  // Up to so many bytes of what has been sent.
+  // Reads up to `most` bytes of those sent.
   void read(std::size_t most) {
     std::vector<std::byte> bytes(most);
     const ssize_t size = ::recv(peer.get(), bytes.data(), bytes.size(), MSG_DONTWAIT);
@@ -39,8 +39,7 @@ class ControlConnectionTest : public testing::Test {
   std::uint64_t heard = 0;
 };
 
-// A peer that pings and reads at one pace is never dropped for it, and what it was sent is not
-// kept.
+// A peer that sends pings and reads at one rate is never dropped, and sent bytes are not retained.
 TEST_F(ControlConnectionTest, KeepsNoMoreForASteadyReaderThatNeverCatchesUp) {
   std::uint64_t said = 0;
   const auto say = [&] { return connection->send(wire::Pong{++said}, kCap); };
@@ -59,7 +58,7 @@ TEST_F(ControlConnectionTest, KeepsNoMoreForASteadyReaderThatNeverCatchesUp) {
     most = std::max(most, connection->buffered_bytes());
   }
   EXPECT_LE(most, kCap + 16 * 1024);
-  EXPECT_GT(20'000 * 8 * one.size(), 10 * kCap);  // far more than that went through
+  EXPECT_GT(20'000 * 8 * one.size(), 10 * kCap);  // far more than that was sent
   while (connection->wants_to_send() || heard < said) {
     ASSERT_TRUE(connection->flush());
     read(kCap);

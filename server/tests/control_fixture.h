@@ -1,4 +1,4 @@
-// What the tests of the control port share: a server in lockstep, and what a client says and hears.
+// Shared by the tests of the control port: a server in lockstep, and messages of a client.
 #pragma once
 
 #include <gtest/gtest.h>

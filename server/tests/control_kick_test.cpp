@@ -1,5 +1,5 @@
-// Players are put out of a match, on real sockets: beyond this machine, for which other loopback
-// addresses stand where loopback is not trusted.
+// Removing players from a match, on real sockets. Untrusted loopback addresses simulate remote
+// clients.
 #include "control_fixture.h"
 #include "seats.h"
 

@@ -1,5 +1,5 @@
-// The control port on real sockets: seats that are lost and taken again, rods that people share,
-// and who may tune.
+// The control port on real sockets: seats that are lost and resumed, rods that people share, and
+// permissions for the tuning.
 #include <atomic>
 #include <bit>
 
@@ -21,7 +21,7 @@ TEST(Seat, OfAPlayerWhoWasLostIsKeptFromRivalsAndTakenAgainWithItsTicket) {
   auto player = std::make_unique<ProbeClient>(table.port());
   const auto before = player->join(0);
   ASSERT_TRUE(before);
-  player->leave();  // the cable is drawn
+  player->leave();  // as if the cable was unplugged
   EXPECT_NE(notice_of(watcher).find("was lost"), std::string::npos);
 
   ProbeClient rival(table.port()), thief(table.port()), again(table.port());
@@ -62,7 +62,8 @@ TEST(Seat, IsTakenAgainThoughTheServerHasNotNoticedTheLoss) {
   EXPECT_EQ(table->clients(), 1);
 }
 
-// Two clients with one ticket would take it from each other for ever, to everybody's news.
+// Two clients with one ticket would take the seat from each other forever, and all would be
+// notified.
 TEST(Seat, IsNotTakenAgainHundredsOfTimesASecond) {
   Lockstep table(keep_seats);
   auto holder = std::make_unique<ProbeClient>(table.port());
@@ -90,7 +91,7 @@ TEST(Seat, IsNotTakenAgainHundredsOfTimesASecond) {
   EXPECT_TRUE(holder->catch_up()) << "who has it keeps it";
 }
 
-// Who comes back and does not read goes again, in the middle of being told so.
+// A client that resumes but does not read is dropped while it is being sent the state.
 TEST(Seat, OfWhoComesBackAndReadsNothingIsNobodyElsesMeanwhile) {
   const std::string name(40, 'n');
   const auto size_of = [](const wire::ControlMessage& message) { return bytes_of(message).size(); };
@@ -113,7 +114,7 @@ TEST(Seat, OfWhoComesBackAndReadsNothingIsNobodyElsesMeanwhile) {
   const auto before = player->join(hello);
   ProbeClient other(table.port()), again(table.port());
   ASSERT_TRUE(before && other.join(1));
-  // What comes back is sent the tuning too, once the tick has told it.
+  // A returning client also gets the tuning, once the tick has sent it.
   ASSERT_TRUE(table.tick_until([&] { return other.catch_up() && other.tuning(); }));
   player->leave();
   ASSERT_TRUE(table.wait_until([&] { return table->counters().control.lost == 1; }));
@@ -146,12 +147,12 @@ TEST(Seat, IsFreeAtOnceAfterAGoodByeAndInTimeWithoutOne) {
   EXPECT_TRUE(last.join(0));
 }
 
-// With unread bytes the client's end comes as a reset. The server may meet it when it sends, and
-// what the client said before is still to be read. The control thread writes the log: between its
-// look at the sockets and its sending, every time.
+// With unread bytes the client's end arrives as a reset. The server may detect it when it sends,
+// while the client's earlier messages are still unread. The control thread writes the log between
+// polling the sockets and sending, which makes the order deterministic.
 TEST(Seat, IsFreeAtOnceAfterTheGoodByeOfAClientThatHasNotReadAll) {
   std::atomic<ProbeClient*> leaver = nullptr;
-  std::atomic<bool> has_left = false;  // the client is this thread's again
+  std::atomic<bool> has_left = false;  // this thread uses the client again
   Lockstep table([&](ServerOptions& o) {
     keep_seats(o);
     o.log = [&](LogLevel, const std::string&) {
@@ -175,7 +176,7 @@ TEST(Seat, IsFreeAtOnceAfterTheGoodByeOfAClientThatHasNotReadAll) {
   EXPECT_EQ(table->counters().control.left, 1u);
 }
 
-// --- two people, one team ------------------------------------------------------------------------
+// --- two people, one team
 
 TEST(Rods, TwoPeopleShareATeamAndEachDrivesTheirOwn) {
   Lockstep table;
@@ -245,7 +246,7 @@ TEST(Rods, AreGivenUpToWatchAndTakenAgainOnTheOtherTeam) {
   ASSERT_TRUE(claim({one, 1}));
   EXPECT_EQ(client.roster().seats[0].rods, one);
   EXPECT_EQ(client.roster().seats[0].team, 1);
-  // Its inputs move that rod: the socket for them was opened anew or never closed.
+  // Its inputs move that rod: its socket was opened again or never closed.
   wire::InputDatagram input{.session = welcome->session, .token = welcome->token, .sequence = 9};
   for (wire::InputRod& rod : input.rods) rod = {true, 0.05f, 0.0, 0.0f, 0.0f};
   for (int ms = 0; ms < 300; ++ms) {
@@ -276,7 +277,7 @@ TEST(Rods, AWatcherTakesOneAndIsHeard) {
   EXPECT_GT(table->match().view().rods[0].slide, 0.03);
 }
 
-// Two clients of one machine under one name are one person, but not against each other.
+// Two clients of one machine with one name count as one person, except against each other.
 TEST(Rods, WhoChangesSidesToTheOpponentOfThatNameIsToldApart) {
   Lockstep table;
   const auto layout = foosball::MatchDesc{}.layout;
@@ -302,7 +303,8 @@ TEST(Rods, WhoChangesSidesToTheOpponentOfThatNameIsToldApart) {
   EXPECT_EQ(second.roster().seats.at(0).name, "probe (2)") << "not the one who has left";
 }
 
-// Results and the rules for leavers go by names, so that several people at one window need several.
+// Results and the rules for leavers use names as keys, so several people at one window need several
+// names.
 TEST(Names, OfSeveralPeopleAtOneClientAreToldToAllAndChangedByNoOther) {
   Lockstep table;
   const RodSet all0 = rods_of_team(foosball::MatchDesc{}.layout, 0);
@@ -312,14 +314,14 @@ TEST(Names, OfSeveralPeopleAtOneClientAreToldToAllAndChangedByNoOther) {
   wire::Names names{"Ann", {}};
   const auto first = static_cast<std::size_t>(std::countr_zero(all0));
   const auto theirs = static_cast<std::size_t>(std::countr_zero(all1));
-  names.players[first] = " Ben\xE2\x80\x8B ";  // cleaned as the name of a Hello is
-  names.players[theirs] = "Dora";              // a rod that it has not
+  names.players[first] = " Ben\xE2\x80\x8B ";  // cleaned like the name of a Hello
+  names.players[theirs] = "Dora";              // a rod that it does not have
   window.say(names);
   ASSERT_TRUE(window.catch_up());
   EXPECT_EQ(window.roster().seats.at(0).name, "Ann");
   EXPECT_EQ(window.roster().players[first], "Ben");
   EXPECT_EQ(window.roster().players[theirs], "");
-  // Another machine finds the names taken, and those that results have for others are nobody's.
+  // For another machine the names are taken, and nobody may use the names reserved by the results.
   wire::Names same{"Ben", {}};
   same.players[theirs] = "Ann";
   rival.say(same);
@@ -345,7 +347,8 @@ TEST(Rods, WhoeverHasRodsOfBothTeamsAsksForBoth) {
       table.tick_until([&] { return table->match().view().character[1] == character; }, 5000));
 }
 
-// Forged or not: a value out of its range changes nothing, a watcher's and a player's neither.
+// A value out of range changes nothing, forged or not; neither does a request of a watcher or a
+// player.
 TEST(Tuning, IsToldToAllAndChangedByHostsOnlyWithinItsRange) {
   Lockstep table;
   ProbeClient host(table.port()), second(table.port()), watcher(table.port());
@@ -368,12 +371,12 @@ TEST(Tuning, IsToldToAllAndChangedByHostsOnlyWithinItsRange) {
   };
   host.say(tune(0, 9.0));
   EXPECT_TRUE(all_told(9.0));
-  // Two hosts, as all at this machine are: the later word counts, and both are told.
+  // Two hosts, like all clients on this machine: the later value counts, and both receive it.
   second.say(tune(0, 10.0));
   EXPECT_TRUE(all_told(10.0));
   ProbeClient forger(table.port());
   ASSERT_TRUE(forger.join());
-  forger.say(tune(0, 1e6));  // ends the connection: no client of ours sends it
+  forger.say(tune(0, 1e6));  // ends the connection: our clients never send it
   EXPECT_TRUE(forger.sees_close());
   table.tick(20);
   EXPECT_EQ(table->match().view().tuning.gravity, 10.0);

@@ -1,4 +1,4 @@
-// The control port on real sockets: who may join, what a stranger can do, what clients are told.
+// The control port on real sockets: joining, untrusted clients, and messages to clients.
 #include <sys/resource.h>
 
 #include <bit>
@@ -10,7 +10,7 @@
 namespace server {
 namespace {
 
-// The server lives and takes a new client.
+// The server runs and accepts a new client.
 void expect_alive(Lockstep& table) {
   ProbeClient client(table.port());
   EXPECT_TRUE(client.join().has_value());
@@ -88,7 +88,7 @@ TEST(Control, ClosesAnOversizedMessageBeforeItsBodyComes) {
   expect_alive(table);
 }
 
-// Random bytes, and every Hello with one bit turned: each connection ends or was a Hello after all.
+// Random bytes, and every Hello with one flipped bit: each connection ends or was a valid Hello.
 TEST(Control, SurvivesGarbageAndTurnedBits) {
   Lockstep table([](ServerOptions& o) { o.limits.hello_us = 20'000; });
   std::mt19937 random(3);
@@ -184,7 +184,7 @@ TEST(Control, AnswersAPing) {
   EXPECT_EQ(pong->id, 77u);
 }
 
-// It asks and asks and never reads an answer: dropped once its share of memory is full.
+// The client sends requests and never reads an answer: it is dropped once its buffer is full.
 TEST(Control, DropsAClientThatDoesNotRead) {
   Lockstep table([](ServerOptions& o) { o.limits.unsent_bytes = 8 * 1024; });
   ProbeClient slow(table.port());
@@ -203,7 +203,7 @@ TEST(Control, HandsRequestsToTheMatchAndCountsThoseThatAreNotAllowed) {
   ProbeClient player(table.port());
   ASSERT_TRUE(player.join(0));
   using Kind = foosball::Command::Kind;
-  player.say(wire::MatchRequest{static_cast<std::uint8_t>(Kind::push), 1, 0});  // the other team's
+  player.say(wire::MatchRequest{static_cast<std::uint8_t>(Kind::push), 1, 0});  // of the other team
   player.say(wire::MatchRequest{static_cast<std::uint8_t>(Kind::push), 0, 0});
   EXPECT_TRUE(table.tick_until(
       [&] { return table->match().view().screen == foosball::Screen::selection; }));
@@ -221,7 +221,7 @@ TEST(Control, LetsAWatcherAtThisMachineMakeRequests) {
       [&] { return table->match().view().screen == foosball::Screen::selection; }));
 }
 
-// A hundred requests at once: the few that a hand could have made count, the rest are dropped.
+// A hundred requests at once: as many count as a person could make, the rest are dropped.
 TEST(Control, TakesNoMoreRequestsOfAClientThanAHandCanMake) {
   Lockstep table;
   ProbeClient watcher(table.port()), other(table.port());
@@ -242,11 +242,11 @@ TEST(Control, TakesNoMoreRequestsOfAClientThanAHandCanMake) {
   const std::uint64_t taken = table->counters().control.requests;
   EXPECT_GE(taken, 16u);
   EXPECT_LE(taken, 16u + earned);
-  other.say(restart);  // another client's is not among them
+  other.say(restart);  // a request of another client
   EXPECT_TRUE(table.wait_until([&] { return table->counters().control.requests > taken; }));
 }
 
-// A match in play, as a local watcher starts it.
+// Starts a match in play, as a local watcher.
 void start_play(Lockstep& table, ProbeClient& watcher) {
   const auto push = static_cast<std::uint8_t>(foosball::Command::Kind::push);
   for (const std::uint8_t team : std::array<std::uint8_t, 3>{0, 0, 1})
@@ -361,7 +361,7 @@ TEST(Control, SaysByeBeforeItEnds) {
   EXPECT_TRUE(client.sees_close());
 }
 
-// As many descriptors as there are now, and so many more.
+// Limits the descriptors to those open now, plus a number.
 class DescriptorLimit {
  public:
   explicit DescriptorLimit(rlim_t more) {
@@ -383,7 +383,7 @@ TEST(Control, StartsWholeOrSaysWhyNotHoweverFewDescriptorsAreLeft) {
     o.record = journal;
     o.overwrite = true;
   };
-  // Once with all it wants: a sanitizer's first look at a class takes descriptors of its own.
+  // First without a limit: a sanitizer's first use of a class takes descriptors of its own.
   Lockstep(record).started();
   int more = 0;
   for (; more < 20; ++more) {

@@ -1,4 +1,5 @@
-// A cabinet's controller on a socket pair: from its report to the snapshot, unplugged and back.
+// A cabinet's controller on a socket pair: from its report to the snapshot, unplugged and plugged
+// in.
 #include <gtest/gtest.h>
 #include <linux/input.h>
 #include <sys/socket.h>
@@ -39,7 +40,7 @@ class Controller {
     ASSERT_EQ(::send(own_end_, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT),
               static_cast<ssize_t>(bytes.size()));
   }
-  // One report; rod 2 has moved on by so many counts.
+  // Sends one report; rod 2 has moved on by this many counts.
   void report(int slide_counts, std::uint8_t overflow = 0) {
     frame_.present = 0xFF;
     frame_.overflow = overflow;
@@ -50,7 +51,7 @@ class Controller {
     wire::encode_device_frame(frame_, bytes.data());
     send(bytes);
   }
-  // One report; all rods are so far from where they began [counts].
+  // Sends one report; all rods are this far from their start [counts].
   void sweep(double slide, double spin) {
     for (int rod = 0; rod < wire::kDeviceRods; ++rod) {
       frame_.slide[rod] = static_cast<std::uint16_t>(static_cast<int>(slide));
@@ -74,7 +75,7 @@ class DeviceTest : public testing::Test {
     table->add_device(std::make_unique<cabinet::DeviceSource>(options, controller.opener()));
     ASSERT_TRUE(watcher.join());
   }
-  // A report before each tick.
+  // Sends a report before each tick.
   void run(int ticks, int counts = 0) {
     for (int i = 0; i < ticks; ++i) {
       controller.report(counts);
@@ -95,7 +96,7 @@ class DeviceTest : public testing::Test {
   ProbeClient watcher{table.port()};
 };
 
-// One tick from a report to the snapshot: the one it arrived before.
+// Latency of one tick: a report is in the snapshot of the tick that follows its arrival.
 TEST_F(DeviceTest, AReportIsInTheSnapshotOfTheTickItArrivedBefore) {
   run(20);
   EXPECT_FLOAT_EQ(next_snapshot().rods[2].slide, 0.0f);
@@ -114,7 +115,7 @@ TEST_F(DeviceTest, TheRodArrivesWhereTheSensorSays) {
   EXPECT_NEAR(table->match().view().rods[3].slide, 0.0, 0.0005);
 }
 
-// The tick answers, when a host has asked.
+// The tick answers a host's request.
 std::optional<wire::Devices> answer_to(ProbeClient& client, Lockstep& table) {
   if (!client.say(wire::DeviceQuery{})) return {};
   std::optional<wire::Devices> told;
@@ -199,7 +200,7 @@ TEST_F(DeviceTest, UnpluggedIsToldWithin100MillisecondsAndTheRodsHold) {
   EXPECT_LT(farthest, 0.0005);  // no jump
 }
 
-// What a person is told, each with what to do about it.
+// Messages for a person, each with a remedy.
 TEST_F(DeviceTest, ADeviceThatNeverSaysAWordIsToldToBeSilent) {
   table.tick(900);
   EXPECT_FALSE(watcher.hear(0));  // it has a second to start
@@ -220,11 +221,11 @@ TEST_F(DeviceTest, ADeviceThatSendsNoFrameIsToldToBeTheWrongOne) {
   EXPECT_EQ(table->devices().at(0).name, "cabinet test");
   EXPECT_EQ(table->devices().at(0).counters.bad, 1100u);
   EXPECT_EQ(table->devices().at(0).counters.frames, 0u);
-  run(1);  // its first true frame
+  run(1);  // its first valid frame
   EXPECT_EQ(notice_text(), "cabinet test is back");
 }
 
-// The frame says so, and the screen: once, for as long as it goes on and a while more.
+// The frame and the screen report it once, for as long as it lasts and a while longer.
 TEST_F(DeviceTest, ASensorThatCannotFollowItsRodIsTold) {
   run(20);
   controller.report(8, 1 << 2);
@@ -244,8 +245,7 @@ TEST_F(DeviceTest, ASensorThatCannotFollowItsRodIsTold) {
   EXPECT_EQ(over->level, wire::Notice::Level::cleared);
 }
 
-// One notice each, in whatever order the faults follow each other: none while a new one has not
-// lasted a second.
+// One notice each, in any order of the faults; none while a new one has not lasted a second.
 TEST_F(DeviceTest, FromOneFaultToTheNextAPersonIsToldOnce) {
   run(20);
   table.tick(60);
@@ -260,7 +260,7 @@ TEST_F(DeviceTest, FromOneFaultToTheNextAPersonIsToldOnce) {
   table.tick(1100);
   EXPECT_EQ(notice_text(), "cabinet test unplugged: its rods hold; plug it in again");
   controller.plug_in();
-  table.tick(400);  // opened, and still silent
+  table.tick(400);  // opened, but still silent
   run(2);
   EXPECT_EQ(notice_text(), "cabinet test is back");
   EXPECT_FALSE(watcher.hear(0));
@@ -321,7 +321,7 @@ TEST(DeviceWatch, SaysThatARecordingHoldsNoFrame) {
   EXPECT_EQ(notice->text, "file:" + path + " holds no frame: give a recording of a controller");
 }
 
-// From another machine, with the players' password: what hangs at the server's is not theirs.
+// From another machine, with the players' password: the server's devices are not visible.
 TEST(DevicesAsked, APlayerIsToldNothing) {
   Lockstep table([](ServerOptions& o) {
     o.access.trust_this_machine = false;
@@ -345,8 +345,7 @@ TEST(DevicesAsked, APlayerIsToldNothing) {
   EXPECT_EQ(table->counters().control.requests_dropped, 1u);
 }
 
-// Two mice on the desk, each on a socket pair: each moves its rod, and one that is unplugged is
-// told.
+// Two mice, each on a socket pair: each moves its rod, and an unplugged one is reported.
 class MiceTest : public testing::Test {
  protected:
   struct Mouse {
@@ -393,7 +392,7 @@ TEST_F(MiceTest, EachMovesItsRodAndNoOther) {
     table.tick();
   }
   table.tick(1000);
-  const double metres = 40 * 1.5 * 25.4e-6;  // of one count a millisecond
+  const double metres = 40 * 1.5 * 25.4e-6;  // of one count per millisecond
   EXPECT_NEAR(table->match().view().rods[3].slide, 20 * metres, 0.0005);
   EXPECT_NEAR(table->match().view().rods[5].slide, -10 * metres, 0.0005);
   EXPECT_NEAR(table->match().view().rods[2].slide, 0, 0.0005);
@@ -410,7 +409,7 @@ TEST_F(MiceTest, OneThatIsUnpluggedIsToldAndTheOtherGoesOn) {
   EXPECT_NEAR(table->match().view().rods[5].slide, 100 * 1.5 * 25.4e-6, 0.0005);
 }
 
-// A ball that meets the rods of a cabinet: what its motors are told, and in which tick.
+// A ball that hits the rods of a cabinet: the pulses of its motors, and their ticks.
 TEST(CabinetHaptics, AHitIsToldInItsTickAndNoneThatIsNot) {
   struct Motors final : cabinet::HapticSink {
     explicit Motors(std::vector<cabinet::HapticPulse>& into) : felt(into) {}
@@ -441,7 +440,7 @@ TEST(CabinetHaptics, AHitIsToldInItsTickAndNoneThatIsNot) {
   std::size_t before = felt.size();
   int ticks_with_hits = 0;
   ASSERT_TRUE(table.tick_until([&] {
-    // The tick that has just been: a pulse in it means a hit in it.
+    // The last tick: a pulse in it implies a hit in it.
     bool hit = false;
     for (const foosball::Event& event : table->match().events())
       hit |= event.kind == foosball::EventKind::man_hit && event.value >= cabinet::kSoftestFelt;

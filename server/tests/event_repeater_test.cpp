@@ -35,7 +35,7 @@ TEST(EventRepeater, PutsAnEventIntoEightSnapshotsInARow) {
   EXPECT_TRUE(out.empty());
 }
 
-// Seven lost datagrams in a row, wherever they begin: every event was in one that arrived.
+// Seven lost datagrams in a row, starting anywhere: every event was in one that arrived.
 TEST(EventRepeater, ShowsEveryEventDespiteSevenLostDatagrams) {
   for (int lost_from = 0; lost_from < 16; ++lost_from) {
     EventRepeater repeater;
@@ -67,7 +67,7 @@ TEST(EventRepeater, GivesAGoalThePlaceOfAHit) {
   const auto out = next(repeater, {event(EventKind::goal)});
   ASSERT_EQ(out.size(), static_cast<std::size_t>(wire::kMaxEvents));
   EXPECT_EQ(out.back().kind, static_cast<std::uint8_t>(EventKind::goal));
-  EXPECT_EQ(out.front().id, 2u);  // the oldest hit has gone
+  EXPECT_EQ(out.front().id, 2u);  // the oldest hit was dropped
   EXPECT_EQ(repeater.dropped(), 1u);
 }
 

@@ -1,4 +1,4 @@
-// What is played, chosen by clients while the server runs.
+// The game, chosen by clients while the server runs.
 #include <algorithm>
 #include <atomic>
 
@@ -145,7 +145,7 @@ TEST_F(GameTest, AChangeOfSidesIsForACabinet) {
   EXPECT_EQ(notice_of(host), wire::say<wire::Said::sides_at_a_cabinet>().text());
 }
 
-// A server that runs over midnight.
+// A server that runs past midnight.
 class Midnight : public testing::Test {
  protected:
   std::atomic<int> day{22};
@@ -197,8 +197,8 @@ TEST_F(GivenDay, StaysAndIsWhatAHostChooses) {
   EXPECT_EQ(host.game()->date, 20261122u);
 }
 
-// The same hands at every try: then the computer plays the same, though other things happened
-// between them.
+// Equal inputs in every attempt: the computer then plays equally, although other things happened in
+// between.
 TEST(Challenge, TheComputerBeginsEveryTryOfADayInTheSameState) {
   Lockstep table([](ServerOptions& o) {
     o.computer = {false, true};
@@ -212,7 +212,7 @@ TEST(Challenge, TheComputerBeginsEveryTryOfADayInTheSameState) {
   hand.session = welcome->session;
   hand.token = welcome->token;
   for (auto& rod : hand.rods) rod = {true, 0.0f, 0.0, 0.0f, 0.0f};
-  const auto hold_still = [&] {  // and is there, so that the match does not wait
+  const auto hold_still = [&] {  // present, so that the match does not wait
     ++hand.sequence;
     player.send_input(hand);
   };
@@ -227,7 +227,7 @@ TEST(Challenge, TheComputerBeginsEveryTryOfADayInTheSameState) {
     hold_still();
     ask(wire::RequestKind::push);
     std::vector<double> moved;
-    // Until its hand answers the serve, which comes half a second after the start.
+    // Until its hand answers the serve, half a second after the start.
     for (int tick = 0; tick < 900; ++tick) {
       if (tick % 300 == 0) hold_still();
       table.tick();

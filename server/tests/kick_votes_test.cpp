@@ -1,4 +1,4 @@
-// Votes against a player, without sockets, in fake time.
+// Votes against a player, without sockets, in simulated time.
 #include "kick_votes.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Who has played a match, and for how much of it.
+// The players of a match, and their shares of play.
 #include "lineup.h"
 
 #include <gtest/gtest.h>
@@ -46,7 +46,7 @@ TEST(Lineup, LeavesOutWhoPlayedAMomentAndNobodyElseHoweverManyCome) {
   EXPECT_EQ(lineup.players(0, kReturnTicks), (Players{{"Ann", "person", 1.0}}));
 }
 
-// Of Ann, who plays 500 of 1000 ticks at first, then does what `rest` says.
+// Ann plays 500 of 1000 ticks first, then does what `rest` does.
 bool has_left(const std::function<void(Lineup&)>& rest) {
   Lineup lineup;
   play(lineup, 500, {{Kind::person, "Ann"}, {Kind::person, "Bob"}});

@@ -1,4 +1,4 @@
-// A server whose ticks the test counts out itself, with real sockets on loopback.
+// A server whose ticks the test controls, with real sockets on loopback.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@
 
 namespace server {
 
-// A folder of this process alone: no file in it is another run's. It goes when the process ends.
+// A folder of this process only, so that runs share no files. Removed when the process ends.
 class TempFolder {
  public:
   TempFolder() {
@@ -49,7 +49,7 @@ class Lockstep {
   explicit Lockstep(const std::function<void(ServerOptions&)>& change = [](ServerOptions&) {}) {
     ServerOptions options;
     options.session = kSession;
-    options.limits.seat_kept_us = 0;  // most tests leave without a word, and are done
+    options.limits.seat_kept_us = 0;  // most tests leave without a Bye, for good
     options.random = [token = std::uint64_t{1000}]() mutable { return ++token; };
     options.log = [this](LogLevel, const std::string& text) {
       const std::lock_guard guard(mutex_);
@@ -64,7 +64,7 @@ class Lockstep {
     }
   }
 
-  // Throws what it says where it did not start.
+  // Throws the error sentence if the server did not start.
   Server& operator*() {
     if (!server_) throw std::runtime_error(error_.sentence);
     return *server_;
@@ -81,7 +81,7 @@ class Lockstep {
       (*this)->wait_sent();
     }
   }
-  // Ticks until the condition holds: for what another thread has to hand on first.
+  // Ticks until the condition holds: for work that another thread must pass on first.
   bool tick_until(const std::function<bool()>& condition, int max_ms = 30000) {
     const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(max_ms);
     while (!condition()) {
@@ -90,8 +90,8 @@ class Lockstep {
     }
     return true;
   }
-  // The same for what the other thread does by itself: no time passes meanwhile, however busy the
-  // machine is.
+  // The same for work that the other thread does without ticks: simulated time stands still, on a
+  // machine under any load.
   static bool wait_until(const std::function<bool()>& condition, int max_ms = 30000) {
     const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(max_ms);
     while (!condition()) {
@@ -110,7 +110,7 @@ class Lockstep {
   std::string log_;
   StartError error_{};
   std::int64_t now_us_ = 1'000'000;
-  std::unique_ptr<Server> server_;  // last: its threads log until it has gone
+  std::unique_ptr<Server> server_;  // last: its threads log until it is destroyed
 };
 
 }  // namespace server

@@ -1,4 +1,4 @@
-// Whoever logs never waits, whatever becomes of the reader.
+// Logging never waits, whatever the reader does.
 #include "server/log_writer.h"
 
 #include <fcntl.h>
@@ -57,7 +57,7 @@ TEST(LogWriter, NeverWaitsForAPipeThatNobodyReadsAndSaysWhatItLeftOut) {
     ASSERT_FALSE(more.empty());
     read += more;
   }
-  while (!log.flush(1000)) pipe.read_some();  // what is not written yet is on its way
+  while (!log.flush(1000)) pipe.read_some();  // pending text is being written
 }
 
 TEST(LogWriter, EndsThoughNobodyReadsAndThoughTheReaderHasGone) {

@@ -1,4 +1,4 @@
-// The loop, on a clock that the test moves; and where the real one is what it is about, on that.
+// The loop, on a simulated clock; on the real one where the test is about it.
 #include "server/loop.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ LoopOptions ordinary() {
   return options;
 }
 
-// Time that passes only by the loop's sleeping and by what a tick says it takes.
+// Time advances only by the loop's sleep and by the stated duration of a tick.
 class ManualClock final : public LoopClock {
  public:
   std::int64_t now_ns() override { return now_ += refuses_ ? 10'000 : 0; }
@@ -43,8 +43,8 @@ class ManualClock final : public LoopClock {
   std::int64_t now_ = 1'000'000'000'000'123;
 };
 
-// A tick that takes 5.5 periods: the four whole ones within are missed, none is made up for, the
-// next tick is half a period late and those after it are in phase again.
+// A tick that takes 5.5 periods: the four full periods within are missed and not made up for; the
+// next tick is half a period late, and the ones after it are in phase again.
 TEST(TickLoop, CountsTheTicksThatAnOverrunMissesAndKeepsItsPhase) {
   ManualClock clock;
   const std::int64_t start_us = clock.now_ns() / 1000;
@@ -69,7 +69,7 @@ TEST(TickLoop, CountsTheTicksThatAnOverrunMissesAndKeepsItsPhase) {
   EXPECT_DOUBLE_EQ(stats.missed_share(), 4.0 / 65.0);
 }
 
-// A kernel that does not let it sleep: it says so once, and the pace stays.
+// A kernel that cannot sleep: the loop reports it once, and keeps its pace.
 TEST(TickLoop, KeepsItsPaceWhereTheClockCannotBeWaitedFor) {
   ManualClock clock;
   clock.refuse();
@@ -84,7 +84,7 @@ TEST(TickLoop, KeepsItsPaceWhereTheClockCannotBeWaitedFor) {
   EXPECT_NEAR(static_cast<double>(clock.now_ns() - start), 100e6, 1e6);
 }
 
-// An overrun of less than a period makes the next tick late, and misses none.
+// An overrun of less than a period delays the next tick, and misses none.
 TEST(TickLoop, CatchesUpAfterAShortOverrun) {
   ManualClock clock;
   TickLoop loop(ordinary(), silent, clock);
@@ -120,7 +120,7 @@ TEST(TickLoop, NeverTicksAheadOfTheRealClock) {
   });
 }
 
-// On a thread of its own, which takes its rights with it.
+// On its own thread, so that the rights end with the thread.
 TEST(TickLoop, SaysWhichRightsItGot) {
   LoopOptions options;
   options.cpu = 0;

@@ -1,4 +1,5 @@
-// What the server adds to the match's modes: who plays, the hand that ends a match that is shown.
+// The server's part in the match's modes: the players, and the hand that ends a demonstration
+// match.
 #include <gtest/gtest.h>
 
 #include "lockstep.h"
@@ -24,7 +25,7 @@ TEST(Attract, ComputersPlayWhileNobodyDoesUntilAHandMovesARod) {
   ASSERT_TRUE(table.tick_until([&] { return table->clients() == 1; }));
   std::uint32_t sequence = 0;
   player.send_input(hand(*welcome, ++sequence, 0.01f));
-  // The client's rods come to where its hand is, and stay there.
+  // The client's rods move to its hand's position, and stay there.
   for (int i = 0; i < 6000 && !table->match().view().attract; ++i) table.tick();
   ASSERT_TRUE(table->match().view().attract);
   double moved = 0.0;

@@ -31,7 +31,7 @@ wire::Roster roster(std::vector<wire::Seat> seats) {
   return all;
 }
 
-// A phone that has been let in as client 7, and has these rods.
+// A phone that has joined as client 7, and has these rods.
 class PhoneAtATable : public testing::TestWithParam<foosball::Layout> {
  protected:
   void let_in(RodSet rods = 0, std::uint8_t team = wire::kWatchOnly) {
@@ -93,7 +93,7 @@ TEST_P(PhoneAtATable, IsToldOfPairsThatNobodyElseHas) {
   EXPECT_EQ(state->name, "Ann");
   EXPECT_EQ(state->session, 11u);
   EXPECT_EQ(state->ticket, 22u);
-  // The same once more is no news.
+  // An equal roster sends nothing.
   EXPECT_TRUE(guest
                   .hear(wire::ControlMessage(roster({{3, "Ben", 1, one_rod, 1, false},
                                                      {7, "Ann", wire::kWatchOnly, 0, 0, false}})))

@@ -1,4 +1,4 @@
-// A phone reduced to its WebSocket. Every wait ends as soon as something arrives, or at a deadline.
+// A minimal phone: its WebSocket. Every wait ends as soon as something arrives, or at a deadline.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ class PhoneProbe {
  public:
   static constexpr auto kPatience = std::chrono::seconds(10);
 
-  // url: http://HOST:PORT/TOKEN, as the server tells it.
+  // url: http://HOST:PORT/TOKEN, as the server gives it.
   explicit PhoneProbe(const std::string& url) {
     const std::string rest = url.substr(std::string("http://").size());
     host_ = rest.substr(0, rest.find('/'));
@@ -52,7 +52,7 @@ class PhoneProbe {
     if (done.value_or(false)) read_next();
     return done.value_or(false);
   }
-  // Upgrade and hello; the state that answers.
+  // Upgrades, sends a hello, and returns the state in reply.
   std::optional<wire::PhoneState> join(const std::string& name = "Ann",
                                        const wire::PhoneState& before = {}) {
     if (!upgrade() || !say(wire::PhoneHello{before.session, before.ticket, name})) return {};
@@ -75,14 +75,14 @@ class PhoneProbe {
     run([&] { return done.has_value(); });
     return done.value_or(false);
   }
-  // Beneath the WebSocket.
+  // Below the WebSocket layer.
   bool send_raw(const std::vector<unsigned char>& bytes) {
     boost::system::error_code error;
     boost::asio::write(socket_.next_layer().socket(), boost::asio::buffer(bytes), error);
     return !error;
   }
 
-  // The next message of this kind, throwing away others; nothing: none came, or it is closed.
+  // The next message of this type; discards others. Nothing if none arrives or the line is closed.
   template <class Message>
   std::optional<Message> hear_a() {
     while (true) {
@@ -105,7 +105,7 @@ class PhoneProbe {
     run([&] { return closed_; });
     return closed_;
   }
-  void say_goodbye() {  // as a page that is closed on purpose
+  void say_goodbye() {  // like a page that is closed on purpose
     std::optional<bool> done;
     socket_.async_close(boost::beast::websocket::close_code::normal,
                         [&](const Error& error) { done = !error; });

@@ -1,5 +1,5 @@
-// Phones as they come: a real port, a WebSocket of Boost.Beast, a server in lockstep; and
-// strangers.
+// Phones with a real port, a WebSocket of Boost.Beast and a server in lockstep; and untrusted
+// connections.
 #include <gtest/gtest.h>
 #include <poll.h>
 #include <sys/socket.h>
@@ -158,7 +158,7 @@ TEST_F(KeptSeats, APhoneThatWasLostHasItsRodsAgainWithItsTicket) {
   EXPECT_EQ(state->pair, number(RodPair::attack));
   EXPECT_EQ(state->team, 1);
   const int rod = pair(1, RodPair::attack).by_x[0];
-  wire::PhoneInput input;  // its counter begins anew
+  wire::PhoneInput input;  // its counter restarts
   input.rods[0] = {true, 0.05f, 0.0, 0.0f, 0.0f};
   EXPECT_TRUE(table.tick_until([&] {
     ++input.sequence;
@@ -205,7 +205,7 @@ TEST(NoPhones, NobodyIsToldOfAPortThatIsNotOpen) {
   EXPECT_TRUE(host.hear_a<wire::Pong>());
 }
 
-// --- what is felt
+// --- haptics
 
 TEST(PhonePulses, AHitIsToldInItsTickToThePhoneThatHasTheRod) {
   Lockstep table([](ServerOptions& o) {
@@ -228,13 +228,13 @@ TEST(PhonePulses, AHitIsToldInItsTickToThePhoneThatHasTheRod) {
   std::uint64_t before = 0;
   wire::PhoneInput input;
   ASSERT_TRUE(table.tick_until([&] {
-    // Both rods swing and slide, as a child plays.
+    // Both rods swing and slide, as when a child plays.
     ++input.sequence;
     const double t = 1e-6 * static_cast<double>(table.now_us());
     for (wire::PhoneRod& rod : input.rods)
       rod = {true, static_cast<float>(0.08 * std::sin(3.0 * t)), 1.2 * std::sin(25.0 * t), 0, 0};
     EXPECT_TRUE(phone.say(input));
-    // The tick before this one.
+    // The previous tick.
     for (const foosball::Event& event : table->match().events()) {
       const bool felt = event.kind == foosball::EventKind::man_hit &&
                         (mine.rods >> event.rod & 1) != 0 && event.value >= cabinet::kSoftestFelt;
@@ -255,7 +255,7 @@ TEST(PhonePulses, AHitIsToldInItsTickToThePhoneThatHasTheRod) {
   EXPECT_LE(pulse->ms, cabinet::kLongestPulseMs);
 }
 
-// --- strangers
+// --- untrusted connections
 
 class Stranger {
  public:
@@ -271,7 +271,7 @@ class Stranger {
     return ::send(fd_.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL) ==
            static_cast<ssize_t>(bytes.size());
   }
-  // All until the server has closed.
+  // Everything received until the server closes.
   std::string hear_out(int patience_ms = 10'000) {
     std::string all;
     std::array<char, 4096> buffer;
@@ -392,8 +392,8 @@ TEST_F(PhoneTest, MalformedFramesAndMessagesEndTheirOwnConnection) {
     for (const int b : list) out.push_back(static_cast<unsigned char>(b));
     return out;
   };
-  // Frames: 2^62 bytes long; unmasked; of a reserved kind; a fragment that never began; a ping of
-  // 126 bytes; a close of one byte.
+  // Frames: 2^62 bytes long; unmasked; of a reserved kind; a continuation without a start; a ping
+  // of 126 bytes; a close of one byte.
   std::vector<std::vector<unsigned char>> frames{
       bytes({0x82, 0xFF, 0x3F, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 1, 2, 3, 4}),
       bytes({0x82, 0x01, 0x00}),
@@ -410,7 +410,7 @@ TEST_F(PhoneTest, MalformedFramesAndMessagesEndTheirOwnConnection) {
     ++bad;
   }
   EXPECT_TRUE(table.wait_until([&] { return phones().bad_messages == bad; }));
-  // Messages: too long, of text, empty, of no kind, a second hello, cut short.
+  // Messages: too long, text, empty, of an unknown kind, a second hello, truncated.
   std::vector<std::byte> input(wire::kMaxPhoneRequest);
   input.resize(wire::encode_phone(wire::PhoneRequest(wire::PhoneInput{}), input));
   const std::vector<std::byte> cut(input.begin(), input.end() - 1);
@@ -442,7 +442,7 @@ class Hurried : public PhoneTest {
   Hurried() : PhoneTest([](ServerOptions& o) { o.phones.limits.hello_us = 400'000; }) {}
 };
 
-// One byte each 10 ms: whatever trickles, the time to say hello is over when it is.
+// One byte every 10 ms: slow sending does not extend the time to say hello.
 TEST_F(Hurried, ASlowLorisIsShownOutInTime) {
   const std::string request = get(url.substr(url.find('/', 7)), 4000);
   const std::int64_t began = os::monotonic_us();
@@ -467,7 +467,7 @@ TEST_F(Hurried, WhoUpgradesAndSaysNothingIsShownOutAndWhoSaysHelloMayStay) {
   EXPECT_TRUE(phone.claim(0, RodPair::attack));
 }
 
-// 500 at once, which say nothing or the first line: a phone gets in all the same.
+// 500 connections that send nothing or only the first line: a phone can still join.
 TEST_F(PhoneTest, FiveHundredConnectionsKeepNoPhoneOut) {
   std::vector<std::unique_ptr<Stranger>> crowd;
   for (int i = 0; i < 500; ++i) {
@@ -502,7 +502,7 @@ TEST_F(FewPhones, NoMorePhonesGetInThanThereMayBe) {
   EXPECT_TRUE(fourth.join());
 }
 
-// Room is asked for when a phone says hello, not only when its line is opened.
+// The capacity is checked when a phone says hello, not only when its connection is opened.
 TEST_F(FewPhones, OfManyThatAreOpenBeforeTheFirstHelloNoMoreGetIn) {
   std::vector<std::unique_ptr<PhoneProbe>> crowd;
   for (int i = 0; i < 6; ++i) {
@@ -534,7 +534,7 @@ class PacedPhones : public PhoneTest {
         }) {}
 };
 
-// A flood is slowed down, not stored: 20 at once, then 50 a second.
+// A flood is throttled, not stored: a burst of 20, then 50 per second.
 TEST_F(PacedPhones, AFloodOfInputsIsReadAtItsPace) {
   PhoneProbe phone(url);
   ASSERT_TRUE(phone.join());
@@ -546,7 +546,7 @@ TEST_F(PacedPhones, AFloodOfInputsIsReadAtItsPace) {
   EXPECT_EQ(phones().inputs_dropped, 0u);
 }
 
-// Open to the network where the control port is not.
+// Open to the network although the control port is not.
 TEST(PhonePort, ListensWhereItIsTold) {
   Lockstep table([](ServerOptions& o) {
     with_phones(o);

@@ -1,4 +1,4 @@
-// A program started by a test: its output, its end. Killed when the test forgets it.
+// A program started by a test: its output, its exit. Killed when the object is destroyed.
 #pragma once
 
 #include <fcntl.h>
@@ -48,14 +48,14 @@ class Process {
 
   pid_t pid() const { return pid_; }
   void kill(int signal) { ::kill(pid_, signal); }
-  // Stands still from now on, until SIGCONT.
+  // Stops it (SIGSTOP) until SIGCONT.
   bool suspend() {
     int status = 0;
     kill(SIGSTOP);
     return ::waitpid(pid_, &status, WUNTRACED) == pid_ && WIFSTOPPED(status);
   }
 
-  // Reads until the text is in its output; false at its end or after patience.
+  // Reads until the text is in its output; false at its end or after the timeout.
   bool says(const std::string& text, int patience_ms = 20'000) {
     while (output_.find(text) == std::string::npos) {
       if (!wait_readable(output_fd_, patience_ms) || !read_some()) return false;

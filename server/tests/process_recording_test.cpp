@@ -1,4 +1,4 @@
-// The real programs: what is recorded, replayed, refused and left behind by kill -9.
+// The real programs: recordings, replays, errors, and the state after kill -9.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -41,7 +41,7 @@ TEST(ServerProgram, FailsWhenItsRecordingEndedEarly) {
       << full.output();
 }
 
-// Its reader is there, and takes nothing.
+// The pipe has a reader that reads nothing.
 TEST(ServerProgram, EndsOnSigtermThoughNobodyReadsItsRecording) {
   const std::string path = temp_path("pipe");
   ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
@@ -51,7 +51,7 @@ TEST(ServerProgram, EndsOnSigtermThoughNobodyReadsItsRecording) {
   ProbeClient watcher(server.port());  // the control port answers meanwhile
   ASSERT_TRUE(watcher.join());
   while (const auto snapshot = watcher.snapshot()) {
-    if (snapshot->tick > 1'000) break;  // of both computers' rods: more than the pipe takes
+    if (snapshot->tick > 1'000) break;  // of both computers' rods: more than the pipe holds
   }
   server->kill(SIGTERM);
   EXPECT_EQ(server->wait(), 1);
@@ -79,7 +79,7 @@ TEST(ServerProgram, KeepsTheFileThatIsThereUnlessToldToOverwriteARecording) {
     more.insert(more.begin(), record.begin(), record.end());
     return serve(more);
   };
-  std::ofstream{path};  // an empty one holds nothing
+  std::ofstream{path};  // an empty file holds nothing
   Process first(with({}));
   EXPECT_EQ(first.wait(), 0) << first.output();
   const std::string kept = text_of(path);
@@ -106,7 +106,7 @@ TEST(ServerProgram, KeepsTheFileThatIsThereUnlessToldToOverwriteARecording) {
   std::remove(path.c_str());
 }
 
-// A replay whose recorded hash is another one: said, and a non-zero exit of both programs.
+// A replay whose recorded hash differs: both programs report it and exit with an error.
 TEST(ServerProgram, SaysThatAReplayDiffers) {
   const std::string path = temp_path("match.sfr");
   std::vector<std::byte> bytes;
@@ -148,7 +148,7 @@ TEST(ServerProgram, LeavesAReadableJournalWhenItIsKilled) {
   RunningServer server({"--team0", "computer", "--team1", "computer", "--record", path});
   ProbeClient client(server.port());
   ASSERT_TRUE(client.join());
-  // The writer's thread may get its time late: the test goes by what the file has.
+  // The writer thread may be scheduled late: the test relies on the file.
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
   while (ticks_in(path) < 300 && std::chrono::steady_clock::now() < end) {
     ASSERT_TRUE(client.snapshot());

@@ -48,7 +48,7 @@ TEST(ServerProgram, RefusesBadValuesWithOneSentenceAndExitCode2) {
       {"--port", "70000"},
       {"--port", "http"},
       {"--listen", "everywhere"},
-      {"--listen", "192.0.2.1"},  // of no machine: RFC 5737
+      {"--listen", "192.0.2.1"},  // no machine's address: RFC 5737
       {"--multicast", "10.0.0.1:99"},
       {"--multicast", "239.1.1.1"},
       {"--layout", "round"},
@@ -247,7 +247,8 @@ TEST(ServerProgram, EndsWhenTheLastClientHasLeft) {
   EXPECT_NE(server->output().find("everybody has left"), std::string::npos);
 }
 
-// What a client does while the server stands still: it loses its place, asks, gives up, asks anew.
+// A client while the server is stopped: it loses its seat, tries to join, gives up, and tries
+// again.
 TEST(ServerProgram, AfterAStallAPlayerGetsItsTeamThoughItsGivenUpAttemptsWaitBeforeIt) {
   RunningServer server({});
   ProbeClient player(server.port());
@@ -275,7 +276,7 @@ TEST(ServerProgram, AfterAStallAPlayerGetsItsTeamThoughItsGivenUpAttemptsWaitBef
   EXPECT_TRUE(std::holds_alternative<wire::Welcome>(*answer)) << server->output();
 }
 
-// A player in a process of its own.
+// A player in its own process.
 [[noreturn]] void play_until_killed(std::uint16_t port, int say_ready) {
   ProbeClient player(port);
   const bool in_step = player.join(0) && player.snapshot();
@@ -302,7 +303,7 @@ TEST(ServerProgram, PlaysOnWhenAClientIsKilledAndTheNextIsInStepWithinASecond) {
   const auto seconds = [&] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - from).count();
   };
-  // Its team may take the server a moment to release.
+  // The server may take a moment to release its team.
   while (!welcome && seconds() < 5.0) welcome = ProbeClient(server.port()).join(0);
   ASSERT_TRUE(welcome);
   ProbeClient next(server.port());
@@ -316,7 +317,7 @@ TEST(ServerProgram, PlaysOnWhenAClientIsKilledAndTheNextIsInStepWithinASecond) {
   ::close(ends[1]);
 }
 
-// Nobody reads its output: a pipe that was full before it began.
+// Nobody reads its output: the pipe was full before it started.
 TEST(ServerProgram, LetsClientsInAndEndsOnSigtermThoughNobodyReadsItsLog) {
   std::array<int, 2> ends{-1, -1};
   ASSERT_EQ(::pipe2(ends.data(), O_CLOEXEC), 0);
@@ -343,7 +344,7 @@ TEST(ServerProgram, LetsClientsInAndEndsOnSigtermThoughNobodyReadsItsLog) {
   ASSERT_NE(port, 0);
   for (int i = 0; i < 100; ++i) {
     ProbeClient client(port);
-    ASSERT_TRUE(client.join()) << i;  // each a line in the log
+    ASSERT_TRUE(client.join()) << i;  // each logs a line
     client.say_goodbye();
   }
   ProbeClient watcher(port);
@@ -364,7 +365,7 @@ TEST(ServerProgram, LetsClientsInAndEndsOnSigtermThoughNobodyReadsItsLog) {
   std::remove(ready.c_str());
 }
 
-// A sanitizer reserves terabytes of addresses, and has a thread of its own.
+// A sanitizer reserves terabytes of address space, and has its own thread.
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
 #define SF_SANITIZED
@@ -372,8 +373,8 @@ TEST(ServerProgram, LetsClientsInAndEndsOnSigtermThoughNobodyReadsItsLog) {
 #endif
 
 #ifndef SF_SANITIZED
-// Whatever the limit: it runs, or says one sentence and exits with 1. Where the program itself does
-// not fit, the kernel kills it before its first instruction.
+// For every limit it runs, or prints one sentence and exits with 1. If the program itself does not
+// fit, the kernel kills it before its first instruction.
 TEST(ServerProgram, SaysThatMemoryIsOutInOneSentence) {
   bool said = false;
   const auto program = std::filesystem::file_size(SERVER_BINARY) >> 20;
@@ -383,7 +384,7 @@ TEST(ServerProgram, SaysThatMemoryIsOutInOneSentence) {
                      "ulimit -v " + std::to_string(megabytes * 1024) + "; exec " + SERVER_BINARY +
                          " --port 0 --seconds 0.02 --quiet --no-real-time"});
     const int code = process.wait();
-    if (code == 127) continue;  // not even its libraries
+    if (code == 127) continue;  // its libraries do not fit
     EXPECT_TRUE(code == 0 || code == 1) << megabytes << " MB: " << code << process.output();
     said = said || (code == 1 && process.output().find("space-foosball-server: ") == 0);
     if (code == 0) break;
@@ -409,7 +410,8 @@ TEST(ServerProgram, ChangesSidesAtACabinetWhereThereAreSets) {
   }
 }
 
-// In a network of its own, whose route to the group goes once the server runs, and comes back.
+// In its own network namespace, whose route to the group is removed while the server runs, and
+// restored.
 constexpr const char* kLosesItsRoute = R"(
 ip link set lo up && ip route add 224.0.0.0/4 dev lo && echo 'a network of its own' || exit 0
 coproc "$0" "$@" 2>&1
@@ -482,7 +484,7 @@ TEST(ServerProgram, ServesIpv6AndIpv4AtOnce) {
 }
 
 #ifndef SF_SANITIZED
-// Real-time rights are for the moment of asking. Every kind of thread that the server has is there.
+// Real-time rights are only needed at the start. Every kind of server thread runs here.
 TEST(ServerProgram, KeepsNoCapabilityButAccessToFilesOnceItRuns) {
   const std::string journal = temp_path("rights.journal"), results = temp_path("rights.sqlite");
   RunningServer server({"--record", journal, "--results", results, "--device",
@@ -509,8 +511,8 @@ TEST(ServerProgram, KeepsNoCapabilityButAccessToFilesOnceItRuns) {
 }
 #endif
 
-// A hundred thousand datagrams a second of garbage, from elsewhere and with another player's port
-// as the target: every input of the player counts.
+// A hundred thousand garbage datagrams per second, from elsewhere and to another player's port:
+// every input of the player counts.
 TEST(ServerProgram, LosesNoInputOfAPlayerInAFlood) {
   const std::string stats = temp_path("stats.json");
   RunningServer server({"--stats-file", stats});
@@ -537,7 +539,7 @@ TEST(ServerProgram, LosesNoInputOfAPlayerInAFlood) {
   for (std::uint32_t i = 1; i <= kInputs; ++i) {
     in.sequence = i;
     ASSERT_TRUE(player.send_input(in));
-    player.snapshot();  // one a tick
+    player.snapshot();  // one per tick
   }
   stop = true;
   flood.join();

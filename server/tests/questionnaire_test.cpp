@@ -1,4 +1,4 @@
-// The questionnaire over the control port: who is asked, whose answers are kept, and with what.
+// The questionnaire over the control port: who is asked, and which answers are stored with what.
 #include <cstdio>
 
 #include "control_fixture.h"
@@ -18,7 +18,7 @@ class QuestionnaireTest : public testing::Test {
   void forget() {
     for (const char* more : {"", "-wal", "-shm"}) std::remove((path_ + more).c_str());
   }
-  // A match lasts a tenth of a second, and is drawn then.
+  // A match lasts a tenth of a second, and ends in a draw.
   std::function<void(ServerOptions&)> short_match() {
     return [this](ServerOptions& o) {
       o.computer = {false, true};
@@ -29,7 +29,7 @@ class QuestionnaireTest : public testing::Test {
       o.date = [] { return std::string("2026-11-22T20:00:00Z"); };
     };
   }
-  // A hand at the rods, without which a match waits: heard in each tick.
+  // Sends inputs in each tick, without which a match waits.
   static bool play_to_the_end(Lockstep& table, ProbeClient& player, const wire::Welcome& seat) {
     const auto played_until = [&](const std::function<bool()>& condition) {
       return table.tick_until([&] {
@@ -159,8 +159,7 @@ TEST_F(QuestionnaireTest, NobodyIsAskedWithoutAFileOrWhereItIsTurnedOff) {
   }
 }
 
-// While nobody plays, computers show a match: it is nobody's, though a client has rods.
-// Found by a reviewer: four people at one window shared one name, and so one rating.
+// Regression test: four people at one window shared one name, and so one rating.
 TEST_F(QuestionnaireTest, TheResultNamesAllPeopleAtOneWindow) {
   {
     Lockstep table(short_match());
@@ -184,6 +183,7 @@ TEST_F(QuestionnaireTest, TheResultNamesAllPeopleAtOneWindow) {
   EXPECT_EQ(players[1], (results::Player{"Ben", "person", 1.0, false}));
 }
 
+// Demonstration matches are not stored, even if a client has rods.
 TEST_F(QuestionnaireTest, AMatchThatIsShownIsNotKeptAndNobodyIsAsked) {
   Lockstep table([&](ServerOptions& o) {
     short_match()(o);

@@ -1,4 +1,4 @@
-// The queues between threads; also what the thread sanitizer looks at first.
+// The queues between threads; also the main test for the thread sanitizer.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -70,7 +70,7 @@ TEST(ByteRing, TakesAWriteWholeOrNotAtAll) {
   for (std::size_t i = 0; i < 10; ++i) EXPECT_EQ(all[i], std::byte(i));
 }
 
-// Writer and reader chase each other around a ring much smaller than what passes through it.
+// Writer and reader use a ring much smaller than the data that passes through it.
 TEST(ByteRing, PassesEveryByteInOrderAcrossThreads) {
   constexpr std::size_t kTotal = 300'000;
   ByteRing ring(257);  // prime: wraps at every offset

@@ -1,4 +1,4 @@
-// Recording and replay: the same bits, what is cut short, what differs, what cannot be written.
+// Recording and replay: equal bits, truncated files, differences, and files that cannot be written.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -24,7 +24,7 @@ std::atomic<bool> disk_fails{false}, disk_hangs{false};
 
 }  // namespace
 
-// In place of the C library's, in this program: counted, failing or not returning on demand.
+// Replaces the C library's function in this program: counts calls, and fails or blocks on demand.
 extern "C" int fdatasync(int fd) {
   ++fdatasyncs;
   fdatasyncs.notify_all();
@@ -45,7 +45,7 @@ struct Recorded {
   std::array<int, 2> score{};
 };
 
-// Two computers and one person's requests and rods.
+// Two computers, and one person's requests and rods.
 Recorded record(int ticks) {
   Recorded out{temp_path("match.sfr")};
   Lockstep table([&](ServerOptions& o) {
@@ -68,7 +68,7 @@ Recorded record(int ticks) {
     if (i % 500 == 250) {
       const auto asked = [&] {
         const ControlCounters c = table->counters().control;
-        return c.requests + c.requests_dropped;  // where ticks are faster than they should be
+        return c.requests + c.requests_dropped;  // in case ticks run too fast
       };
       const std::uint64_t before = asked();
       player.say(
@@ -109,7 +109,7 @@ Replayed replay(std::vector<std::byte> bytes, std::uint64_t restore_at = 0) {
 }
 
 TEST(Recording, ReplaysToTheSameHash) {
-  const Recorded live = record(11'000);  // a keyframe among them
+  const Recorded live = record(11'000);  // includes a keyframe
   const Replayed again = replay(contents(live.path));
   EXPECT_EQ(again.verdict, Playback::Verdict::same) << again.sentence;
   EXPECT_EQ(again.hash, live.hash);
@@ -147,7 +147,7 @@ TEST(Recording, ServesAReplayAsIfLive) {
   std::remove(live.path.c_str());
 }
 
-// However it is cut, what is before the cut replays and is said to be cut.
+// Truncated anywhere, the rest replays and is reported as truncated.
 TEST(Recording, ReplaysWhatATruncatedFileStillHolds) {
   const Recorded live = record(1'500);
   const std::vector<std::byte> whole = contents(live.path);
@@ -164,7 +164,7 @@ TEST(Recording, ReplaysWhatATruncatedFileStillHolds) {
   std::remove(live.path.c_str());
 }
 
-// The same inputs, but other hashes: what a build that is not deterministic would see.
+// Equal inputs with different hashes: the effect of a build that is not deterministic.
 TEST(Recording, SaysWhereAReplayDiffers) {
   const Recorded live = record(2'500);
   const std::vector<std::byte> whole = contents(live.path);
@@ -191,7 +191,7 @@ TEST(Recording, RefusesAFileThatIsNoRecording) {
   EXPECT_FALSE(Playback::open("/nowhere/at/all"));
 }
 
-// Bit by bit, as of IEEE 802.3.
+// Bit by bit, by the definition of IEEE 802.3.
 std::uint32_t crc32(std::span<const std::byte> bytes) {
   std::uint32_t crc = ~0u;
   for (const std::byte b : bytes) {
@@ -201,12 +201,12 @@ std::uint32_t crc32(std::span<const std::byte> bytes) {
   return ~crc;
 }
 
-// Another layout hash, or another version, and the checksum that goes with it.
+// Another layout hash or version, with a correct checksum.
 TEST(Recording, OfAnotherReleaseSaysWhichFormatItNeeds) {
   const Recorded live = record(10);
   const std::vector<std::byte> whole = contents(live.path);
   ASSERT_FALSE(wire::other_journal_format(whole));
-  for (const std::size_t at : {13u, 15u}) {  // of the version, of the layout's hash
+  for (const std::size_t at : {13u, 15u}) {  // of the version, of the layout hash
     std::vector<std::byte> other = whole;
     other[at] ^= std::byte{0x55};
     EXPECT_FALSE(wire::other_journal_format(other)) << "damaged, not of another release";
@@ -221,7 +221,7 @@ TEST(Recording, OfAnotherReleaseSaysWhichFormatItNeeds) {
     for (const auto& f : {*format, wire::journal_format()}) {
       EXPECT_NE(opened.error().find(wire::to_text(f)), std::string::npos) << opened.error();
     }
-    // It is a recording all the same: --overwrite may replace it, and nothing else does.
+    // It still counts as a recording: --overwrite may replace it, and nothing else does.
     std::ofstream(live.path, std::ios::binary)
         .write(reinterpret_cast<const char*>(other.data()),
                static_cast<std::streamsize>(other.size()));
@@ -309,7 +309,7 @@ TEST(Recording, SaysThatAFileCannotBeMade) {
   EXPECT_NE(table.error().sentence.find("/nowhere/match.sfr"), std::string::npos);
 }
 
-// Two computers play until one has won; the file has the match as the server saw it.
+// Two computers play until one has won; the file has the match as the server observed it.
 TEST(Results, OfAMatchThatWasWonAreInTheFile) {
   const std::string path = temp_path("results.sqlite");
   std::array<int, 2> score{};
@@ -392,7 +392,7 @@ TEST(JournalFile, HasTheDiskTakeItAgainAndAgainWhileItIsWritten) {
   for (int round = 0; round < 5; ++round) {
     const int before = fdatasyncs;
     for (int i = 0; i < wire::kJournalBatch; ++i) file->add(wire::JournalTick{tick++, {}, {}});
-    fdatasyncs.wait(before);  // ctest ends a wait in vain
+    fdatasyncs.wait(before);  // ctest limits the wait
   }
   EXPECT_GE(fdatasyncs, 5) << "and it is not closed yet";
   file->close();
@@ -452,9 +452,9 @@ TEST(JournalFile, RefusesAPipeThatNobodyReads) {
   std::remove(path.c_str());
 }
 
-// Its reader is there and takes nothing: 64 KiB fit, then it is full. The end has a bound.
+// The pipe's reader reads nothing: after 64 KiB it is full. The end has a time limit.
 TEST(JournalFile, EndsInTimeThoughItsPipeIsFull) {
-  ::signal(SIGPIPE, SIG_IGN);  // as the server does: its thread may write after the reader went
+  ::signal(SIGPIPE, SIG_IGN);  // like the server: its thread may write after the reader has gone
   const std::string path = temp_path("full_pipe");
   ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
   const os::FileDescriptor reader(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
@@ -468,7 +468,7 @@ TEST(JournalFile, EndsInTimeThoughItsPipeIsFull) {
   std::remove(path.c_str());
 }
 
-// A call of the system that does not return, as of a network's file system without its network.
+// A system call that does not return, as for a network file system without its network.
 TEST(JournalFile, EndsInTimeThoughTheDiskHangs) {
   const std::string path = temp_path("hangs.sfr");
   auto file = JournalFile::create({.path = path, .close_patience = 20ms}).value();
@@ -484,7 +484,7 @@ TEST(JournalFile, EndsInTimeThoughTheDiskHangs) {
   std::remove(path.c_str());
 }
 
-// A ring too small for a keyframe: the journal ends there, readable to there.
+// A ring too small for a keyframe: the journal ends there, and is readable up to there.
 TEST(JournalFile, EndsReadableWhenItsRingOverflows) {
   const std::string path = temp_path("small.sfr");
   auto file = JournalFile::create({.path = path, .ring_bytes = 4096}).value();

@@ -1,4 +1,4 @@
-// A recording as a renderer sees it: the same scenes and events as the match that was played.
+// A recording as a renderer sees it: the same scenes and events as in the recorded match.
 #include "server/recorded_scene.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ struct Moment {
   std::size_t events = 0;  // so far
 };
 
-// Two computer players, recorded; the scene is kept each second.
+// Records two computer players, and stores the scene each second.
 std::vector<Moment> record(const std::string& path, int seconds) {
   std::vector<Moment> moments;
   Lockstep table([&](ServerOptions& o) {

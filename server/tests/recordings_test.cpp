@@ -1,4 +1,4 @@
-// The folder of recordings: what a list says of each file in it, and which are dropped.
+// The folder of recordings: the summary of each file, and which files are deleted.
 #include "server/recordings.h"
 
 #include <fcntl.h>
@@ -31,7 +31,7 @@ class Recordings : public testing::Test {
   void touch(const std::string& name, std::size_t size = 0) const {
     write(name, std::vector<std::byte>(size));
   }
-  // What is there, without the folder.
+  // The files in the folder, without its path.
   std::vector<std::string> names() const {
     std::vector<std::string> all;
     for (const auto& file : fs::directory_iterator(folder_))
@@ -39,7 +39,7 @@ class Recordings : public testing::Test {
     std::ranges::sort(all);
     return all;
   }
-  // Two computers until a goal has fallen, or for so many ticks.
+  // Two computers play until a goal, or for this many ticks.
   void record(const std::string& name, int ticks) const {
     Lockstep table([&](ServerOptions& o) {
       o.computer = {true, true};
@@ -66,7 +66,7 @@ TEST_F(Recordings, AreSummarisedByTheirFirstAndLastBytes) {
   EXPECT_EQ(began.tm_hour, 7);
   EXPECT_EQ(began.tm_mday, 23);
 
-  // Cut off anywhere: as it stood within the second before.
+  // Truncated anywhere: the standing is at most one second old.
   const auto bytes = wire::read_file(whole.path, 1 << 30);
   ASSERT_TRUE(bytes);
   for (const std::size_t share : {30u, 50u, 77u, 99u}) {
@@ -101,7 +101,7 @@ TEST_F(Recordings, WhatIsNoRecordingHasASentenceThatNamesIt) {
 TEST_F(Recordings, OfAnotherFormatSayWhichReleaseIsNeeded) {
   record("a.sfr", 10);
   auto bytes = *wire::read_file(path("a.sfr"), 1 << 30);
-  // Another layout hash under a right checksum.
+  // Another layout hash with a correct checksum.
   const std::size_t size = static_cast<std::size_t>(bytes[0]) | static_cast<std::size_t>(bytes[1])
                                                                     << 8;
   bytes[8 + 7] ^= std::byte{1};
@@ -127,7 +127,7 @@ TEST_F(Recordings, TheOldestAreDroppedAndNoneThatAPersonKeeps) {
         "my best match.sfr", "2026-01-01_000000 kept.sfr", "2025-01-01_000000.txt"})
     touch(name, 1000);
   ASSERT_TRUE(keep_recording(path("2026-01-02_000000.sfr"), true));
-  // A server that runs now writes the third.
+  // A running server writes the third.
   const os::FileDescriptor writing(::open(path("2026-01-03_000000.sfr").c_str(), O_WRONLY));
   ASSERT_EQ(::flock(writing.get(), LOCK_EX), 0);
   const auto next = new_recording(folder_.string(), {.count = 3, .bytes_of_one = 0}, 1'700'000'000);
@@ -136,7 +136,7 @@ TEST_F(Recordings, TheOldestAreDroppedAndNoneThatAPersonKeeps) {
                          "2025-01-01_000000.txt", "2026-01-01_000000 kept.sfr",
                          "2026-01-02_000000.sfr", "2026-01-02_000000.sfr.keep",
                          "2026-01-03_000000.sfr", "2026-01-05_000000.sfr", "my best match.sfr"}));
-  // ... by their bytes, too; and kept no longer.
+  // ... by their size, too; and no longer protected.
   ASSERT_TRUE(keep_recording(path("2026-01-02_000000.sfr"), false));
   ASSERT_TRUE(new_recording(folder_.string(), {.bytes = 3000, .bytes_of_one = 1000}, 1));
   EXPECT_FALSE(fs::exists(path("2026-01-02_000000.sfr")));
@@ -159,7 +159,7 @@ TEST_F(Recordings, AFolderThatCannotBeMadeIsASentence) {
   EXPECT_NE(none.error().find("/proc/no/such"), std::string::npos);
 }
 
-// What is recorded without being asked for never disturbs play.
+// An automatic recording never disturbs play.
 TEST_F(Recordings, ByDefaultNothingFailsAndWhatNobodyPlayedIsRemoved) {
   const auto run = [&](const std::string& file, std::uint64_t limit, bool computers, int ticks) {
     Lockstep table([&](ServerOptions& o) {

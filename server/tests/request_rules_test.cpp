@@ -27,7 +27,7 @@ TEST(RequestRules, WhatTheServerTellsTheMatchIsNoRequest) {
   EXPECT_FALSE(formed(Kind::feed, foosball::kFeedValues));
 }
 
-// Else each value would be a question of its own, and its votes would not add up.
+// Otherwise each value would be a separate question, and its votes would not add up.
 TEST(RequestRules, AValueThatMeansNothingMakesNoOtherRequestOfIt) {
   for (const Kind kind : {Kind::restart, Kind::push, Kind::time_out}) {
     const wire::MatchRequest request{static_cast<std::uint8_t>(kind), 1, 7};
@@ -70,10 +70,10 @@ TEST(RequestRules, AFewAtOnceAndThenAFewASecond) {
   int taken = 0;
   for (int i = 0; i < 1000; ++i) taken += allowance.take(start);
   EXPECT_EQ(taken, RequestAllowance::kAtOnce);
-  // For ten seconds a request each millisecond.
+  // For ten seconds, a request each millisecond.
   for (int ms = 1; ms <= 10'000; ++ms) taken += allowance.take(start + ms * 1000);
   EXPECT_EQ(taken, RequestAllowance::kAtOnce + 200);
-  // Rest earns no more than a few at once.
+  // Waiting longer does not increase the burst.
   taken = 0;
   for (int i = 0; i < 1000; ++i) taken += allowance.take(start + 3'600'000'000);
   EXPECT_EQ(taken, RequestAllowance::kAtOnce);

@@ -1,4 +1,4 @@
-// Results in the file, and a file that cannot be had.
+// Results in the file, and files that cannot be used.
 #include "results_log.h"
 
 #include <gtest/gtest.h>
@@ -102,7 +102,7 @@ results::Answers answers_of(std::uint32_t rods) {
   return {.team = 0, .rods = rods, .scores = {5, 4, 3, 2, 1, 0}};
 }
 
-// What waits for the file keeps its order, so that answers find their match.
+// Results that wait for the file keep their order, so that answers find their match.
 TEST(ResultsLog, KeepsAnswersWithTheirMatchThoughTheFileComesLate) {
   const std::string path = temp_path();
   std::ofstream(path) << std::string(5000, 'x');
@@ -121,13 +121,13 @@ TEST(ResultsLog, KeepsAnswersWithTheirMatchThoughTheFileComesLate) {
   remove(path);
 }
 
-// Neither would the store take, nor is it tried for ever: what comes later is kept.
+// The store would reject these; they are not retried, and later answers are stored.
 TEST(ResultsLog, LosesWhatIsNoAnswerAndGoesOn) {
   const std::string path = temp_path();
   ResultsLog log({.path = path});
   log.add(won(), 1);
   log.answer(answers_of(0x01), 7);  // of no match
-  log.answer(answers_of(0x00), 1);  // nobody's
+  log.answer(answers_of(0x00), 1);  // without rods
   log.answer(answers_of(0x03), 1);
   log.answer(answers_of(0x02), 1);  // again
   results::MatchResult bad = won();
@@ -141,7 +141,7 @@ TEST(ResultsLog, LosesWhatIsNoAnswerAndGoesOn) {
   remove(path);
 }
 
-// The ratings are those of the standings, before and after the match.
+// The report's ratings equal those of the standings, before and after the match.
 TEST(ResultsLog, ReportsTheLastMatchAndWhoPlaysBest) {
   const std::string path = temp_path();
   {
@@ -170,7 +170,7 @@ TEST(ResultsLog, ReportsTheLastMatchAndWhoPlaysBest) {
   remove(path);
 }
 
-// Of totals over several matches, what the last has more.
+// The statistics of the last match are a difference of totals over several matches.
 TEST(MatchScribe, GivesTheStatisticsOfOneMatch) {
   foosball::Statistics before, now;
   before.shots = {3, 4};
@@ -214,7 +214,8 @@ results::MatchResult played_to_the_end(foosball::Match& match, MatchScribe& scri
   return {};
 }
 
-// Found by a reviewer: from the second try on a challenge's result had all tries before in it.
+// Regression test: from the second attempt on, a challenge's result included all earlier
+// attempts.
 TEST(MatchScribe, BeginsAnewWithEveryChallenge) {
   foosball::MatchDesc desc = foosball::challenge_of(20261122);
   desc.rules.match_seconds = 10.0;

@@ -1,4 +1,4 @@
-// Who gets which rods, what a vote needs, and what a crowd at the door can do.
+// Assignment of rods, votes, and floods of connections.
 #include "seats.h"
 #include "cabinet/device_source.h"
 
@@ -52,7 +52,7 @@ TEST_F(SeatsTest, WithoutAWordOfRodsOneGetsAllThatAreFree) {
   EXPECT_EQ(seats.grant(1, 0, 0, false).rods, all1);
 }
 
-// Every way to part a team between two, and both teams between up to eight.
+// Every partition of a team between two clients, and of both teams between up to eight.
 TEST_F(SeatsTest, AnySplitIsPossibleAndNoRodIsEverTwoPlayers) {
   for (unsigned part = 1; part < 256; ++part) {
     const RodSet mine = RodSet(part & all0), theirs = RodSet(all0 & ~mine);
@@ -102,7 +102,7 @@ TEST_F(SeatsTest, AreCountedByMachineAndByNetwork) {
   EXPECT_EQ(seats.of_machine(peer("192.0.2.2")), 0);
 }
 
-// Somebody who has asked for a name, and has none yet.
+// A seat with a requested name that has not been assigned one yet.
 Seat asks_for(const std::string& name, const std::string& owner) {
   Seat seat;
   seat.wanted_name = name;
@@ -110,7 +110,7 @@ Seat asks_for(const std::string& name, const std::string& owner) {
   return seat;
 }
 
-// Results and ratings go by names: two who call themselves alike are two.
+// Results and ratings use names as keys: two people who choose one name get two.
 TEST_F(SeatsTest, NoTwoPeopleHaveOneName) {
   const Seat near = asks_for("player", "near"), far = asks_for("player", "far");
   EXPECT_EQ(seats.name_for(near, 0), "player");
@@ -197,7 +197,7 @@ os::SocketAddress address(const std::string& text) {
   return *os::parse_address(text, 4242);
 }
 
-// How many tries these addresses have in a time, a hundred a second each. So much time has passed.
+// Number of attempts of these addresses in a time, at a hundred per second each. Advances time.
 int tries(PasswordTries& door, const std::vector<std::string>& from, int seconds) {
   int count = 0;
   for (int second = 0; second < seconds; ++second) {
@@ -255,7 +255,7 @@ TEST(RateLimits, ManyNamesHaveNoMoreThanOneWhenTheirPlacesAreTaken) {
   EXPECT_EQ(taken, kAtOnce);
 }
 
-// --- the desk: rods of several clients and the computer
+// --- RodDesk: rods of several clients and the computer
 
 struct DeskTest : testing::Test {
   explicit DeskTest(bool fills = false)
@@ -319,7 +319,7 @@ TEST_F(FillingDesk, TheComputerFillsATeamIfTheHostSaysSo) {
   }
 }
 
-// Steps the match by the desk's rods; a computer that had the whole team would have confirmed.
+// Steps the match with the desk's rods; a computer with a full team would have confirmed.
 void DeskTest::expect_no_choice_by_the_computer() {
   const std::vector<foosball::Command> push{{foosball::Command::Kind::push, 0, 0}};
   match.step({{}, push});

@@ -1,4 +1,4 @@
-// The server's program, started by a test.
+// The server program, started by a test.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ inline std::string text_of(const std::string& path) {
   return text.str();
 }
 
-// A server at any free port, which it says in its log.
+// A server at any free port, which it writes to its log.
 class RunningServer {
  public:
   explicit RunningServer(std::vector<std::string> options, const std::string& address = "127.0.0.1")
@@ -47,7 +47,7 @@ class RunningServer {
   std::uint16_t port_ = 0;
 };
 
-// A server whose files cannot grow: the disk is full for it.
+// A server whose files cannot grow: to it the disk is full.
 inline std::vector<std::string> on_a_full_disk(std::vector<std::string> options) {
   options = serve(std::move(options));
   options.insert(options.begin(),

@@ -65,7 +65,7 @@ TEST(SnapshotBuilder, ShowsEachManAtHisOwnAngle) {
   build_snapshot(view, snapshot);
   for (const wire::ManState& man : snapshot.men) {
     const double angle = view.men[man.rod][man.man].angle;
-    // A half turn about y: (0, sin, 0, cos), of either sign.
+    // Half of the rotation about y: (0, sin, 0, cos), of either sign.
     const auto& q = man.body.orientation;
     EXPECT_NEAR(std::fabs(q[1] * std::sin(0.5 * angle) + q[3] * std::cos(0.5 * angle)), 1.0, 1e-6);
     EXPECT_NEAR(q[0], 0.0, 1e-6);
@@ -74,7 +74,7 @@ TEST(SnapshotBuilder, ShowsEachManAtHisOwnAngle) {
   EXPECT_FLOAT_EQ(snapshot.rods[3].angle, static_cast<float>(view.rods[3].angle));
 }
 
-// A man's velocity against the difference of its poses a microsecond apart.
+// Compares a man's velocity with the difference of its poses a microsecond apart.
 TEST(SnapshotBuilder, VelocitiesOfTheMenAreTheChangeOfTheirPoses) {
   const double dt = 1e-6;
   foosball::MatchView view = view_of(foosball::Layout::tournament);
@@ -97,7 +97,7 @@ TEST(SnapshotBuilder, VelocitiesOfTheMenAreTheChangeOfTheirPoses) {
   }
 }
 
-// As in the match: nobody's rod is no warning, one that a hand let go is.
+// As in the match: an unassigned rod causes no warning, a rod that a hand has released does.
 TEST(ReplayDrivers, ARodIsHeldOnceAHandThatHadItIsGone) {
   wire::JournalTick tick;
   wire::Snapshot snapshot;

@@ -36,7 +36,7 @@ TEST(OpenPorts, SaysThatAnAddressIsNone) {
   EXPECT_TRUE(contains(sentence(options, ports.error()), "\"everywhere\" is no address"));
 }
 
-// With TCP's port taken first both could bind it, and both be refused when they listened.
+// With the TCP port first, both could bind it, and both could fail to listen.
 TEST(OpenPorts, OfServersThatStartAtOneMomentExactlyOneHasThePort) {
   constexpr int kServers = 4, kRounds = 200;
   for (int round = 0; round < kRounds; ++round) {
@@ -55,7 +55,7 @@ TEST(OpenPorts, OfServersThatStartAtOneMomentExactlyOneHasThePort) {
         const auto ports = open_ports(options);
         opened += ports ? 1 : 0;
         refused += !ports && ports.error().occupied() ? 1 : 0;
-        all_tried.arrive_and_wait();  // whoever has the port keeps it until all have tried
+        all_tried.arrive_and_wait();  // a server keeps its port until all have tried
       });
     }
     for (auto& server : servers) server.join();

@@ -1,5 +1,5 @@
-// The computer stands in for a player who is lost, silent or has left, so that a team keeps its
-// match. Sockets are real, the clock is the test's.
+// The computer stands in for a player who is lost, silent or has left, so that the team's match
+// goes on. Sockets are real, time is simulated.
 #include <bit>
 
 #include "control_fixture.h"
@@ -42,7 +42,7 @@ class StandIn : public testing::Test {
     ASSERT_TRUE(client.catch_up());
     table.tick(3);
   }
-  // Somebody whose hand is at the rods: heard every 100 ms of fake time.
+  // A player whose hand sends every 100 ms of simulated time.
   struct Hand {
     ProbeClient* client;
     wire::InputDatagram input;
@@ -68,7 +68,7 @@ class StandIn : public testing::Test {
     ASSERT_TRUE(
         table.tick_until([&] { return table->counters().input.accepted == heard + hands.size(); }));
   }
-  // Ann has team 0, Bob team 1, and both are heard. Returns her welcome; none: it went wrong.
+  // Ann has team 0, Bob team 1, and both send. Returns her Welcome; none if it failed.
   auto play_both(ProbeClient& ann, ProbeClient& bob) {
     auto seat = sit(ann, "Ann", 0);
     const auto opponent = sit(bob, "Bob", 1);
@@ -79,7 +79,7 @@ class StandIn : public testing::Test {
     }
     return seat;
   }
-  // Fake time: that of the ticks.
+  // Simulated time: that of the ticks.
   void pass(std::int64_t us) {
     for (constexpr std::int64_t kEveryUs = 100'000; us > 0; us -= kEveryUs) {
       table.tick(static_cast<int>(std::min(us, kEveryUs) / 1000));
@@ -87,7 +87,7 @@ class StandIn : public testing::Test {
     }
   }
   std::uint8_t source(ProbeClient& at, int rod) {
-    while (wait_readable(at.udp(), 0)) at.snapshot(0);  // a full buffer takes no newer ones
+    while (wait_readable(at.udp(), 0)) at.snapshot(0);  // a full buffer would drop newer ones
     table.tick();
     std::optional<wire::Snapshot> newest;
     while (wait_readable(at.udp(), 0)) newest = at.snapshot(0);
@@ -230,7 +230,7 @@ TEST_F(StandIn, PlaysAtOnceForTheLastOfATeam) {
   EXPECT_TRUE(table.tick_until([&] { return table->match().view().computer[0]; }));
 }
 
-// Whoever stays is to have a match, however the other went: to watch, or to the other team.
+// The match goes on for the other player, whether this one watches or changes teams.
 TEST_F(StandIn, PlaysForOneWhoGivesTheRodsUpUntilTheyAreTakenAgain) {
   ProbeClient ann(table.port()), bob(table.port());
   const auto opponent = sit(bob, "Bob", 1);
@@ -269,7 +269,7 @@ TEST_F(StandIn, OffersTheRodsThatAreGivenUpToTheTeamMateFirst) {
   EXPECT_EQ(source(carl, goalie), kComputer);
 }
 
-// Fewer rods of the team are a choice, not a way out of it.
+// Giving up some rods of the team is a choice, not leaving.
 TEST_F(StandIn, LeavesRodsAloneThatOneDoesNotWantWhoPlaysOn) {
   ProbeClient ann(table.port()), bob(table.port());
   ASSERT_TRUE(play_both(ann, bob));
@@ -370,7 +370,7 @@ TEST_F(Alone, APausePlayersAskedForOutlastsTheirSilence) {
   ASSERT_TRUE(
       table.tick_until([&] { return table->match().view().screen == foosball::Screen::play; }));
   hear_hands();
-  // Before the silence, and in the middle of it.
+  // A reconnection before the silence, and during it.
   for (const bool silent_first : {false, true}) {
     const Hand hand = hands.front();
     const auto fall_silent = [&] {
@@ -420,7 +420,7 @@ class StandInResults : public StandIn {
   explicit StandInResults(const std::function<void(ServerOptions&)>& change = rated)
       : StandIn((std::filesystem::remove(path()), change)) {}
 
-  // Three people, one second of whose match is over.
+  // Three people, one second into their match.
   void begin_three() {
     const auto first = sit(ann, "Ann", 0, one), mate = sit(bob, "Bob", 0, rest),
                opponent = sit(carl, "Carl", 1);

@@ -1,5 +1,5 @@
-// A hand whose motion is known, a sensor that reports it, the frames, a poll each millisecond and
-// the simulated rod: how far the target that a tick is given, and the rod, are from the hand.
+// A hand with a known motion, a sensor that reports it, the frames, a poll each millisecond, and
+// the simulated rod: measures the errors of the tick's target and of the rod, relative to the hand.
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 
@@ -34,15 +34,15 @@ struct Pose {
 struct Motion {
   std::string name;
   std::function<Pose(double)> at;  // of [s]
-  double settled;                  // [s] from when on errors count
+  double settled;                  // [s] errors count from here on
   double end;                      // [s]
   bool stops = false;
 };
 
-// The hand moves steadily, and from `stop` on slows down to nothing within `takes`.
+// The hand moves at constant speed, and from `stop` on decelerates to rest within `takes`.
 Motion stop_motion(const std::string& name, double slide_rate, double angle_rate, double takes) {
   static constexpr double stop = 0.08;
-  const auto way = [takes](double t) {  // seconds of full rate
+  const auto way = [takes](double t) {  // equivalent seconds at full rate
     const double s = std::clamp(t - stop, 0.0, takes);
     return std::min(t, stop) + (takes > 0 ? s - s * s / (2 * takes) : 0);
   };
@@ -67,7 +67,7 @@ Motion sinusoid(const std::string& name, double slide, double slide_rate, double
           0.05, 0.5};
 }
 
-// There and back with the least jerk (Flash and Hogan 1985): the fastest shot, 120 rad/s.
+// There and back with minimum jerk (Flash and Hogan 1985): the fastest shot, 120 rad/s.
 Motion flick() {
   const auto step = [](double t, double takes) {
     const double s = std::clamp(t / takes, 0.0, 1.0);
@@ -82,14 +82,14 @@ Motion flick() {
 
 struct Sensor {
   std::string name;
-  double report_us, frame_us;  // the same: read for each frame; 0: the truth
+  double report_us, frame_us;  // periods; read for each frame; 0: exact
   double counts_per_mm;
   bool stamped = true;  // the host knows when a frame arrived
 };
 
 struct Errors {
-  double slide = 0, angle = 0;            // of the target, the largest [m], [rad]
-  double slide_past = 0, angle_past = 0;  // beyond where the hand came to stand
+  double slide = 0, angle = 0;            // of the target, max error [m], [rad]
+  double slide_past = 0, angle_past = 0;  // overshoot past the hand's final position
   double rod_slide = 0, rod_angle = 0, rod_slide_past = 0, rod_angle_past = 0;  // of the rod
   double angle_squares = 0;
   int ticks = 0;
@@ -97,9 +97,9 @@ struct Errors {
   double angle_rms() const { return std::sqrt(angle_squares / ticks); }
 };
 
-// The hand, the sensor, the frames on their way and the simulated rod. Reports, frames and ticks
-// each begin at a random time of their period; a mouse's clock is up to 0.2 % off and a report up
-// to 0.2 ms late; a frame takes 0.1 to 0.3 ms to arrive.
+// The hand, the sensor, the frames in transit and the simulated rod. Reports, frames and ticks each
+// begin at a random time of their period. A mouse's clock is off by up to 0.2 %, and a report is up
+// to 0.2 ms late. A frame takes 0.1 to 0.3 ms to arrive.
 class Rig {
  public:
   Rig(const Motion& motion, const Sensor& sensor, unsigned seed)
@@ -112,7 +112,7 @@ class Rig {
     options.calibration = cabinet::nominal_calibration(sensor.counts_per_mm);
     if (sensor.stamped) options.arrived_us = [this] { return arrived_us_; };
     source_.emplace(options, [host = ends[1]]() mutable { return std::exchange(host, -1); });
-    rod_spec_.slide_limit = 10;  // nothing stops the motion but the hand
+    rod_spec_.slide_limit = 10;  // only the hand stops the motion
     frame_.present = 0xFF;
     report_us_ = sensor.report_us > 0 ? sensor.report_us : sensor.frame_us;
     due_us_ = next_frame_us_ = uniform(0, sensor.frame_us);
@@ -251,7 +251,7 @@ void print(const Sensor& sensor) {
   }
 }
 
-// Measured 0.38 mm and 0.93 degrees, 0.59 and 0.72, 3.1 degrees past.
+// Measured 0.38 mm and 0.93 degrees, 0.59 and 0.72, overshoot 3.1 degrees.
 TEST(StateAtTick, OfASensorReadEachMillisecondIsWithin1MillimetreAnd2Degrees) {
   print(kSpi);
   for (const Motion* motion : {&kSteady, &kSine}) {
@@ -262,8 +262,8 @@ TEST(StateAtTick, OfASensorReadEachMillisecondIsWithin1MillimetreAnd2Degrees) {
   EXPECT_LE(kDegrees * errors_of(kDeadStop, kSpi).angle_past, 4);
 }
 
-// Measured: 2.0 degrees rms and 9.6 at most, 4.1, 17.5; 15 past a dead stop, 6.0 and 2.0 past one
-// of 10 and 20 ms.
+// Measured: 2.0 degrees rms and max 9.6, 4.1, 17.5; overshoot 15 for a sudden stop, 6.0 and 2.0 for
+// one of 10 and 20 ms.
 TEST(StateAtTick, OfAMouseThatReportsEach5MillisecondsIsWithinWhatReportsCanTell) {
   print(kMouse);
   const Errors steady = errors_of(kSteady, kMouse);
@@ -283,7 +283,7 @@ TEST(StateAtTick, ThroughFramesOf4MillisecondsItGoesOnToo) {
   EXPECT_LE(kDegrees * errors_of(kSine, sensor).angle, 10);         // 7.3
 }
 
-// What a tick costs that does not know when between two polls a frame came.
+// The cost of not knowing when a frame arrived between two polls.
 TEST(StateAtTick, ArrivalTimesAreWorth2Degrees) {
   Sensor sensor = kSpi;
   sensor.name += ", arrival known to a tick";
@@ -294,7 +294,7 @@ TEST(StateAtTick, ArrivalTimesAreWorth2Degrees) {
   EXPECT_LE(kDegrees * without, 5);
 }
 
-// The simulated hand has a force and a torque: no filter brings the rod nearer than this.
+// The simulated hand has a limited force and torque: no filter brings the rod closer than this.
 TEST(StateAtTick, GivenTheTruthTheRodStillPassesADeadStopBy8Degrees) {
   const Sensor truth{"the truth itself", 0, 1'000, 1};
   print(truth);

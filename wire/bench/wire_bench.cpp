@@ -1,4 +1,4 @@
-// Cost of a message on each side: a full snapshot (32 men, 8 events), an input datagram, a tick of
+// Cost of encoding and decoding: a full snapshot (32 men, 8 events), an input datagram, a tick of
 // the journal.
 #include <benchmark/benchmark.h>
 
@@ -39,7 +39,7 @@ void decode_input_datagram(benchmark::State& state) {
 }
 BENCHMARK(decode_input_datagram)->Unit(benchmark::kMicrosecond);
 
-// Four rods move; with the record's closing every 64 ticks.
+// Four rods move; includes ending the record every 64 ticks.
 void journal_tick(benchmark::State& state) {
   JournalEncoder encoder;
   samples::Bytes out;

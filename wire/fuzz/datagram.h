@@ -1,9 +1,9 @@
-// What the fuzz targets of datagrams share.
+// Shared by the fuzz targets of datagrams.
 #pragma once
 
 #include "samples.h"
 
-// Reads the bytes as they are, which the checksum mostly refuses, and under a right checksum.
+// Reads the bytes unchanged, which mostly fails the checksum, and with a correct checksum.
 template <class Read>
 int read_as_is_and_sealed(const std::uint8_t* data, std::size_t size, Read read) {
   const auto in = std::as_bytes(std::span(data, size));

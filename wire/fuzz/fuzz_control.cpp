@@ -1,5 +1,5 @@
-// A control stream in chunks of a size that the first byte gives. It makes the same messages
-// whatever the chunks, and each of them can be sent on.
+// Reads a control stream in chunks of a size given by the first byte. The messages do not depend on
+// the chunk size, and each can be encoded again.
 #include <cstdlib>
 
 #include "samples.h"

@@ -1,5 +1,5 @@
-// Any bytes as a device command, as they are and under a right CRC. What is accepted is in range
-// and comes back to the bit.
+// Reads arbitrary bytes as a device command, unchanged and with a correct CRC. Accepted commands
+// are in range and re-encode to the same bits.
 #include <cstdint>
 #include <cstdlib>
 #include <vector>

@@ -1,5 +1,6 @@
-// Any bytes as a device frame, plain (as they are and under a right CRC) and in COBS. What is
-// accepted comes back to the bit; of version 1, as the same frame of the version that is sent.
+// Reads arbitrary bytes as a device frame, plain (unchanged and with a correct CRC) and in COBS.
+// Accepted frames re-encode to the same bits; a frame of version 1 re-encodes as the same frame of
+// the current version.
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>

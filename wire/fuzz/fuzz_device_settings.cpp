@@ -1,5 +1,5 @@
-// Any bytes as a controller's report of its settings, as they are and under a right CRC. What is
-// accepted comes back to the bit.
+// Reads arbitrary bytes as a controller's settings report, unchanged and with a correct CRC.
+// Accepted reports re-encode to the same bits.
 #include <cstdint>
 #include <cstdlib>
 #include <vector>

@@ -1,5 +1,5 @@
-// Any bytes as an input datagram, as they are and under a right checksum. What is accepted comes
-// back to the bit.
+// Reads arbitrary bytes as an input datagram, unchanged and with a correct checksum. Accepted
+// datagrams re-encode to the same bits.
 #include <cstdlib>
 
 #include "datagram.h"

@@ -1,5 +1,5 @@
-// Any bytes as a recording, as they are and with a right checksum on each record. What is accepted
-// can be recorded again and reads the same.
+// Reads arbitrary bytes as a recording, unchanged and with a correct checksum on each record.
+// Accepted entries can be recorded again and then read back equal.
 #include <cstdlib>
 
 #include "crc32.h"
@@ -13,7 +13,7 @@ std::vector<wire::JournalEntry> entries_of(const Bytes& file) {
   wire::JournalReader reader(file);
   std::vector<wire::JournalEntry> entries;
   while (auto entry = reader.next()) entries.push_back(std::move(*entry));
-  // Nothing comes after the end, however often it is asked for, and what was said stands.
+  // After the end, further calls return nothing, and the problem stays the same.
   const std::string problem = reader.problem();
   if (reader.next() || reader.problem() != problem) std::abort();
   return entries;

@@ -1,4 +1,5 @@
-// Any bytes as what a phone says, and as what it is told. What is accepted comes back to the bit.
+// Reads arbitrary bytes as a phone's message and as a reply to it. Accepted messages re-encode to
+// the same bits.
 #include <cstdint>
 #include <cstdlib>
 

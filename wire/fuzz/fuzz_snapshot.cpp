@@ -1,5 +1,5 @@
-// Any bytes as a snapshot, as they are and under a right checksum. What is accepted comes back the
-// same.
+// Reads arbitrary bytes as a snapshot, unchanged and with a correct checksum. Accepted snapshots
+// re-encode to an equal snapshot.
 #include <cstdlib>
 
 #include "datagram.h"

@@ -1,5 +1,5 @@
-// Bits into bytes and back, lowest first, bounds-checked with a sticky error: once anything went
-// wrong, writes are dropped and reads give 0.
+// Packs bits into bytes and unpacks them, lowest bit first, bounds-checked with a sticky error:
+// after an error, writes are dropped and reads return 0.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ class BitWriter {
     if (held_ < 64) return;
     put_word();
     held_ -= 64;
-    // What the window had no room for; a shift by 64 would not give 0.
+    // The bits that did not fit into the window; a shift by 64 would not give 0.
     window_ = held_ > 0 ? value >> (bits - held_) : 0;
   }
 
@@ -53,13 +53,13 @@ class BitWriter {
   std::span<const std::byte> written() const { return out_.first(at_); }
 
  private:
-  // The whole window, lowest byte first.
+  // Writes the full window, lowest byte first.
   void put_word() {
     if (out_.size() - at_ < 8) {
       failed_ = true;
       return;
     }
-    std::array<std::byte, 8> bytes;  // one store, wherever the lowest byte comes first
+    std::array<std::byte, 8> bytes;  // one store on machines of any byte order
     for (int i = 0; i < 8; ++i) bytes[i] = static_cast<std::byte>(window_ >> 8 * i & 0xFF);
     std::memcpy(out_.data() + at_, bytes.data(), 8);
     at_ += 8;
@@ -67,7 +67,7 @@ class BitWriter {
 
   std::span<std::byte> out_;
   std::size_t at_ = 0;
-  std::uint64_t window_ = 0;  // the held_ lowest bits wait to be written; the others are 0
+  std::uint64_t window_ = 0;  // the held_ lowest bits are pending; the others are 0
   int held_ = 0;              // < 64 between calls
   bool failed_ = false;
 };
@@ -102,7 +102,7 @@ class BitReader {
   }
 
   bool ok() const { return !failed_; }
-  // Bytes taken, the last one perhaps in part.
+  // Bytes read; the last one may be read in part.
   std::size_t consumed() const { return at_; }
   std::size_t remaining() const { return in_.size() - at_; }
 
@@ -126,7 +126,7 @@ class BitReader {
 
   std::span<const std::byte> in_;
   std::size_t at_ = 0;
-  std::uint64_t window_ = 0;  // the held_ lowest bits are still to be read; the others are 0
+  std::uint64_t window_ = 0;  // the held_ lowest bits are unread; the others are 0
   int held_ = 0;              // < 8 between calls
   bool failed_ = false;
 };

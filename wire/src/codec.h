@@ -1,4 +1,4 @@
-// The encoder and the decoder that the descriptions are visited with (wire/description.h).
+// The encoder and the decoder: codecs for the descriptions (wire/description.h).
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 
 namespace wire {
 
-// What only orders the fields, and takes no bits itself: the same for both.
+// Operations that only order the fields and have no bits of their own; shared by both codecs.
 class Structure {
  public:
   template <class Body>
@@ -35,8 +35,7 @@ class Structure {
   }
 };
 
-// Writes a message. Whatever the values, what is written is valid: they are clamped to their
-// ranges.
+// Writes a message. The output is valid for any values: they are clamped to their ranges.
 class Encoder : public Structure {
  public:
   Encoder(std::span<std::byte> out, std::uint32_t layout) : bits_(out), layout_(layout) {}
@@ -118,8 +117,8 @@ class Encoder : public Structure {
   std::uint32_t layout_;
 };
 
-// Reads a message. The first thing wrong is remembered and all that follows reads as 0; ask ok()
-// once, at the end.
+// Reads a message. Keeps the first error; after it, all fields read as 0. Check ok() once, at the
+// end.
 class Decoder : public Structure {
  public:
   Decoder(std::span<const std::byte> in, std::uint32_t layout)
@@ -128,7 +127,7 @@ class Decoder : public Structure {
   bool ok() const { return bad_ == nullptr; }
   // Name of the first field that was missing or out of range.
   const char* bad_field() const { return bad_; }
-  // Whole bytes read. Precondition: aligned.
+  // Complete bytes read. Precondition: aligned.
   std::size_t consumed() { return bits_.consumed(); }
   bool at_end() { return ok() && bits_.align() && bits_.remaining() == 0; }
 

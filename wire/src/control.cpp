@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kLengthBytes = 4;
 
-// --- to FlatBuffers: one function a message, found by overload.
+// --- to FlatBuffers: one overload per message.
 
 using Builder = flatbuffers::FlatBufferBuilder;
 
@@ -25,7 +25,7 @@ auto octets(Builder& b, const std::array<std::byte, kSize>& bytes) {
   return b.CreateVector(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
 }
 auto build(Builder& b, const Knock& m) {
-  // Arguments have no order of their own, and the bytes must not depend on the compiler's.
+  // Argument evaluation order is unspecified, and the bytes must not depend on the compiler.
   const auto share = octets(b, m.share);
   const auto sid = octets(b, m.sid);
   return fb::CreateKnock(b, m.version, m.role, sid, share);
@@ -155,7 +155,7 @@ fb::Message kind_of(flatbuffers::Offset<Table>) {
   return fb::MessageTraits<Table>::enum_value;
 }
 
-// --- from FlatBuffers, verified: false where a value is out of range.
+// --- from FlatBuffers, verified: returns false if a value is out of range.
 
 bool take(const flatbuffers::String* from, std::size_t max_bytes, std::string& to) {
   if (!is_clean_text(from->string_view(), max_bytes)) return false;
@@ -209,7 +209,7 @@ bool take(const fb::Tuning& t, Tuning& m) {
   }
   return true;
 }
-// Numbers that no table is looked up by are the server's to judge, with a sentence.
+// The server validates numbers that index no table, and answers with a sentence.
 bool take(const fb::Game& t, Game& m) {
   m = {t.mode(),         t.rule_set(), t.goals(), t.sets(), t.match_ms(),
        t.change_sides(), t.level(),    t.style(), t.date(), t.waits()};
@@ -371,7 +371,7 @@ bool take_as(const Table* table, ControlMessage& message) {
   return table != nullptr && take(*table, message.emplace<Struct>());
 }
 
-// The verifier lets a message of a kind it does not know pass; the last line does not.
+// The verifier accepts a message of an unknown kind; the last line rejects it.
 bool take_any(const fb::Control& control, ControlMessage& message) {
   switch (control.message_type()) {
     case fb::Message::Hello:
@@ -426,10 +426,10 @@ bool take_any(const fb::Control& control, ControlMessage& message) {
   return false;
 }
 
-// bytes: aligned as operator new aligns, since FlatBuffers reads its numbers in place.
+// Precondition: bytes are aligned as operator new aligns, since FlatBuffers reads numbers in place.
 bool parse(const std::vector<std::byte>& bytes, ControlMessage& message) {
   const auto* data = reinterpret_cast<const std::uint8_t*>(bytes.data());
-  // A Roster's or a Devices' are most.
+  // A Roster or a Devices message has the most tables.
   constexpr std::uint32_t kMaxDepth = 5,
                           kMaxTables = std::max(kMaxSeats, kMaxDevices * (kRods + 1)) + 2;
   flatbuffers::Verifier verifier(data, bytes.size(), kMaxDepth, kMaxTables);

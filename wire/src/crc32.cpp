@@ -5,8 +5,8 @@
 namespace wire {
 namespace {
 
-// Eight bytes a turn, one table for each place ("slicing by 8"): a snapshot is summed every
-// millisecond on both ends, and the plain table takes four times as long.
+// Processes eight bytes per iteration, with one table per byte position ("slicing by 8"). Both ends
+// compute the CRC of a snapshot every millisecond, and the plain table is four times slower.
 constexpr int kSlices = 8;
 using Tables = std::array<std::array<std::uint32_t, 256>, kSlices>;
 

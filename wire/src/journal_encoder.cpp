@@ -9,8 +9,8 @@
 namespace wire {
 namespace {
 
-// Of one tick: 8 rods of 2 + 40 + 64 + 40 + 40 bits and 64 commands of 78 bits, and of any payload
-// but a header and a keyframe.
+// Max size of one tick (8 rods of 2 + 40 + 64 + 40 + 40 bits and 64 commands of 78 bits), and of
+// any payload other than a header or a keyframe.
 constexpr std::size_t kSmallPayload = 1024;
 
 void append(std::vector<std::byte>& out, std::span<const std::byte> bytes) {
@@ -21,7 +21,7 @@ void append32(std::vector<std::byte>& out, std::uint64_t value) {
   for (int shift = 0; shift < 32; shift += 8) out.push_back(static_cast<std::byte>(value >> shift));
 }
 
-// A record: length, CRC, then the payload in two parts.
+// Appends a record: length, CRC, then the payload in two parts.
 void append_record(std::vector<std::byte>& out, std::span<const std::byte> head,
                    std::span<const std::byte> rest = {}) {
   const std::size_t start = out.size();
@@ -33,7 +33,7 @@ void append_record(std::vector<std::byte>& out, std::span<const std::byte> head,
   for (std::size_t i = 0; i < 4; ++i) out[start + 4 + i] = static_cast<std::byte>(crc >> 8 * i);
 }
 
-// Encodes into scratch and returns the part used.
+// Encodes into scratch and returns the used part.
 template <class Describe, class Message>
 std::span<const std::byte> encode(std::span<std::byte> scratch, Describe describe,
                                   const Message& message) {

@@ -1,4 +1,4 @@
-// The grid of the journal: SI units to whole units and back.
+// The journal's grid: converts SI units to integer units, and back.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,11 +9,11 @@
 namespace wire {
 namespace {
 
-constexpr double kSlide = 1e7, kAngle = 1e6, kSlideRate = 1e6, kAngleRate = 1e3;  // a unit
+constexpr double kSlide = 1e7, kAngle = 1e6, kSlideRate = 1e6, kAngleRate = 1e3;  // per unit
 
-// value * per_unit, to the nearest whole, saturating at +-limit.
+// value * per_unit, rounded to the nearest integer, saturating at +-limit.
 std::int64_t whole(double value, double per_unit, std::int64_t limit) {
-  constexpr double kBeyond = 1e10;  // more than any limit, and far from overflow
+  constexpr double kBeyond = 1e10;  // above any limit, and far from overflow
   return nearest_step(std::clamp(value, -kBeyond, kBeyond) * per_unit, 1.0, -limit, limit);
 }
 
@@ -38,8 +38,8 @@ JournalRod quantise_rod(const RodTargetValues& v) {
   return rod;
 }
 
-// Division, not multiplication by 1e-7: it gives the nearest double on every machine, and so the
-// way back is exact.
+// Division instead of multiplication by 1e-7: it gives the nearest double on every machine, so that
+// quantising the result again is exact.
 RodTargetValues dequantise_rod(const JournalRod& rod) {
   return {rod.slide_100nm / kSlide, static_cast<double>(rod.angle_urad) / kAngle,
           rod.slide_rate_um_s / kSlideRate, rod.angle_rate_mrad_s / kAngleRate, rod.live};

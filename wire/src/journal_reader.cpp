@@ -19,11 +19,11 @@ std::uint32_t get32(std::span<const std::byte> bytes) {
   return value;
 }
 
-// Adds the change; false where the sum leaves Int or limit.
+// Adds the change; false if the sum exceeds the range of Int or the limit.
 template <class Int>
 bool move_by(Int& value, std::int64_t change,
              std::int64_t limit = std::numeric_limits<Int>::max()) {
-  const std::int64_t sum = value + change;  // both far from the ends of 64 bits
+  const std::int64_t sum = value + change;  // cannot overflow: both are far below 2^63
   if (sum < std::numeric_limits<Int>::min() || sum < -limit - 1 || sum > limit) return false;
   value = static_cast<Int>(sum);
   return true;
@@ -86,7 +86,7 @@ std::string to_text(const JournalFormat& format) {
   return text.data();
 }
 
-// Kind, magic, version and layout hash begin every header, in every version: 1 + 4 + 2 + 4 bytes.
+// In every version a header begins with kind, magic, version and layout hash: 1 + 4 + 2 + 4 bytes.
 std::optional<JournalFormat> other_journal_format(std::span<const std::byte> file) {
   constexpr std::size_t kIdentity = 11;
   if (file.size() < kRecordHead + kIdentity) return std::nullopt;
@@ -111,7 +111,7 @@ std::nullopt_t JournalReader::fail(const std::string& what) {
   return std::nullopt;
 }
 
-// The next record's payload into record_; if there is none, what is wrong with it.
+// Reads the next record's payload into record_. Returns an error message if there is no valid one.
 std::string JournalReader::open_record() {
   const auto rest = file_.subspan(at_);
   if (rest.size() < kRecordHead) return "cut off within its head";
@@ -128,7 +128,7 @@ std::string JournalReader::open_record() {
   return {};
 }
 
-// A record that is one entry.
+// Reads a record that is one entry.
 template <class Entry, class Describe>
 std::optional<JournalEntry> JournalReader::read_whole(Entry entry, Describe describe) {
   Decoder decoder(record_, journal_layout_hash());
@@ -162,7 +162,7 @@ std::optional<JournalEntry> JournalReader::read_tick() {
   return tick;
 }
 
-// A header begins with kind, magic and version in every release.
+// In every release a header begins with kind, magic and version.
 bool JournalReader::of_another_release() {
   constexpr std::size_t kBegin = 7;
   if (record_.size() < kBegin || get32(record_.subspan(1)) != kJournalMagic) return false;
@@ -252,11 +252,11 @@ JournalReader JournalReader::over(std::span<const std::byte> longer) const {
 
 namespace {
 
-// Of the record that begins here, if it is one of this kind.
+// Reads the record that begins here, if it is of this kind.
 template <class Entry, class Describe>
 std::optional<Entry> whole_record(std::span<const std::byte> at, JournalKind kind,
                                   Describe describe) {
-  constexpr std::size_t kLongest = 40;  // payload of either kind
+  constexpr std::size_t kLongest = 40;  // max payload of both kinds
   if (at.size() <= kRecordHead || at[kRecordHead] != static_cast<std::byte>(kind)) return {};
   const std::size_t size = get32(at);
   if (size > kLongest || size > at.size() - kRecordHead) return {};
@@ -271,7 +271,7 @@ std::optional<Entry> whole_record(std::span<const std::byte> at, JournalKind kin
 
 }  // namespace
 
-// From the end backwards: each byte may be the first of a record.
+// Searches backwards from the end: a record may begin at any byte.
 JournalTail read_journal_tail(std::span<const std::byte> tail) {
   JournalTail read;
   for (std::size_t at = tail.size(); at-- > 0 && !read.standing;) {

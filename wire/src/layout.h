@@ -1,5 +1,5 @@
-// The lister: visits a description and notes its fields as data. The layout hash and the tables of
-// docs/protocol.md are made from the list.
+// The lister: visits a description and records its fields as data. The layout hash and the tables
+// of docs/protocol.md are made from the list.
 #pragma once
 
 #include <algorithm>
@@ -16,15 +16,15 @@ namespace wire {
 struct LayoutRow {
   std::string path;     // "men[].body.position"
   std::string kind;     // "integer", "fixed", ...
-  std::uint64_t bits;   // of one, at most
-  std::uint64_t count;  // how many there are of it, at most
+  std::uint64_t bits;   // of one element, max
+  std::uint64_t count;  // number of elements, max
   std::string range;    // "0..7", "-2..2 by 2^-16"
   std::string unit;
   std::string meaning;
 };
 using Layout = std::vector<LayoutRow>;
 
-// FNV-1a over all but the meanings.
+// FNV-1a over everything except the meanings.
 std::uint32_t layout_hash(const Layout& layout);
 std::uint64_t max_bits(const Layout& layout);
 

@@ -1,4 +1,4 @@
-// The list of each message's fields, and the hash that names it on the wire.
+// The list of each message's fields, and the hash that identifies it on the wire.
 #pragma once
 
 #include "layout.h"
@@ -14,13 +14,13 @@ struct NamedLayout {
 Layout snapshot_layout();
 Layout input_layout();
 Layout characters_layout();
-// One for each kind of payload, and one for the ticks inside a record of ticks.
+// One for each kind of payload, and one for the ticks within a record of ticks.
 std::vector<NamedLayout> journal_layouts();
 
 // One for each message between a phone and the server.
 std::vector<NamedLayout> phone_layouts();
 
-// Over all of journal_layouts(); computed once.
+// Hash over all of journal_layouts(); computed once.
 std::uint32_t journal_layout_hash();
 
 }  // namespace wire

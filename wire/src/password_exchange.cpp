@@ -12,7 +12,7 @@ namespace {
 
 constexpr char kDsi[] = "CPaceRistretto255";
 constexpr char kDsiIsk[] = "CPaceRistretto255_ISK";
-constexpr std::size_t kHashBlock = 128;  // of SHA-512: the password fills the first block
+constexpr std::size_t kHashBlock = 128;  // of SHA-512: zeros pad the password to one block
 
 using Bytes = std::vector<std::byte>;
 
@@ -20,7 +20,7 @@ std::span<const std::byte> bytes_of(const std::string& text) {
   return std::as_bytes(std::span(text.data(), text.size()));
 }
 
-// Appends the length, 7 bits a byte, lowest first, and the bytes: the draft's prepend_len.
+// Appends the length, 7 bits per byte, lowest first, and then the bytes: prepend_len of the draft.
 void append_with_length(std::span<const std::byte> bytes, Bytes& out) {
   std::size_t length = bytes.size();
   for (; length >= 128; length >>= 7) out.push_back(static_cast<std::byte>(length % 128 + 128));
@@ -39,7 +39,7 @@ std::array<std::byte, 32> generator(const std::string& password, const std::stri
   Bytes head;
   append_with_length(bytes_of(kDsi), head);
   append_with_length(bytes_of(password), head);
-  const std::size_t used = head.size() + 1;  // and the padding's own length
+  const std::size_t used = head.size() + 1;  // plus the length byte of the padding
   const Bytes zeros(used < kHashBlock ? kHashBlock - used : 0);
   append_with_length(zeros, head);
   append_with_length(bytes_of(channel), head);
@@ -69,8 +69,8 @@ PasswordExchange::PasswordExchange(Side side, const std::string& password,
                                    const std::array<std::byte, 32>& scalar)
     : side_(side), sid_(sid), scalar_(scalar) {
   const auto g = generator(password, channel, sid);
-  // Fails for the neutral element alone, which a hash does not give: the share is then zero, and
-  // the other side refuses it.
+  // Fails only for the neutral element, which the hash never yields. The share is then zero, and
+  // the peer rejects it.
   if (::crypto_scalarmult_ristretto255(raw(share_.data()), raw(scalar_.data()), raw(g.data())) !=
       0) {
     share_ = {};
@@ -110,7 +110,7 @@ const char* exchange_channel(bool host) {
 }
 
 StreamKeys stream_keys(const ExchangeSecret& secret) {
-  // crypto_kdf wants 32 bytes; the secret's 64 are hashed to that.
+  // crypto_kdf takes 32 bytes; the 64-byte secret is hashed to that size.
   std::array<std::byte, crypto_kdf_KEYBYTES> root;
   ::crypto_generichash(raw(root.data()), root.size(), raw(secret.data()), secret.size(), nullptr,
                        0);

@@ -7,7 +7,7 @@
 namespace wire {
 namespace {
 
-// One overload a message, found by its type.
+// Selects the description by the message type.
 template <class Codec, class M>
 void describe(Codec& codec, M& message) {
   using T = std::remove_const_t<M>;
@@ -19,7 +19,7 @@ void describe(Codec& codec, M& message) {
   if constexpr (std::is_same_v<T, PhonePulse>) describe_phone_pulse(codec, message);
 }
 
-constexpr std::uint32_t kNoHash = 0;  // of a layout: the version says it
+constexpr std::uint32_t kNoHash = 0;  // no layout hash: the version identifies the layout
 
 template <class Variant>
 std::size_t encode(const Variant& message, std::span<std::byte> out) {

@@ -174,7 +174,7 @@ std::string comment(const Comments* lines) {
   return text.empty() ? text : text.substr(text.find_first_not_of(' '));
 }
 
-// The schema's table or enumeration of that name. (LookupByKey does this too, but g++ 12 sees a
+// The schema's table or enumeration of that name. (LookupByKey does the same, but g++ 12 reports a
 // null pointer in it under the sanitizers.)
 template <class List>
 const auto& named(const List& list, const std::string& name) {
@@ -263,7 +263,7 @@ std::string control() {
   return text;
 }
 
-// The comment that opens the header: the words before its include guard.
+// The header's opening comment: the lines before its include guard.
 std::string opening_comment(const char* path) {
   std::istringstream header(file_text(path));
   std::string text = "\n```\n";

@@ -1,5 +1,5 @@
-// docs/protocol.md, made from the descriptions, from control.fbs as flatc understood it, and from
-// the comments of wire/device_frame.h and wire/device_command.h.
+// Generates docs/protocol.md from the descriptions, from control.fbs as parsed by flatc, and from
+// the head comments of wire/device_frame.h, wire/device_command.h and wire/device_settings.h.
 #pragma once
 
 #include <string>

@@ -1,5 +1,4 @@
-// wire_protocol_doc [FILE]: writes the documentation of the protocol to FILE, or to standard
-// output.
+// wire_protocol_doc [FILE]: writes the protocol documentation to FILE, or to standard output.
 #include <cstdio>
 #include <fstream>
 

@@ -1,5 +1,5 @@
-// Real numbers onto the grids of wire/description.h and back. Every input gives a valid code: out
-// of range saturates, not finite is 0.
+// Quantises real numbers to the grids of wire/description.h, and back. Every input gives a valid
+// code: values out of range saturate, values that are not finite become 0.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace wire {
 
-// Nearest integer to value / step within low..high.
+// Nearest integer to value / step, clamped to low..high.
 inline std::int64_t nearest_step(double value, double step, std::int64_t low, std::int64_t high) {
   if (!std::isfinite(value)) return 0;
   const double steps =
@@ -49,7 +49,7 @@ struct RotationCode {
   std::array<std::uint64_t, 3> others{};
 };
 
-// A quaternion of any length but 0; else the identity.
+// Normalises a quaternion of any length except 0; otherwise uses the identity.
 inline RotationCode rotation_code(const Rotation& f, const std::array<float, 4>& q) {
   std::array<double, 4> v{q[0], q[1], q[2], q[3]};
   const double length = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2] + v[3] * v[3]);
@@ -69,7 +69,7 @@ inline RotationCode rotation_code(const Rotation& f, const std::array<float, 4>&
   return code;
 }
 
-// False if the codes are not of a rotation whose largest component is the one named.
+// False unless the codes form a rotation whose largest component is the given one.
 inline bool rotation_value(const Rotation& f, const RotationCode& code, std::array<float, 4>& q) {
   double sum = 0, greatest = 0;
   for (std::size_t i = 0, k = 0; i < 4; ++i) {

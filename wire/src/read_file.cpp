@@ -11,7 +11,7 @@
 namespace wire {
 namespace {
 
-// What a pipe's writer may take until its next bytes.
+// Timeout for the next bytes from a pipe's writer.
 constexpr int kPatience_ms = 10'000;
 
 struct File {
@@ -21,7 +21,7 @@ struct File {
 
 }  // namespace
 
-// Never waits for ever: a pipe is opened whether or not anybody writes it.
+// Never blocks forever: opening a pipe does not wait for a writer.
 tl::expected<std::vector<std::byte>, std::string> read_file(const std::string& path,
                                                             std::size_t max_bytes) {
   const auto error = [&](const std::string& what) { return tl::unexpected(path + ": " + what); };
@@ -33,7 +33,7 @@ tl::expected<std::vector<std::byte>, std::string> read_file(const std::string& p
   if (descriptor < 0) return system_error("opened");
   const File file{descriptor};
 
-  // Read until the end rather than ask for the size: a pipe or a device has none.
+  // Reads until the end instead of asking for the size: a pipe or a device has none.
   constexpr std::size_t kChunk = 1 << 16;
   std::vector<std::byte> bytes;
   while (true) {

@@ -13,7 +13,7 @@ static_assert(crypto_aead_chacha20poly1305_ietf_KEYBYTES == sizeof(SealKey));
 static_assert(crypto_aead_chacha20poly1305_ietf_ABYTES == kSealTag);
 
 constexpr std::size_t kLengthBytes = 4;
-// Of one frame's plain bytes: long messages go in several.
+// Max plain bytes of one frame; longer messages use several frames.
 constexpr std::size_t kMaxPlainFrame = kMaxSealedFrame - kSealTag;
 
 using Nonce = std::array<unsigned char, crypto_aead_chacha20poly1305_ietf_NPUBBYTES>;
@@ -35,7 +35,8 @@ Nonce nonce_of(std::uint64_t counter) {
   return nonce;
 }
 
-// libsodium chooses its code for this machine once; without it the portable one would run.
+// Lets libsodium select its implementation for this processor once; otherwise it uses the portable
+// one.
 void prepare() {
   [[maybe_unused]] static const int ready = ::sodium_init();
 }
@@ -102,7 +103,7 @@ SealVerdict DatagramOpener::open(std::span<const std::byte> sealed, std::span<st
   if (taken(counter)) return SealVerdict::replayed;
   const auto head = sealed.first(kSealHead), body = sealed.subspan(kSealHead);
   if (!decrypt(key_, counter, head, body, plain.data())) return SealVerdict::forged;
-  take(counter);  // only now: a forged counter must not move the window
+  take(counter);  // only after authentication: a forged counter must not move the window
   size = sealed.size() - kSealBytes;
   return SealVerdict::good;
 }

@@ -18,8 +18,8 @@ std::size_t length_from_lead(unsigned char lead) {
   return 0;
 }
 
-// The character that text starts with, length its bytes; kInvalid (RFC 3629: too long a form, a
-// surrogate, above U+10FFFF, not UTF-8 at all) takes one byte.
+// Decodes the first character of text and its length [bytes]. kInvalid has length 1 (RFC 3629:
+// overlong form, surrogate, above U+10FFFF, or not UTF-8).
 std::uint32_t first_character(std::string_view text, std::size_t& length) {
   const auto byte_at = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   length = length_from_lead(byte_at(0));

@@ -28,7 +28,7 @@ std::vector<Piece> random_pieces(std::mt19937_64& random) {
   return pieces;
 }
 
-// The definition, a bit at a time.
+// The definition, bit by bit.
 Bytes packed(const std::vector<Piece>& pieces) {
   std::vector<bool> bits;
   for (const Piece& piece : pieces) {

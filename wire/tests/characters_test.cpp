@@ -62,7 +62,7 @@ TEST(Characters, EveryTruncationAndALongerOneIsRefused) {
   EXPECT_FALSE(decode_characters(longer, received));
 }
 
-// Whatever a stranger sends, what comes out keeps every limit that the receiver indexes by.
+// For any bytes, the decoded values stay within every limit that the receiver uses as an index.
 TEST(Characters, WithAnyBitFlippedAreRefusedOrWithinTheirLimits) {
   const Bytes whole = encode_characters(of(samples::characters()));
   for (std::size_t bit = 0; bit < 8 * whole.size(); ++bit) {

@@ -90,7 +90,7 @@ TEST(Control, EveryTruncationThatClaimsToBeWholeIsRefused) {
       part[0] = static_cast<std::byte>(size - 4);
       part[1] = static_cast<std::byte>((size - 4) >> 8);
       EXPECT_NE(read_one(part), Status::need_more) << name << " " << size;
-      // FlatBuffers pads at the end of a string: a cut there loses nothing.
+      // FlatBuffers pads after a string: truncating the padding loses nothing.
       if (size + 4 <= whole.size()) {
         EXPECT_EQ(read_one(part), Status::broken) << name << " " << size;
       }
@@ -108,7 +108,7 @@ TEST(Control, NoSingleBitFlipGivesAValueOutOfRange) {
       reader.push(bytes);
       ControlMessage received;
       if (reader.next(received) != Status::message) continue;
-      // What was accepted is a message that can be sent: it comes back the same.
+      // An accepted message can be sent: it decodes to an equal one.
       ControlReader again;
       again.push(encoded(received));
       ControlMessage returned;

@@ -84,7 +84,8 @@ TEST(DeviceCommand, WhatIsOutOfRangeIsRefusedUnderARightCrcToo) {
     std::size_t at;
     std::uint8_t value;
   };
-  // Version, no kind, rod, durations of 0 and 256 ms, a setting in a pulse, the reserved bytes.
+  // Version, unknown kind, rod, durations of 0 and 256 ms, a setting in a pulse, the reserved
+  // bytes.
   for (const Case& c : {Case{0, 2}, Case{1, 0}, Case{1, 6}, Case{4, 8}, Case{6, 0}, Case{7, 1},
                         Case{8, 1}, Case{12, 1}, Case{13, 1}}) {
     Octets bytes = encoded(pulse(2, 90, 100));
@@ -129,7 +130,7 @@ TEST(DeviceCommand, AStickHasATravelAndATurnOrNoneAndNothingOfOtherKinds) {
     std::size_t at;
     std::uint8_t value;
   };
-  // No such rod, no such direction, a duration, less than a travel, less than a turn, reserved.
+  // Unknown rod, unknown direction, a duration, travel too small, turn too small, reserved.
   for (const Case& c :
        {Case{4, 8}, Case{5, 4}, Case{6, 1}, Case{9, 0}, Case{10, 63}, Case{12, 1}}) {
     Octets broken = bytes;

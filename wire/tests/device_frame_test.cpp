@@ -32,7 +32,7 @@ Octets encoded(const DeviceFrame& frame) {
   return bytes;
 }
 
-// The definition: the remainder of a division of polynomials, bit by bit.
+// The definition: the remainder of a polynomial division, bit by bit.
 std::uint16_t crc_by_bits(const Octets& bytes) {
   unsigned crc = 0xFFFF;
   for (const std::uint8_t byte : bytes) {
@@ -111,7 +111,7 @@ TEST(DeviceFrame, ControllersAndRecordingsOfVersion1AreReadAndHaveNoIndexMarks) 
 TEST(Cobs, RoundTripsEveryLengthAndHoldsNoZeroBeforeItsEnd) {
   std::mt19937_64 random(44);
   for (std::size_t size = 0; size <= 254; ++size) {
-    for (const std::uint64_t zeros : {0U, 2U, 10U, 1000U}) {  // one byte in so many is 0
+    for (const std::uint64_t zeros : {0U, 2U, 10U, 1000U}) {  // one byte in this many is 0
       Octets plain(size);
       for (auto& b : plain) {
         b = static_cast<std::uint8_t>(zeros != 0 && random() % zeros == 0 ? 0 : 1 + random() % 255);
@@ -138,7 +138,7 @@ TEST(Cobs, GarbageStaysWithinItsBuffers) {
   for (int i = 0; i < 20'000; ++i) {
     Octets bytes(random() % 60);
     for (auto& b : bytes) b = static_cast<std::uint8_t>(random() % (i % 2 ? 256 : 8));
-    Octets out(random() % 50);  // exactly so large: the sanitizer sees a byte too far
+    Octets out(random() % 50);  // exact size: the sanitizer detects an overrun by one byte
     EXPECT_LE(cobs_decode(bytes.data(), bytes.size(), out.data(), out.size()), out.size());
   }
 }

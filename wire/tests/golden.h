@@ -1,4 +1,4 @@
-// The bytes of tests/samples.h's messages in hexadecimal.
+// The encoded bytes of the messages of tests/samples.h, in hexadecimal.
 #pragma once
 
 #include <map>

@@ -1,5 +1,5 @@
-// The bytes of every message, written down. Where one of these fails, peers of the version before
-// no longer understand this one: raise the message's version, then renew the constant.
+// The encoded bytes of every message. If one of these tests fails, peers of the previous version no
+// longer understand this one: increase the message's version, then update the constant.
 #include <gtest/gtest.h>
 
 #include <map>

@@ -66,7 +66,7 @@ TEST(Journal, ATickInWhichNothingChangesTakesTwoBytes) {
   EXPECT_EQ(out.size(), 8 + 3 + 64 * 2U);
 }
 
-// SF_TRUNCATED_EVERY=N: only every N-th, and those between two records.
+// SF_TRUNCATED_EVERY=N: only every N-th truncation, and those between two records.
 TEST(Journal, EveryTruncationGivesAllBeforeItAndSaysWhere) {
   const char* wanted = std::getenv("SF_TRUNCATED_EVERY");
   const std::size_t every = wanted != nullptr ? std::max(1, std::atoi(wanted)) : 1;
@@ -135,7 +135,7 @@ TEST(Journal, AReaderGoesOnWhenItsFileHasGrown) {
     std::size_t read = 0;
     while (const auto entry = reader.next()) {
       ASSERT_TRUE(samples::same(*entry, entries[read++]));
-      if (read % 7 == 0) reader = reader.over(whole);  // within a record of ticks, too
+      if (read % 7 == 0) reader = reader.over(whole);  // also within a record of ticks
       if (read % 7 == 3) break;
     }
     reader = reader.over(whole);
@@ -179,7 +179,7 @@ TEST(Journal, AHugeLengthIsRefusedWithoutReadingOn) {
 
 TEST(Journal, AFileOfAnotherReleaseIsToldByItsFormat) {
   samples::Bytes file = samples::encoded({JournalHeader{}});
-  file[8 + 5] = std::byte{1};  // the version, behind the record's head, kind and magic
+  file[8 + 5] = std::byte{1};  // the version, after the record's head, kind and magic
   const std::uint32_t crc = crc32(std::span(file).subspan(8));
   for (std::size_t i = 0; i < 4; ++i) file[4 + i] = static_cast<std::byte>(crc >> 8 * i);
   JournalReader reader(file);

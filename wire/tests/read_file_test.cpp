@@ -42,7 +42,7 @@ TEST(ReadFile, AMissingFileAndADirectoryAreNamedInTheError) {
   }
 }
 
-// As from a shell's <(command).
+// Like a shell's <(command).
 TEST(ReadFile, APipeIsReadToItsEnd) {
   std::array<int, 2> ends{};
   ASSERT_EQ(::pipe(ends.data()), 0);

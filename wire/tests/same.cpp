@@ -158,7 +158,7 @@ bool all_tied(const List& a, const List& b) {
   return std::ranges::equal(a, b, [](const auto& x, const auto& y) { return tied(x) == tied(y); });
 }
 
-// A list has no order of its own.
+// Compares the seats element by element: Seat has no operator==.
 struct TiedRoster {
   const Roster& roster;
   friend bool operator==(const TiedRoster& a, const TiedRoster& b) {

@@ -109,7 +109,7 @@ JournalRod random_rod(std::mt19937_64& random, const JournalRod& before) {
               static_cast<std::int32_t>(random()), static_cast<std::int32_t>(random()),
               random() % 2 == 0};
     case 1:
-    case 2: {  // a hand's small move
+    case 2: {  // a small motion of a hand
       JournalRod rod = before;
       rod.slide_100nm += rod.slide_100nm < 0 ? 312 : -417;
       rod.angle_urad += rod.angle_urad < 0 ? 12'000 : -9'000;

@@ -1,4 +1,4 @@
-// Messages that tests, benchmarks and the fuzz corpus share.
+// Messages shared by tests, benchmarks and the fuzz corpus.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ namespace wire::samples {
 
 using Bytes = std::vector<std::byte>;
 
-// Of each message one with every field set, and none at random: their bytes are golden.
+// One of each message with every field set and no random values: their bytes are golden.
 Snapshot snapshot();
 InputDatagram input();
 std::vector<std::pair<std::string, ControlMessage>> control();  // one of each kind, named
@@ -33,10 +33,10 @@ DeviceSettings device_settings();
 std::vector<std::pair<std::string, PhoneRequest>> phone_requests();  // one of each kind, named
 std::vector<std::pair<std::string, PhoneReply>> phone_replies();
 
-// Random within the ranges. full: every man and every event.
+// Random values within the ranges. full: every man and every event.
 Snapshot random_snapshot(std::mt19937_64& random, bool full);
-// Equal to the bit; but rotations with two equally large components may name either as the largest,
-// and then differ by a quantum.
+// Equal bit for bit, except rotations with two equally large components: either may be coded as the
+// largest, and then they differ by one quantum.
 bool same_but_for_ties(const Snapshot& a, const Snapshot& b);
 bool same(const InputDatagram& a, const InputDatagram& b);
 bool same(const ControlMessage& a, const ControlMessage& b);
@@ -45,9 +45,9 @@ bool same(const PhoneRequest& a, const PhoneRequest& b);
 bool same(const PhoneReply& a, const PhoneReply& b);
 
 InputDatagram random_input(std::mt19937_64& random);
-// 1 to kMaxCharacterCount of them, their numbers any bits.
+// 1 to kMaxCharacterCount characters, with arbitrary bits as numbers.
 std::vector<CharacterRecord> random_characters(std::mt19937_64& random);
-// A whole recording of so many ticks.
+// A complete recording of this many ticks.
 std::vector<JournalEntry> random_journal(std::mt19937_64& random, int ticks);
 
 Bytes encoded(const Snapshot& snapshot);
@@ -58,11 +58,11 @@ Bytes encoded(const PhoneRequest& request);
 Bytes encoded(const PhoneReply& reply);
 Bytes encoded(const DeviceFrame& frame);       // the plain frame
 Bytes encoded_cobs(const DeviceFrame& frame);  // as on a serial line
-Bytes encoded_version_1(DeviceFrame frame);    // the plain frame as it was, without index marks
+Bytes encoded_version_1(DeviceFrame frame);    // in the old format, without index marks
 Bytes encoded(const DeviceCommand& command);
 Bytes encoded(const DeviceSettings& settings);  // as a report
 
-// Puts the right CRC-32 at the end of a datagram, so that what lies under it is tested.
+// Writes the correct CRC-32 at the end of a datagram, so that the checks after it are tested.
 void reseal(Bytes& datagram);
 
 std::string hex(const Bytes& bytes);

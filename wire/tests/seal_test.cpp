@@ -84,7 +84,7 @@ TEST_F(Opening, AForgedFarFutureCounterMovesNothing) {
   EXPECT_EQ(open(sealed(11, text)), SealVerdict::good);
 }
 
-// A client that comes back to a multicast group is told the same key again.
+// A client that returns to a multicast group gets the same key again.
 TEST_F(Opening, WhatWasTakenStaysTakenWhenTheSameKeyIsUsedAgain) {
   ASSERT_EQ(open(sealed(10, text)), SealVerdict::good);
   opener.use(key_of(1), 7);
@@ -166,7 +166,7 @@ TEST(PasswordExchange, IsCPaceAsTheDraftsVectorsHaveIt) {
             "4674eb1f5686c078462bf83bec72e8743df440108e638f3526d9b90e85be096f");
   EXPECT_EQ(*key_a, *key_b);
 
-  // The draft's invalid shares: no group element, and the neutral one.
+  // The draft's invalid shares: not a group element, and the neutral element.
   ExchangeShare invalid;
   array("2b3c6b8c4f3800e7aef6864025b4ed79bd599117e427c41bd47d93d654b4a51c", invalid);
   EXPECT_FALSE(a.secret(invalid));

@@ -5,7 +5,7 @@
 namespace wire::samples {
 namespace {
 
-// fuzz_control takes the size of its chunks from the first byte.
+// fuzz_control takes its chunk size from the first byte.
 Bytes chunked(unsigned char chunk, const Bytes& stream) {
   Bytes bytes(stream.size() + 1);
   bytes[0] = static_cast<std::byte>(chunk);

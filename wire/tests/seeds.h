@@ -1,5 +1,5 @@
-// What the fuzz targets start from, kept in wire/fuzz/corpus/TARGET/NAME. wire_fuzz_corpus writes
-// them, a test compares them.
+// The seeds of the fuzz targets, stored in wire/fuzz/corpus/TARGET/NAME. wire_fuzz_corpus writes
+// them; a test compares them.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// The forms of what the server says.
+// The forms of the server's sentences.
 #include "wire/sentence.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ TEST(Sentence, HasItsWordsInTheirPlaces) {
             "the computer plays rods 3 for Bob");
 }
 
-// A client finds the words by their order; a form that is cut has lost what it says.
+// A client identifies the values by their order; a truncated form would lose some.
 TEST(Sentence, FormsHaveTheirPlacesInOrderAreDifferentAndFitIntoAText) {
   std::set<std::string_view> all;
   for (const std::string_view form : kSentences) {

@@ -16,7 +16,7 @@ namespace {
 using samples::Bytes;
 using samples::encoded;
 
-// Every index and every number is one that a receiver may use without looking again.
+// Every index and every number may be used by a receiver without further checks.
 void expect_valid(const Snapshot& s) {
   EXPECT_LT(s.layout, kLayoutCount);
   EXPECT_LT(s.screen, kScreenCount);
@@ -148,7 +148,7 @@ TEST(Snapshot, FitsTheDatagramWhateverItHolds) {
   std::printf("[   size   ] %zu bytes with %d men, 1 ball, %d rods and %d events; %zu with none\n",
               full, kMaxMen, kRods, kMaxEvents, empty);
   EXPECT_LE(full, kMaxDatagram);
-  // The size depends on nothing but the counts, and no count can be larger.
+  // The size depends only on the counts, and no count can be larger.
   EXPECT_EQ(full, max_bits(snapshot_layout()) / 8) << "7 bits of padding are counted in";
   Snapshot crowded = samples::random_snapshot(random, true);
   crowded.men.resize(1000, crowded.men[0]);
@@ -166,12 +166,12 @@ TEST(Snapshot, RoundTripKeepsIntegersAndLosesLessThanTheStatedBounds) {
     expect_same_integers(sent, received);
     widen(worst, sent, received);
   }
-  // Half a step each, and what a float adds. Measured values beside the bounds.
+  // Bounds: half a step each, plus the rounding of a float. Measured values beside the bounds.
   EXPECT_LE(worst.position, 7.8e-6);     // 7.63e-6 m
   EXPECT_LE(worst.velocity, 9.9e-4);     // 9.77e-4 m/s
   EXPECT_LE(worst.man_spin, 3.95e-3);    // 3.91e-3 rad/s
   EXPECT_LE(worst.ball_spin, 0.0314);    // 0.0312 rad/s
-  EXPECT_LE(worst.orientation, 1.5e-4);  // 1.21e-4 rad; the bound is that of four equal parts
+  EXPECT_LE(worst.orientation, 1.5e-4);  // 1.21e-4 rad; bound for four equal components
   EXPECT_LE(worst.slide, 2.0e-6);        // 1.91e-6 m, of the 0.5 mm allowed at the cabinet
   EXPECT_LE(worst.angle, 8.0e-5);        // 6.11e-5 rad, of the 1 degree (0.017) allowed
   EXPECT_LE(worst.seconds, 4.9e-4);      // 4.88e-4 s
@@ -303,7 +303,7 @@ TEST(Snapshot, EverySingleBitFlipIsRefused) {
   EXPECT_TRUE(decode_snapshot(bytes, received));
 }
 
-// What a forger could do who knows the checksum.
+// A forger who knows the checksum.
 TEST(Snapshot, AFlipUnderARightChecksumIsRefusedOrGivesValidValues) {
   std::mt19937_64 random(6);
   const Bytes whole = encoded(samples::random_snapshot(random, true));
@@ -324,8 +324,8 @@ TEST(Snapshot, AFlipUnderARightChecksumIsRefusedOrGivesValidValues) {
 
 TEST(Snapshot, AnAbsurdCountIsRefused) {
   Bytes bytes = encoded(Snapshot{});
-  // Nothing but zeros and the two counts stands before the checksum: find the count of men by what
-  // one man changes.
+  // Before the checksum there are only zeros and the two counts: finds the count of men by the
+  // change that one man causes.
   Snapshot one;
   one.men.resize(1);
   const Bytes other = encoded(one);
@@ -342,7 +342,7 @@ TEST(Snapshot, AnAbsurdCountIsRefused) {
   EXPECT_LE(received.men.size(), static_cast<std::size_t>(kMaxMen));
 }
 
-// Of simulated time, tick * tick_us, a receiver computes differences in 64 bits.
+// A receiver computes differences of simulated time, tick * tick_us, in 64 bits.
 TEST(Snapshot, ATickWhoseTimeWouldNotFitIsRefusedAndNeverSent) {
   Snapshot s = samples::snapshot(), decoded;
   s.tick = kMaxTick;
@@ -365,7 +365,7 @@ TEST(Snapshot, TrailingBytesAreRefused) {
   EXPECT_FALSE(decode_snapshot(bytes, received));
   samples::reseal(bytes);
   EXPECT_FALSE(decode_snapshot(bytes, received));
-  bytes.resize(65507);  // the largest UDP datagram there is
+  bytes.resize(65507);  // max size of a UDP datagram
   EXPECT_FALSE(decode_snapshot(bytes, received));
 }
 

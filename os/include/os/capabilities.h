@@ -1,11 +1,11 @@
-// Rights that a process was started with and needs no more.
+// Drops privileges that a process no longer needs.
 #pragma once
 
 namespace os {
 
-// Gives up, for the calling thread and those that it makes from now on, every capability, and the
-// chance to gain any by starting another program. keep_file_access: root may still write where it
-// could (a file at the end of a run). False if the kernel refuses.
+// Drops every capability of the calling thread and of the threads it creates from now on, and the
+// ability to gain any by executing another program. keep_file_access: root keeps its write access
+// to files (a file at the end of a run). Returns false if the kernel refuses.
 bool drop_capabilities(bool keep_file_access);
 
 }  // namespace os

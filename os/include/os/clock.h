@@ -1,5 +1,5 @@
-// The clocks for the edges that live in real time. The monotonic one begins at some moment of the
-// past.
+// Clocks for the parts of the program that run in real time. The epoch of the monotonic clock is
+// unspecified.
 #pragma once
 
 #include <time.h>
@@ -18,15 +18,15 @@ inline std::int64_t monotonic_us() {
   return monotonic_ns() / 1000;
 }
 
-// Processor time that this thread has used: what other processes take does not count.
+// Processor time used by this thread: time used by other processes does not count.
 inline std::int64_t thread_ns() {
   timespec used{};
   ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &used);
   return used.tv_sec * std::int64_t{1'000'000'000} + used.tv_nsec;
 }
 
-// 0, or why it returned early: EINTR, a signal came; else the kernel refuses to wait, and returned
-// at once.
+// Returns 0 after the sleep. EINTR: a signal ended it early. Another errno: the kernel cannot wait,
+// and the call returned at once.
 inline int sleep_until_ns(std::int64_t deadline_ns) {
   timespec until{};
   until.tv_sec = static_cast<time_t>(deadline_ns / 1'000'000'000);

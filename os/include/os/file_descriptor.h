@@ -23,7 +23,7 @@ class FileDescriptor {
   int get() const { return fd_; }
   explicit operator bool() const { return fd_ >= 0; }
   void reset() { *this = FileDescriptor(); }
-  // The caller's from now on.
+  // The caller owns the descriptor from now on.
   int release() { return std::exchange(fd_, -1); }
 
  private:

@@ -1,5 +1,5 @@
-// Wakes a thread that waits, as often as it was posted. post() never waits and takes no memory: a
-// real-time thread may call it.
+// Wakes a waiting thread once per post(). post() never blocks and never allocates: a real-time
+// thread may call it.
 #pragma once
 
 #include <semaphore.h>
@@ -14,7 +14,7 @@ class ThreadSignal {
   ThreadSignal& operator=(const ThreadSignal&) = delete;
 
   void post() { ::sem_post(&semaphore_); }
-  // May return early: when a signal comes. Look whether there is anything to do.
+  // May return early, when a signal arrives. The caller must check whether there is work.
   void wait() { ::sem_wait(&semaphore_); }
 
  private:

@@ -1,4 +1,4 @@
-// Where a person's files are, as the XDG base directories have it; empty: there is no home.
+// The folders of a user's files, by the XDG base directory specification; empty without a home.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
-// A ring of bytes between one writing and one reading thread, without locks. A write is taken whole
-// or not at all, and becomes visible whole.
+// Lock-free byte ring for one writer thread and one reader thread. A write is atomic: it stores all
+// bytes or none, and the reader sees all of them at once.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@ class ByteRing {
  public:
   explicit ByteRing(std::size_t capacity) : bytes_(capacity) {}
 
-  // Writer. False when it does not fit: nothing is taken.
+  // Writer. Returns false, and stores nothing, if the bytes do not fit.
   bool write(std::span<const std::byte> in) {
     const std::size_t tail = tail_.load(std::memory_order_relaxed);
     if (in.size() > bytes_.size() - (tail - head_.load(std::memory_order_acquire))) return false;
@@ -27,7 +27,8 @@ class ByteRing {
     return true;
   }
 
-  // Reader. What lies there in one piece; empty when there is nothing. Valid until consume().
+  // Reader. The readable bytes up to the end of the ring, in one piece; empty if there are none.
+  // Valid until consume().
   std::span<const std::byte> peek() const {
     const std::size_t head = head_.load(std::memory_order_relaxed);
     const std::size_t size = tail_.load(std::memory_order_acquire) - head;

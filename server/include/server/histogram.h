@@ -1,6 +1,6 @@
-// Fixed histogram of durations, log-linear like HdrHistogram: 32 steps an octave, so that a
-// quantile is at most 1/32 (3.2%) above the true value, from 1 ns to 2^40 ns (18 minutes). No
-// allocation; one writer, read by the same thread.
+// Fixed-size histogram of durations, log-linear like HdrHistogram: 32 buckets per octave, from 1 ns
+// to 2^40 ns (18 minutes). A quantile is at most 1/32 (3.2%) above the true value. No allocation.
+// Single-threaded: the same thread writes and reads.
 #pragma once
 
 #include <array>
@@ -10,10 +10,10 @@ namespace server {
 
 class Histogram {
  public:
-  void record(std::int64_t value_ns);  // negative counts as 0, beyond the range as its end
+  void record(std::int64_t value_ns);  // negative: counts as 0; beyond the range: last bucket
 
-  // The smallest bucket's upper end below or at which at least the share q of the values lie; never
-  // above max(). 0 when empty. 0 <= q <= 1.
+  // Upper end of the first bucket at which the cumulative fraction of values reaches q; never above
+  // max(). 0 when empty. Precondition: 0 <= q <= 1.
   std::int64_t quantile(double q) const;
   std::int64_t max() const { return max_; }
   std::uint64_t count() const { return count_; }
@@ -22,7 +22,7 @@ class Histogram {
   }
 
  private:
-  static constexpr int kStepBits = 5;  // 2^5 steps an octave
+  static constexpr int kStepBits = 5;  // 2^5 buckets per octave
   static constexpr int kValueBits = 40;
   static constexpr int kBuckets = ((kValueBits - kStepBits) + 1) << kStepBits;
 

@@ -1,5 +1,5 @@
-// How server_core tells a person something: it is handed this, and never writes to a stream itself.
-// Called from the control and the journal thread too; never from within a tick.
+// Log callback of server_core, which never writes to a stream itself. The control and the journal
+// thread call it too. It is never called from within a tick.
 #pragma once
 
 #include <functional>

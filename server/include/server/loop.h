@@ -1,8 +1,9 @@
-// The 1 kHz loop: absolute deadlines on the monotonic clock, real-time rights where they are given.
+// The 1 kHz loop: absolute deadlines on the monotonic clock, with real-time scheduling where
+// permitted.
 //
-// A late tick does not shift the ones after it. Whole periods that pass while a tick overruns are
-// counted as missed and left out, so that the phase stays; the match is then behind the clock by
-// them, and no tick is ever stepped twice or longer.
+// A late tick does not shift the following ticks. Full periods that pass while a tick overruns are
+// counted as missed and skipped, so that the phase stays the same. The match then lags the clock by
+// the missed periods. A tick is never repeated and never longer than one period.
 #pragma once
 
 #include <cstdint>
@@ -14,29 +15,30 @@
 namespace server {
 
 struct LoopOptions {
-  bool paced = true;      // false: as fast as it goes, for --fast
-  bool real_time = true;  // ask for SCHED_FIFO and locked memory
-  // Above the desktop and all that has no real-time priority, below the kernel's own threads that
-  // carry the network and the timers (50 and 99 by default: hence between).
+  bool paced = true;      // false: as fast as possible, for --fast
+  bool real_time = true;  // request SCHED_FIFO and locked memory
+  // Above the desktop and everything without real-time priority; below the kernel threads that
+  // handle the network and the timers (50 and 99 by default: hence a value between them).
   int priority = 60;
   int cpu = -1;  // pin to this core; -1: any
-  // Then give up the capabilities that it was started with, all but root's access to files.
+  // Afterwards drop the capabilities of the process, except root's access to files.
   bool drop_rights = false;
 };
 
-// What the loop asks the time of and sleeps by. A test hands in one of its own.
+// The loop's clock: time and sleep. A test supplies its own.
 class LoopClock {
  public:
   virtual ~LoopClock() = default;
-  virtual std::int64_t now_ns() = 0;  // does not fall
-  // 0, or an errno: EINTR where a signal ended it early, else it cannot wait at all.
+  virtual std::int64_t now_ns() = 0;  // never decreases
+  // Returns 0 or an errno. EINTR: a signal ended the sleep early; otherwise sleeping is not
+  // possible.
   virtual int sleep_until(std::int64_t deadline_ns) = 0;
 };
 LoopClock& monotonic_clock();
 
 struct LoopStats {
-  Histogram lateness;  // of the wake-up behind its deadline [ns]
-  Histogram cost;      // of one tick, from the wake-up to all but the next sleep [ns]
+  Histogram lateness;  // of the wake-up after its deadline [ns]
+  Histogram cost;      // of one tick, from the wake-up until just before the next sleep [ns]
   std::uint64_t ticks = 0;
   std::uint64_t missed = 0;
   double seconds = 0.0;  // from the first to the last tick
@@ -53,8 +55,9 @@ class TickLoop {
 
   TickLoop(const LoopOptions& options, Log log, LoopClock& clock = monotonic_clock());
 
-  // Calls tick(now_us, stats so far) once a period until it returns false. The calling thread gets
-  // the rights; each that is refused is said in the log, and the loop runs all the same.
+  // Calls tick(now_us, statistics so far) once per period until it returns false. The calling
+  // thread gets the real-time scheduling. If a right is denied, the log reports it and the loop
+  // runs anyway.
   void run(const std::function<bool(std::int64_t now_us, const LoopStats&)>& tick);
 
   const LoopStats& stats() const { return stats_; }

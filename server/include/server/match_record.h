@@ -1,4 +1,4 @@
-// Between a match and what is written about it: rod targets and descriptions, there and back.
+// Conversions between a match and its journal: rod targets and descriptions, in both directions.
 #pragma once
 
 #include "cabinet/rod_input.h"
@@ -7,13 +7,13 @@
 
 namespace server {
 
-// The one way of a target into the simulation: through the journal's grid, so that live play and
-// replay feed it the same bits. Only a live rod follows its target; the others hold.
+// Every rod target enters the simulation through the journal's grid, so that live play and a replay
+// use the same bits. Only a live rod follows its target; the others hold their position.
 wire::JournalRod to_grid(const cabinet::RodInput& input);
 wire::JournalRod to_grid(const foosball::RodTarget& target);
 foosball::RodTarget from_grid(const wire::JournalRod& rod);
 
-// A match is always made from its journal header, for the same reason.
+// For the same reason, a match is always made from its journal header.
 wire::JournalHeader to_header(const foosball::MatchDesc& match);
 foosball::MatchDesc from_header(const wire::JournalHeader& header);
 

@@ -1,6 +1,6 @@
-// How a match stands, for lists of recordings: the score of the last match in which a goal fell,
-// who played, and how many matches were won. Several matches follow one another in a recording, and
-// each begins at 0 : 0, which tells nothing of the one before.
+// The standing of a match, for lists of recordings: the score of the last match with a goal, who
+// played, and how many matches were won. A recording can hold several matches. Each starts at 0 :
+// 0, which would hide the result of the match before it.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace server {
 
 class MatchStanding {
  public:
-  // After each tick. Takes no memory.
+  // Call after each tick. Does not allocate.
   void observe(const foosball::Match& match) {
     const foosball::MatchView& view = match.view();
     for (const foosball::Event& event : match.events())

@@ -1,4 +1,4 @@
-// What is kept of a match's statistics: of what an observer has counted, what came since.
+// Statistics of one match, as stored in the results: the difference of an observer's counts.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@ namespace server {
 
 std::array<results::TeamStatistics, foosball::kTeams> statistics_of_teams(
     const foosball::Statistics& before, const foosball::Statistics& now);
-// None, if nobody shot. To a bin's width, 0.1 m/s.
+// None if nobody shot. Resolution: the width of a bin, 0.1 m/s.
 std::optional<results::ShotSpeeds> shot_speeds(const foosball::Statistics& before,
                                                const foosball::Statistics& now);
 

@@ -1,4 +1,4 @@
-// Checks of values on the command line, for CLI11's check(): empty, or what is wrong with the text.
+// Validators of command-line values, for CLI11's check(): empty, or an error message.
 #pragma once
 
 #include <cstdint>
@@ -7,12 +7,12 @@
 
 namespace server {
 
-// A whole number of digits alone, which fits: CLI11 takes -1 and what is too large for the
-// greatest.
+// A non-negative integer, digits only, that fits the type. CLI11 instead accepts -1, and takes a
+// number that is too large for the maximum.
 std::optional<std::uint64_t> parse_seed(const std::string& text);
 std::string check_seed(const std::string& text);
 
-// Beside CLI::Range(), which lets "nan" through.
+// In addition to CLI::Range(), which accepts "nan".
 std::string check_not_nan(const std::string& text);
 
 }  // namespace server

@@ -1,5 +1,5 @@
-// A recorded match, read tick by tick, and the referee over its replay: the state hashes, keyframes
-// and the end that the journal holds must be those of the match that was stepped with its inputs.
+// Reads a recorded match tick by tick and validates its replay. The journal's state hashes,
+// keyframes and end must equal those of the match that is stepped with the journal's inputs.
 #pragma once
 
 #include <cstdint>
@@ -18,29 +18,29 @@ namespace server {
 class Playback {
  public:
   enum class Verdict {
-    same,       // every hash agreed, to the recorded end
-    so_far,     // every hash agreed, but the replay was left before the recording's end
-    cut_short,  // every hash agreed, but the recording stops without its end
-    differs,    // a hash did not agree: this build does not play the match as it was played
+    same,       // every hash matched, up to the recorded end
+    so_far,     // every hash matched, but the replay stopped before the recording's end
+    cut_short,  // every hash matched, but the recording has no end record
+    differs,    // a hash did not match: this build does not reproduce the match
   };
 
-  // Reads the file; the error is a sentence that names it. Refused: what cannot be read, does not
-  // begin with the header of a match that can be played, or holds no tick of it.
+  // Reads the file. The error is a sentence that names it. Errors: the file cannot be read, does
+  // not begin with the header of a playable match, or holds no tick.
   static tl::expected<std::unique_ptr<Playback>, std::string> open(const std::string& path);
   static tl::expected<std::unique_ptr<Playback>, std::string> from_bytes(
       std::vector<std::byte> file, const std::string& name);
 
   const foosball::MatchDesc& match() const { return match_; }
 
-  using Bytes = std::shared_ptr<const std::vector<std::byte>>;  // of a whole file
+  using Bytes = std::shared_ptr<const std::vector<std::byte>>;  // of a complete file
   const Bytes& bytes() const { return file_; }
-  // Another reader of the same bytes, from their beginning.
+  // Another reader of the same bytes, at their beginning.
   std::unique_ptr<Playback> twin() const;
-  // The file has grown: goes on in the longer one. Precondition: it begins with bytes().
+  // Continues in a longer version of the file. Precondition: it begins with bytes().
   void extend(Bytes longer);
 
-  // How far it has been read: to go back there with a match that is restored to the same tick. A
-  // place is good for the playback it came from and its twins, whichever of them were extended.
+  // A position in the recording. Use it to go back there with a match restored to the same tick.
+  // Valid for the playback that made it and for its twins, even if some of them were extended.
   struct Place {
     Bytes file;
     wire::JournalReader reader;
@@ -53,13 +53,14 @@ class Playback {
   }
   void go_to(const Place& place);
 
-  // Checks what the journal says about the match as it stands, then gives the inputs of its next
-  // tick; nothing at the end. The match must have been stepped with every tick given before.
+  // Checks the match against the journal's hashes and keyframes, then returns the inputs of its
+  // next tick; null at the end. Precondition: the match was stepped with every tick returned
+  // before.
   const wire::JournalTick* next(const foosball::Match& match);
 
   Verdict verdict() const;
   std::string verdict_sentence() const;
-  std::uint64_t ticks() const { return ticks_; }  // given so far
+  std::uint64_t ticks() const { return ticks_; }  // returned so far
   std::uint64_t total_ticks() const;              // of the recording; reads the rest of it
   std::uint64_t hashes_checked() const { return checked_; }
 
@@ -78,14 +79,14 @@ class Playback {
   std::vector<std::byte> scratch_;
   std::uint64_t ticks_ = 0, checked_ = 0;
   std::optional<std::uint64_t> first_difference_;  // ticks stepped
-  bool ended_ = false;                             // the recorded end was seen
+  bool ended_ = false;                             // the recorded end was read
   bool exhausted_ = false;                         // nothing more can be read
 };
 
-// What a program that replays ends with: 0, 1 or 4 (server/exit_code.h).
+// Exit code of a program that replays: 0, 1 or 4 (server/exit_code.h).
 int exit_code(Playback::Verdict verdict);
 
-// Steps the match with one journaled tick: the only way in which a replay steps.
+// Steps the match with one recorded tick. Every replay steps with this function.
 void step_recorded(foosball::Match& match, const wire::JournalTick& tick);
 
 }  // namespace server

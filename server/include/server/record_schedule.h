@@ -1,6 +1,6 @@
-// What goes into a match's journal, and when: the header, every tick's inputs, a hash and how the
-// match stands each second, a keyframe every 10 s, the end. Where it goes is the sink's affair: a
-// file of the server, or memory.
+// Defines what a match's journal holds, and when: the header, the inputs of every tick, a hash and
+// the standing each second, a keyframe every 10 s, the end. The sink decides where it goes: to a
+// file of the server, or to memory.
 #pragma once
 
 #include "foosball/match.h"
@@ -22,7 +22,7 @@ class RecordSchedule {
     sink_.add(header);
   }
 
-  // After the match was stepped with the tick.
+  // Call after the match was stepped with the tick.
   void add(const wire::JournalTick& tick, const foosball::Match& match) {
     std::get<wire::JournalTick>(tick_entry_) = tick;
     sink_.add(tick_entry_);
@@ -49,7 +49,7 @@ class RecordSchedule {
   Sink& sink_;
   std::uint64_t ticks_ = 0;
   MatchStanding standing_;
-  // Kept from tick to tick for their memory.
+  // Reused for their memory.
   wire::JournalEntry tick_entry_{wire::JournalTick{}};
   wire::JournalEntry keyframe_entry_{wire::JournalKeyframe{}};
 };

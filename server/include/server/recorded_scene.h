@@ -1,6 +1,5 @@
-// A recorded match as what a renderer sees of it, without sockets and without a clock: tick by
-// tick, as fast as it is asked for. For programs that draw a recording, such as
-// space-foosball-video.
+// A recorded match as a renderer sees it, without sockets and without a clock: tick by tick, as
+// fast as requested. For programs that draw a recording, such as space-foosball-video.
 #pragma once
 
 #include <cstdint>
@@ -18,14 +17,14 @@ namespace server {
 
 class RecordedScene {
  public:
-  // The error is a sentence that names the file: see Playback::open.
+  // The error is a sentence that names the file; see Playback::open.
   static tl::expected<RecordedScene, std::string> open(const std::string& path);
 
   // Another scene of the same recording, at its beginning; shares the bytes.
   tl::expected<RecordedScene, std::string> twin() const;
 
-  // Where the recording was: the match and how far the recording was read, about 10 kB. Good for
-  // this scene and its twins.
+  // A checkpoint: the match and the position in the recording, about 10 kB. Valid for this scene
+  // and its twins.
   struct Mark {
     Playback::Place place;
     std::vector<std::byte> match;
@@ -34,22 +33,22 @@ class RecordedScene {
     std::uint32_t last_event;
   };
   Mark mark() const;
-  // False, and nothing has changed, if the match does not come out with the mark's hash. Events
-  // that wait are dropped.
+  // Returns false, and changes nothing, if the restored match does not have the mark's hash. Drops
+  // pending events.
   bool go_to(const Mark& mark);
 
-  // Steps the match until so many ticks of the recording are played; false when it is over before.
+  // Steps the match until this many ticks of the recording are played; false if it ends before.
   bool advance_to(std::uint64_t tick);
 
-  // The scene after the last tick. Its events are all that happened since take_events() was last
-  // called, each once; there may be more than one datagram holds.
+  // The scene after the last tick. Its events are all events since the last take_events(), each
+  // once; there may be more than fit into one datagram.
   const wire::Snapshot& snapshot() const { return snapshot_; }
   std::vector<wire::EventSnapshot> take_events();
 
   std::uint64_t ticks() const { return playback_->ticks(); }
   std::uint64_t total_ticks() const { return total_ticks_; }  // of the recording
-  // The file has grown: see Playback::extend. total_ticks: of a twin that was extended by the same
-  // bytes; none: they are counted here.
+  // The file has grown; see Playback::extend. total_ticks: of a twin that was extended by the same
+  // bytes; none: this function counts them.
   void extend(Playback::Bytes longer, std::optional<std::uint64_t> total_ticks = {});
   const foosball::Characters& characters() const { return playback_->match().characters; }
   const Playback& playback() const { return *playback_; }

@@ -1,4 +1,4 @@
-// What a run was like: for a person to read, and as a file of figures.
+// The results of a run: a summary to read, and a file of statistics.
 #pragma once
 
 #include <string>
@@ -9,16 +9,17 @@
 
 namespace server {
 
-// Preconditions of both: Server::finish() was called.
+// Precondition of both: Server::finish() was called.
 std::string summary(const Server& server, const LoopStats& loop);
 
-// A flat JSON object, or for a name that ends in .csv two columns, name and value. The error is a
+// Writes a flat JSON object; if the name ends in .csv, two columns, name and value. The error is a
 // sentence.
 tl::expected<void, std::string> write_stats(const Server& server, const LoopStats& loop,
                                             const std::string& path);
 
-// Writes the file under another name first, so that whoever waits for it never sees half of it.
-// can_write_whole: whether that would work, said before a run whose figures would be lost.
+// write_whole writes the file under a temporary name and renames it, so that a waiting reader never
+// sees a partial file. can_write_whole checks before a run that this would work, since a failure
+// afterwards would lose the statistics.
 tl::expected<void, std::string> can_write_whole(const std::string& path);
 tl::expected<void, std::string> write_whole(const std::string& path, const std::string& text);
 

@@ -1,4 +1,4 @@
-// A server on its loop until there is a reason to end.
+// Runs a server on its loop until a reason to end.
 #pragma once
 
 #include <atomic>
@@ -15,12 +15,11 @@ struct RunOptions {
   bool exit_when_empty = false;  // when the last client that joined has left
 };
 
-// Why a run ended.
+// The reason why a run ended.
 enum class RunEnd : std::uint8_t { stopped, time_over, empty, replay_over };
 wire::Sentence to_sentence(RunEnd end);
 
-// Watches for overload on the way: clients are told while more than 5% of a second's ticks are
-// missed.
+// Also detects overload: clients get a notice while more than 5% of a second's ticks are missed.
 RunEnd run(Server& server, TickLoop& loop, const RunOptions& options,
            const std::atomic<bool>& stop);
 

@@ -1,10 +1,10 @@
-// The physics server without its clock: sources and clients in, one step of the match, journal and
-// snapshots out. tick() is called by the loop (server/loop.h) 1000 times a second, or by a test in
-// lockstep: the number of ticks never depends on a clock.
+// The physics server without its clock. Inputs: sources and clients. Outputs: one step of the
+// match, journal and snapshots. The loop (server/loop.h) calls tick() 1000 times a second; a test
+// calls it in lockstep. The number of ticks never depends on a clock.
 //
-// Threads: all is called on one thread, the tick's. The control port, the sending of snapshots and
-// the journal have threads of their own inside; tick() never waits for them, for a socket or for
-// the disk.
+// Threads: all functions are called on one thread, the tick thread. The control port, the sending
+// of snapshots and the journal have their own threads inside. tick() never waits for them, for a
+// socket or for the disk.
 #pragma once
 
 #include <array>
@@ -30,36 +30,35 @@ namespace server {
 struct ServerOptions {
   foosball::MatchDesc match;
   std::array<bool, foosball::kTeams> computer{};  // plays the team while no client has it
-  bool cabinet = false;                           // stands here, whose players can change sides
-  bool computer_fills = false;  // ... and its rods that nobody has while people have the others
-  // At the start; clients may choose another. The ladder and the challenge have their own.
+  bool cabinet = false;         // the server stands in a cabinet, whose players can change sides
+  bool computer_fills = false;  // ... and its unassigned rods while people play the other ones
+  // At the start; clients may choose another. The ladder and the challenge define their own.
   foosball::PlayerSpec computer_player{};
   NetworkOptions network;
   AccessOptions access;
   ControlLimits limits;
   PhoneOptions phones;
-  bool haptics =
-      true;  // hands of cabinets and phones feel hits; clients have a switch of their own
-  std::uint64_t session = 0;              // random, other at every start
-  std::function<std::uint64_t()> random;  // for the clients' tokens; any thread
+  bool haptics = true;        // haptics for cabinets and phones; clients have their own switch
+  std::uint64_t session = 0;  // random, different at every start
+  std::function<std::uint64_t()> random;  // for the clients' tokens; called from any thread
   std::string record;                     // a file, or empty
-  bool overwrite = false;                 // the recording that is there already
-  // Recorded without being asked: play goes on whatever becomes of the file, which is removed in
-  // the end if nobody has played; it has at most so many bytes. 0: asked for.
+  bool overwrite = false;                 // of an existing recording
+  // Automatic recording, at most this many bytes. Play goes on if the file fails, and the file is
+  // removed at the end if nobody has played. 0: the recording was requested.
   std::uint64_t record_by_default_bytes = 0;
-  // A file of results (results/store.h) to which every match that was won or drawn is added, or
-  // empty. Not of a replay.
+  // A results file (results/store.h) to which every match that is won or drawn is added, or empty.
+  // Not used for a replay.
   std::string results;
-  // What date it is, as 2026-11-22T23:59:59Z, for results and for the challenge of the day; any
-  // thread. None: then there are neither.
+  // The current date, as 2026-11-22T23:59:59Z, for results and for the challenge of the day; called
+  // from any thread. None: neither exists.
   std::function<std::string()> date;
-  // The day of the challenge, such as 20261122, whatever date it is; 0: it is that of the date,
-  // from midnight on that of the next.
+  // The day of the challenge, such as 20261122, overriding the date. 0: the day of the date, which
+  // changes at midnight.
   std::uint32_t challenge_date = 0;
-  bool questionnaire = true;  // with results: asks who has played, after each match
-  bool await_client = false;  // the first tick is when the first client has joined
-  int send_priority = 0;      // real-time, of the thread that sends snapshots; 0: an ordinary one
-  std::unique_ptr<Playback> replay;  // plays this instead of what sources and clients say
+  bool questionnaire = true;         // with results: ask the players after each match
+  bool await_client = false;         // the first tick waits until the first client has joined
+  int send_priority = 0;             // real-time, of the snapshot sender thread; 0: not real-time
+  std::unique_ptr<Playback> replay;  // plays this instead of the inputs of sources and clients
   Log log = [](LogLevel, const std::string&) {};
 };
 
@@ -72,22 +71,22 @@ struct StartError {
 class Server {
  public:
   static tl::expected<std::unique_ptr<Server>, StartError> create(ServerOptions options);
-  ~Server();  // as finish(), if that was not called
+  ~Server();  // calls finish() if it was not called
 
-  // Precondition: before the first tick. It takes memory, and rods would change hands.
+  // Precondition: before the first tick. It allocates, and it would reassign rods.
   void add_device(std::unique_ptr<cabinet::Device> device);
 
-  // The motors of the cabinet's rods: gets the pulses of those that a device has, from tick().
+  // The motors of the cabinet's rods. tick() sends them the pulses for rods that a device has.
   // Precondition: before the first tick.
   void set_cabinet_haptics(std::unique_ptr<cabinet::HapticSink> sink);
 
-  // One millisecond of the match. now_us: a monotonic clock, the one for devices and time stamps.
+  // Steps the match by one millisecond. now_us: a monotonic clock, for devices and time stamps.
   void tick(std::int64_t now_us);
 
-  // Until the kernel has every snapshot of the ticks so far. Not for the loop: for tests.
+  // Waits until the kernel has every snapshot of the ticks so far. For tests, not for the loop.
   void wait_sent();
 
-  // Something all clients should read; replaces the notice of the same topic.
+  // Shows a notice to all clients; replaces the notice of the same topic.
   enum class Topic : std::uint32_t {
     overload = 1,
     journal = 2,
@@ -99,22 +98,22 @@ class Server {
     not_counted = 8,
     waiting = 9,
     leavers = 10,
-    devices = 100,  // + the device's index, as the next
+    devices = 100,  // + the device's index, as for the next one
     saturation = 150
   };
   void warn(Topic topic, const wire::Sentence& text);
   void clear(Topic topic, const std::string& text);
 
-  // Says Bye to the clients and closes the journal and the results, waiting for them: up to 0.2 s,
-  // and for the disk, up to 4 s each.
+  // Sends Bye to the clients, then closes the journal and the results. Waits for them: up to 0.2 s
+  // for the clients, and up to 4 s for the disk in each case.
   void finish(const wire::Sentence& reason);
 
   std::uint16_t port() const;
-  std::string phones() const;  // where they join, http://HOST:PORT/TOKEN; empty: nowhere
+  std::string phones() const;  // where they join, http://HOST:PORT/TOKEN; empty: closed
   const foosball::Match& match() const;
-  bool replay_over() const;             // nothing more to play
+  bool replay_over() const;             // nothing left to play
   const Playback* replay() const;       // or null
-  int clients() const;                  // joined now, or expected back, as the last tick saw it
+  int clients() const;                  // joined now, or with a reserved seat, as of the last tick
   std::uint64_t clients_ever() const;   // joined so far
   std::uint64_t ticks() const;          // of the match
   std::string journal_problem() const;  // empty: none

@@ -1,5 +1,5 @@
-// A bounded queue between one writing and one reading thread, without locks: neither ever waits for
-// the other. Full and empty are answers, not errors.
+// Lock-free bounded queue for one writer thread and one reader thread. Neither waits for the other.
+// Full and empty are normal results, not errors.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ class SpscQueue {
   static_assert((kCapacity & (kCapacity - 1)) == 0, "a power of two");
 
  public:
-  // Writer. False when full: nothing is taken.
+  // Writer. Returns false, and stores nothing, when full.
   bool push(T value) {
     const std::size_t tail = tail_.load(std::memory_order_relaxed);
     if (tail - head_.load(std::memory_order_acquire) == kCapacity) return false;
@@ -23,7 +23,7 @@ class SpscQueue {
     return true;
   }
 
-  // Writer: places left, at least.
+  // Writer: free slots, a lower bound.
   std::size_t room() const {
     return kCapacity -
            (tail_.load(std::memory_order_relaxed) - head_.load(std::memory_order_acquire));
@@ -39,7 +39,7 @@ class SpscQueue {
   }
 
  private:
-  // On cache lines of their own, so that writer and reader do not pull one line to and fro.
+  // On separate cache lines, to avoid false sharing between writer and reader.
   alignas(64) std::atomic<std::size_t> head_{0};
   alignas(64) std::atomic<std::size_t> tail_{0};
   alignas(64) std::array<T, kCapacity> slots_{};

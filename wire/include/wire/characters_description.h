@@ -1,5 +1,5 @@
-// What a list of characters holds, once: part of the journal's header and of the control message
-// that a client gets. See wire/description.h for the vocabulary.
+// The only description of a list of characters: part of the journal's header and of the control
+// message to clients. wire/description.h defines its elements.
 #pragma once
 
 #include <cstdint>

@@ -1,13 +1,13 @@
-// The vocabulary in which messages are described. A description is a function template
+// The elements in which messages are described. A description is a function template
 //
 //   template <class Codec, class Message> void describe_x(Codec& codec, Message& message)
 //
-// that hands each field, with the data below, to a codec, in the order of the wire. The codecs are
-// an encoder and a decoder (src/codec.h) and a lister (src/layout.h), from whose list come the
-// layout hash and docs/protocol.md; a reader in another language would be generated from the same
-// list.
+// that passes each field, with the data below, to a codec, in wire order. The codecs are an encoder
+// and a decoder (src/codec.h), and a lister (src/layout.h). The lister's output defines the layout
+// hash and docs/protocol.md; a reader in another language could be generated from it.
 //
-// Bits are filled from the lowest of each byte, bytes in order: a field of up to 64 bits is little
+// Bit order: the lowest bit of each byte first, bytes in order. A field of up to 64 bits is
+// therefore little endian at any alignment.
 // endian wherever it happens to be aligned.
 #pragma once
 
@@ -15,7 +15,7 @@
 
 namespace wire {
 
-// Always this value; anything else is refused.
+// Always this value; any other value is rejected.
 struct Constant {
   const char* name;
   int bits;
@@ -23,7 +23,7 @@ struct Constant {
   const char* meaning;
 };
 
-// 32 bits: FNV-1a over the names, bits and ranges of the whole description.
+// 32 bits: FNV-1a over the names, bits and ranges of the complete description.
 struct LayoutHash {
   const char* name;
   const char* meaning;
@@ -43,9 +43,9 @@ struct Flag {
   const char* meaning;
 };
 
-// value = step * (code - zero). Signed: zero = 2^(bits-1) - 1 and the code of all ones is refused,
-// so that 0 is exact and the range symmetric. Unsigned: zero = 0. Steps are powers of two, so that
-// every language and compiler decodes to the same bits.
+// value = step * (code - zero). Signed: zero = 2^(bits-1) - 1, and the code with all bits set is
+// rejected, so that 0 is exact and the range is symmetric. Unsigned: zero = 0. Steps are powers of
+// two, so that every language and compiler decodes to the same bits.
 struct Fixed {
   const char* name;
   int bits;
@@ -64,8 +64,8 @@ struct Fixed {
   constexpr double high() const { return step * static_cast<double>(max_code() - zero()); }
 };
 
-// An angle [rad] in units of 1/65536 turn, modulo 2^bits units; decoded to the lap around 0. The
-// code is two's complement.
+// An angle [rad] in units of 1/65536 revolution, modulo 2^bits units, decoded to the interval
+// around 0. The code is two's complement.
 struct Wrapped {
   const char* name;
   int bits;
@@ -75,8 +75,9 @@ inline constexpr double kTurn = 6.283185307179586;       // [rad]
 inline constexpr double kWrappedStep = kTurn / 65536.0;  // [rad]
 
 // A unit quaternion: the index of its largest component (2 bits), then the three others in order as
-// signed codes of `bits` bits over +-1/sqrt(2), coded as Fixed is; the largest is made positive.
-// Refused where the largest, sqrt(1 - sum of squares), is not the largest by more than 3 steps.
+// signed codes of `bits` bits over +-1/sqrt(2), coded like Fixed. The largest component is made
+// positive. Rejected if the decoded largest component, sqrt(1 - sum of squares), is smaller than
+// another one by more than 3 steps.
 struct Rotation {
   const char* name;
   int bits;
@@ -86,8 +87,8 @@ struct Rotation {
   constexpr double step() const { return 0.7071067811865476 / static_cast<double>(zero()); }
 };
 
-// Groups of 7 bits, lowest first, each with a bit 7 that says "more"; 0..max. Over-long codings are
-// refused.
+// Groups of 7 bits, lowest first; bit 7 of each byte says that another follows. Range 0..max.
+// Over-long encodings are rejected.
 struct Varint {
   const char* name;
   std::uint64_t max;
@@ -95,7 +96,7 @@ struct Varint {
   const char* meaning;
 };
 
-// A signed number v, |v| <= limit, as the Varint of (v << 1) ^ (v >> 63).
+// A signed number v, |v| <= limit, encoded as the Varint of (v << 1) ^ (v >> 63).
 struct Delta {
   const char* name;
   std::int64_t limit;
@@ -103,13 +104,13 @@ struct Delta {
   const char* meaning;
 };
 
-// A fixed number of like elements, or one nested structure.
+// A fixed number of equal elements, or one nested structure.
 struct Group {
   const char* name;
   const char* meaning;
 };
 
-// A count of `bits` bits, 0..max, then so many elements.
+// A count of `bits` bits, 0..max, then that many elements.
 struct List {
   const char* name;
   int bits;
@@ -117,21 +118,21 @@ struct List {
   const char* meaning;
 };
 
-// A Varint length, then so many bytes.
+// A Varint length, then that many bytes.
 struct Bytes {
   const char* name;
   std::uint64_t max;
   const char* meaning;
 };
 
-// As Bytes: UTF-8 without control characters.
+// Like Bytes, holding UTF-8 without control characters.
 struct Text {
   const char* name;
   std::uint64_t max;
   const char* meaning;
 };
 
-// Zero bits up to the next byte, then the CRC-32 (as in zlib) of all bytes before it; nothing may
+// Zero bits up to the next byte, then the CRC-32 (as in zlib) of all bytes before it. No bytes may
 // follow.
 struct Checksum {
   const char* name;

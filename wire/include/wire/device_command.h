@@ -32,9 +32,9 @@ namespace wire {
 
 static const uint8_t kDeviceCommandVersion = 1;
 static const size_t kDeviceCommandBytes = 16;
-static const uint16_t kMaxPulseMs = 250;          // a motor that is not told anything stops by then
-static const uint8_t kMaxSensorResolution = 120;  // 12000 counts/inch, a PMW3360's most
-static const uint16_t kMinStickCounts = 64;       // fewer are a hand's trembling, no travel
+static const uint16_t kMaxPulseMs = 250;          // the motor stops by then without another command
+static const uint8_t kMaxSensorResolution = 120;  // 12000 counts/inch, the maximum of a PMW3360
+static const uint16_t kMinStickCounts = 64;       // fewer are hand tremor, not travel
 static const uint8_t kPulsesOff = 1, kGamepads = 2;          // bits of switches
 static const uint8_t kSlideReversed = 1, kSpinReversed = 2;  // bits of reversed
 
@@ -103,7 +103,7 @@ inline void encode_device_command(const DeviceCommand& command, uint8_t* out) {
   device_put16(out + 14, device_crc16(out, 14));
 }
 
-// False, and command untouched, unless size, version, CRC and all ranges hold.
+// Returns false, and leaves command unchanged, unless size, version, CRC and all ranges are valid.
 inline bool decode_device_command(const uint8_t* in, size_t size, DeviceCommand& command) {
   if (size != kDeviceCommandBytes || in[0] != kDeviceCommandVersion) return false;
   if (device_get16(in + 12) != 0 || device_get16(in + 14) != device_crc16(in, 14)) return false;

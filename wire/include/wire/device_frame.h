@@ -24,7 +24,7 @@ namespace wire {
 
 static const uint8_t kDeviceFrameVersion = 2;
 static const size_t kDeviceFrameBytes = 46;
-static const size_t kDeviceCobsBytes = 48;    // encoded, with the closing 0
+static const size_t kDeviceCobsBytes = 48;    // encoded, with the terminating 0
 static const size_t kDeviceReportBytes = 64;  // HID report
 static const int kDeviceRods = 8;
 
@@ -40,8 +40,8 @@ struct DeviceFrame {
   uint8_t index;
 };
 
-// Eight bits at once, in bytes only: 27 cycles a byte on an AVR, where a loop over the bits takes
-// 80 and 16-bit shifts 37; no table, which would take its memory.
+// Processes eight bits at once, with byte operations only: 27 cycles per byte on an AVR. A loop
+// over the bits takes 80, 16-bit shifts take 37. A table would use too much of its memory.
 inline uint16_t device_crc16(const uint8_t* bytes, size_t size) {
   uint8_t high = 0xFF, low = 0xFF;
   for (size_t i = 0; i < size; ++i) {
@@ -80,7 +80,8 @@ inline void encode_device_frame(const DeviceFrame& frame, uint8_t* out) {
   device_put16(out + 44, device_crc16(out, 44));
 }
 
-// False, and frame untouched, unless size, version, what the version has and CRC all hold.
+// Returns false, and leaves frame unchanged, unless size, version, the version's fields and CRC are
+// valid.
 inline bool decode_device_frame(const uint8_t* in, size_t size, DeviceFrame& frame) {
   if (size != kDeviceFrameBytes || in[0] < 1 || in[0] > kDeviceFrameVersion) return false;
   if (in[0] == 1 && in[43] != 0) return false;
@@ -99,7 +100,8 @@ inline bool decode_device_frame(const uint8_t* in, size_t size, DeviceFrame& fra
   return true;
 }
 
-// COBS of size <= 254 bytes, closed by a 0. Returns the bytes written: size + 2. out: size + 2.
+// COBS encoding of size <= 254 bytes, terminated by a 0. Returns the bytes written: size + 2. out:
+// size + 2.
 inline size_t cobs_encode(const uint8_t* in, size_t size, uint8_t* out) {
   size_t code_at = 0, written = 1;
   uint8_t code = 1;
@@ -118,8 +120,8 @@ inline size_t cobs_encode(const uint8_t* in, size_t size, uint8_t* out) {
   return written;
 }
 
-// in: one encoded frame without its closing 0. Returns the decoded size, or 0 if it is not COBS or
-// needs more than capacity bytes.
+// in: one encoded frame without its terminating 0. Returns the decoded size, or 0 if the input is
+// not COBS or needs more than capacity bytes.
 inline size_t cobs_decode(const uint8_t* in, size_t size, uint8_t* out, size_t capacity) {
   size_t written = 0, i = 0;
   while (i < size) {

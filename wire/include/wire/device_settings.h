@@ -33,11 +33,11 @@ static const uint8_t kDeviceSettingsReport = 0x81;
 static const uint8_t kHasSensors = 1, kCanBeGamepads = 2;  // bits of abilities
 
 struct StickScale {
-  uint16_t travel = 0, turn = 0;  // counts; 0: by the table's dimensions
+  uint16_t travel = 0, turn = 0;  // counts; 0: from the table's dimensions
 };
 
 struct DeviceSettings {
-  uint8_t resolution = 20;  // [100 counts/inch]: 78.7 counts/mm, which 16 bits hold for 0.4 m
+  uint8_t resolution = 20;  // [100 counts/inch]: 78.7 counts/mm; 16 bits hold 0.4 m
   uint8_t brightness = 64;
   uint8_t ps2 = 0;
   uint8_t switches = 0;
@@ -61,7 +61,8 @@ inline void encode_device_settings(const DeviceSettings& settings, uint8_t* out)
   out[39] = settings.spin_reversed;
 }
 
-// False, and settings untouched, unless version and ranges hold. in: kDeviceSettingsBytes.
+// Returns false, and leaves settings unchanged, unless version and ranges are valid. in:
+// kDeviceSettingsBytes.
 inline bool decode_device_settings(const uint8_t* in, DeviceSettings& settings) {
   if (in[0] != kDeviceSettingsVersion || in[5] != 0) return false;
   if (in[1] < 1 || in[1] > kMaxSensorResolution || in[4] > (kPulsesOff | kGamepads)) return false;
@@ -98,13 +99,14 @@ inline void encode_settings_report(const DeviceSettings& settings, uint8_t abili
   device_put16(out + 44, device_crc16(out, 44));
 }
 
-// It is one, of this version or of another.
+// True for a settings report of any version.
 inline bool is_settings_report(const uint8_t* in, size_t size) {
   return size == kDeviceFrameBytes && in[0] == kDeviceSettingsReport &&
          device_get16(in + 44) == device_crc16(in, 44);
 }
 
-// False, and out untouched, unless size, kind, version, CRC and all ranges hold.
+// Returns false, and leaves out unchanged, unless size, kind, version, CRC and all ranges are
+// valid.
 inline bool decode_settings_report(const uint8_t* in, size_t size, SettingsReport& out) {
   if (!is_settings_report(in, size) || in[1] > (kHasSensors | kCanBeGamepads)) return false;
   if (!decode_device_settings(in + 2, out.settings)) return false;

@@ -1,5 +1,5 @@
-// What the small numbers in the messages mean. wire knows neither foosball nor cabinet: the server,
-// which knows all three, asserts that every value agrees with theirs (server/src/match_record.cpp).
+// The enumerations of the messages. wire does not know foosball or cabinet. The server, which knows
+// all three, asserts that all values agree (server/src/match_record.cpp).
 #pragma once
 
 #include <cstdint>
@@ -39,7 +39,7 @@ enum class Foul : std::uint8_t {
   serve = 5,
 };
 
-// MatchRequest::kind and JournalCommand::kind; seat, touch and set_up come from the server alone.
+// MatchRequest::kind and JournalCommand::kind; only the server issues seat, touch and set_up.
 enum class RequestKind : std::uint8_t {
   push = 0,
   choose_character = 1,
@@ -53,12 +53,12 @@ enum class RequestKind : std::uint8_t {
   set_up = 9,
 };
 
-// Knock::role, Welcome::role, Seat::role: what a client may do. A host may do everything, a player
-// what concerns its team, and vote; a watcher looks on.
+// Knock::role, Welcome::role, Seat::role: the rights of a client. A host may do everything; a
+// player may change what concerns its team, and vote; a watcher may only watch.
 enum class Role : std::uint8_t { watcher = 0, player = 1, host = 2 };
 
-// DeviceReport::state: missing: not there; refused: there, but it cannot be opened; silent: open,
-// and nothing comes; garbled: no frame among what comes; over: a recording, at its end.
+// DeviceReport::state. missing: not present; refused: present, but cannot be opened; silent: open,
+// but sends nothing; garbled: sends data without a valid frame; over: a recording at its end.
 enum class DeviceState : std::uint8_t {
   missing = 0,
   refused = 1,
@@ -74,7 +74,7 @@ enum class RodStatus : std::uint8_t { absent = 0, live = 1, held = 2 };
 // RodSnapshot::source.
 enum class RodSource : std::uint8_t { none = 0, cabinet = 1, client = 2, computer = 3, replay = 4 };
 
-// The fields are bytes, since what was received is checked before it is believed.
+// The structs hold bytes, since received values are checked before use.
 template <class Enum>
 constexpr std::uint8_t number(Enum value) {
   return static_cast<std::uint8_t>(value);

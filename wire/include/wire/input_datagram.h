@@ -1,5 +1,5 @@
-// Rod positions from a client (mouse, keys, gamepad) to the server: one UDP datagram per change and
-// at least 20 a second. Absolute positions: a lost one loses nothing.
+// Rod positions from a client (mouse, keys, gamepad) to the server: one UDP datagram per change,
+// and at least 20 per second. Positions are absolute, so that a lost datagram loses no motion.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ inline constexpr std::size_t kMaxInputDatagram = 160;
 struct InputRod {
   bool driven = false;
   float slide = 0;                       // [m]
-  double angle = 0;                      // [rad], full turns count; wraps at 65536 turns
+  double angle = 0;                      // [rad], full revolutions count; wraps at 65536
   float slide_rate = 0, angle_rate = 0;  // [m/s], [rad/s]
 };
 
@@ -25,11 +25,11 @@ struct InputDatagram {
   std::array<InputRod, 8> rods{};
 };
 
-// Writes one datagram; returns its size, or 0 if out is smaller than that. Values out of a field's
-// range are clamped, those not finite are 0. out: kMaxInputDatagram bytes.
+// Writes one datagram. Returns its size, or 0 if out is too small. Clamps values to their field's
+// range; values that are not finite become 0. out: kMaxInputDatagram bytes.
 std::size_t encode_input(const InputDatagram& input, std::span<std::byte> out);
-// False unless magic, version, layout hash, every range, the exact length and the checksum hold;
-// input is then unspecified but valid.
+// Returns false unless magic, version, layout hash, every range, the exact length and the checksum
+// are valid; input is then unspecified but valid.
 bool decode_input(std::span<const std::byte> in, InputDatagram& input);
 
 std::uint32_t input_layout_hash();

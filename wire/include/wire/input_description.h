@@ -1,4 +1,4 @@
-// What an input datagram holds, once. See wire/description.h for the vocabulary.
+// The only description of an input datagram. wire/description.h defines its elements.
 #pragma once
 
 #include <limits>

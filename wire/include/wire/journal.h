@@ -1,9 +1,9 @@
-// The recording of a match: what went into every tick, so that foosball::Match replays it to the
+// The recording of a match: the inputs of every tick, from which foosball::Match replays it bit for
 // bit.
 //
 // A file is a sequence of records [u32 payload length][u32 CRC-32 of the payload][payload], little
-// endian, appended as play goes on; a reader stops at the first bad record and keeps all before it.
-// What a payload holds is described in wire/journal_description.h.
+// endian, appended during play. A reader stops at the first bad record and keeps all before it.
+// wire/journal_description.h describes the payloads.
 #pragma once
 
 #include <array>
@@ -21,13 +21,13 @@
 namespace wire {
 
 inline constexpr std::int64_t kJournalAngleLimit = 1'000'000'000'000'000;  // [urad], 1e9 rad
-inline constexpr int kJournalBatch = 64;                                   // ticks a record
-inline constexpr std::size_t kMaxJournalCommands = 64;                     // a tick
+inline constexpr int kJournalBatch = 64;                                   // max ticks per record
+inline constexpr std::size_t kMaxJournalCommands = 64;                     // per tick
 inline constexpr std::size_t kMaxKeyframe = 1 << 20;                       // bytes
 inline constexpr std::size_t kMaxJournalHeader = 8 * 1024;  // bytes, with all characters
 
-// A rod target on the grid of the journal. The simulation is only ever fed values that went through
-// this grid, so that live play and replay see the same numbers.
+// A rod target, quantised to the journal's grid. The simulation only receives values from this
+// grid, so that live play and replay use the same numbers.
 struct JournalRod {
   std::int32_t slide_100nm = 0;
   std::int64_t angle_urad = 0;
@@ -44,8 +44,8 @@ struct RodTargetValues {
   bool live = false;
 };
 
-// Nearest point of the grid: what is out of range saturates; a rod with a value that is not finite
-// is not live, at zero. quantise(dequantise(r)) == r for every r within the limits.
+// Rounds to the nearest point of the grid. Values out of range saturate. A rod with a value that is
+// not finite is not live, at zero. quantise(dequantise(r)) == r for every r within the limits.
 JournalRod quantise_rod(const RodTargetValues& values);
 RodTargetValues dequantise_rod(const JournalRod& rod);
 
@@ -79,12 +79,12 @@ struct JournalHeader {
   std::uint32_t possession_midfield_ms = 10000, possession_ms = 15000;
   std::uint32_t ceremony_ms = 2500, end_ms = 6000, idle_ms = 60000, attract_ms = 30000;
   std::array<std::uint64_t, kTuningCount> tuning{};  // in order: the bits of doubles (IEEE 754)
-  // To choose from, 1 to kMaxCharacterCount.
+  // The available characters, 1 to kMaxCharacterCount.
   std::vector<CharacterRecord> characters = std::vector<CharacterRecord>(1);
 };
 
 struct JournalTick {
-  std::uint64_t tick = 0;  // the first is 0, each next one more
+  std::uint64_t tick = 0;  // starts at 0 and increases by 1
   std::array<JournalRod, 8> rods{};
   std::vector<JournalCommand> commands;  // at most kMaxJournalCommands
 };
@@ -99,14 +99,14 @@ struct JournalKeyframe {
   std::vector<std::byte> snapshot;  // foosball::Match::snapshot, at most kMaxKeyframe
 };
 
-// How the match stands, for whoever lists recordings; a replay does not need it.
+// The standing of the match, for lists of recordings; a replay does not need it.
 struct JournalStanding {
   std::uint64_t tick = 0;               // ticks stepped so far
-  std::array<std::uint8_t, 2> score{};  // of the last match with a goal; sets won, in that match
+  std::array<std::uint8_t, 2> score{};  // of the last match with a goal; then sets won in it
   std::array<std::uint8_t, 2> sets{};
-  std::array<std::uint8_t, 2> character{};  // by the header's list
+  std::array<std::uint8_t, 2> character{};  // index into the header's list
   std::array<bool, 2> computer{};           // plays the team
-  std::uint16_t won = 0;                    // matches that were won so far
+  std::uint16_t won = 0;                    // matches won so far
   bool operator==(const JournalStanding&) const = default;
 };
 
@@ -118,20 +118,20 @@ struct JournalEnd {
 using JournalEntry = std::variant<JournalHeader, JournalTick, JournalHash, JournalKeyframe,
                                   JournalEnd, JournalStanding>;
 
-// How a rod's target differs from the tick before (at tick 0: from a rod that is not live, at 0).
+// Change of a rod's target since the previous tick (at tick 0: since a rod that is not live, at 0).
 struct JournalRodChange {
   bool changed = false;
   bool live = false;
   std::int64_t slide = 0, angle = 0, slide_rate = 0, angle_rate = 0;
 };
 
-// What is written of a tick.
+// The encoded content of a tick.
 struct JournalTickChange {
   std::array<JournalRodChange, 8> rods{};
   std::vector<JournalCommand> commands;
 };
 
-// What a recording must be of to be read: a program knows one format.
+// The format of a recording. A program reads only its own.
 struct JournalFormat {
   std::uint16_t version = 0;
   std::uint32_t layout_hash = 0;  // of all the journal's tables
@@ -140,21 +140,22 @@ struct JournalFormat {
 JournalFormat journal_format();
 // "version 1, layout 0123abcd"
 std::string to_text(const JournalFormat& format);
-// The format of a file that begins with a whole header, if that is another one than this program's.
+// The format of a file that begins with a complete header of a format other than this program's;
+// otherwise nothing.
 std::optional<JournalFormat> other_journal_format(std::span<const std::byte> file);
 
-// Encodes entries to bytes ready to append to a file. Ticks are coded as changes against the tick
-// before and gathered in records of up to kJournalBatch; any other entry, and flush(), closes the
-// open record.
+// Encodes entries to bytes to append to a file. Ticks are coded as changes since the previous tick,
+// and batched in records of up to kJournalBatch. Any other entry, and flush(), ends the open
+// record.
 class JournalEncoder {
  public:
-  // Takes all the memory it will need, for the largest entries.
+  // Allocates all the memory it will need, for the largest entries.
   JournalEncoder();
 
-  // False, and nothing is written, for an entry that a reader would refuse: no header first, or a
-  // second one, a tick that is not the next, a count that is not the ticks so far, too many
-  // commands, a command, layout or angle out of range, too large a keyframe, anything after the
-  // end.
+  // Returns false, and writes nothing, for an entry that a reader would reject: no header first, a
+  // second header, a tick that is not the next one, a count that is not the number of ticks so far,
+  // too many commands, a command, layout or angle out of range, a keyframe that is too large,
+  // anything after the end.
   bool add(const JournalEntry& entry, std::vector<std::byte>& out);
   void flush(std::vector<std::byte>& out);
 
@@ -164,34 +165,34 @@ class JournalEncoder {
   std::array<JournalRod, 8> previous_{};
   std::uint64_t next_tick_ = 0;
   JournalTickChange change_;
-  std::vector<std::byte> open_;   // ticks of the open record, without its head
-  std::vector<std::byte> large_;  // a keyframe's payload; kept for its memory
+  std::vector<std::byte> open_;   // ticks of the open record, without its header
+  std::vector<std::byte> large_;  // a keyframe's payload; reused for its memory
   int open_ticks_ = 0;
   bool started_ = false, ended_ = false;
 };
 
-// What the last records of a file say without reading all of it: how the match stood, and how long
-// the recording is.
+// Information from the last records of a file, without reading all of it: the standing of the match
+// and the length of the recording.
 struct JournalTail {
   std::optional<JournalStanding> standing;
-  std::optional<JournalEnd> end;  // none: cut off, or still being written
+  std::optional<JournalEnd> end;  // none: truncated, or still being written
 };
-// tail: the file's last bytes, from any byte on. What stands between the two is not looked at.
+// tail: the last bytes of the file, starting at any byte. Ignores other records between the two.
 JournalTail read_journal_tail(std::span<const std::byte> tail);
 
-// Reads entries from the bytes of a whole file, which must outlive the reader.
+// Reads entries from the bytes of a complete file, which must outlive the reader.
 class JournalReader {
  public:
   explicit JournalReader(std::span<const std::byte> file) : file_(file) {}
-  // The next entry; nothing at the end or at the first bad record.
+  // Returns the next entry; nothing at the end or at the first bad record.
   std::optional<JournalEntry> next();
-  // Empty after a clean end; else what was wrong and at which byte. A file that stops between two
-  // records is clean, though play was cut off: no JournalEnd came.
+  // Empty after a clean end; otherwise the error and its byte offset. A file that ends between two
+  // records is clean even if play was interrupted: then there was no JournalEnd.
   const std::string& problem() const { return problem_; }
-  // The file's format, where it is one of another release; else 0.
+  // The version of the file's format if it is of another release; otherwise 0.
   unsigned other_version() const { return other_version_; }
-  // The same reader at the same entry of a longer file, which begins with the same bytes: one that
-  // had come to the end, or to a record cut off there, goes on.
+  // The same reader at the same entry of a longer file that begins with the same bytes. A reader
+  // that had reached the end, or a record truncated there, can continue.
   JournalReader over(std::span<const std::byte> longer) const;
 
  private:
@@ -205,8 +206,8 @@ class JournalReader {
 
   std::span<const std::byte> file_;
   std::size_t at_ = 0;                 // next record
-  std::span<const std::byte> record_;  // payload not yet read
-  std::size_t record_at_ = 0;          // the record's first byte, for problem_
+  std::span<const std::byte> record_;  // rest of the payload
+  std::size_t record_at_ = 0;          // offset of the record, for problem_
   int ticks_left_ = 0;
   std::array<JournalRod, 8> previous_{};
   std::uint64_t next_tick_ = 0;

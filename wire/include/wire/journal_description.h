@@ -1,5 +1,5 @@
-// What the journal's payloads hold, once. See wire/description.h for the vocabulary, wire/journal.h
-// for the records around them.
+// The only description of the journal's payloads. wire/description.h defines its elements,
+// wire/journal.h the records around the payloads.
 #pragma once
 
 #include <array>

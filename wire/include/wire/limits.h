@@ -1,6 +1,6 @@
-// How many of each thing the messages may name. The decoders refuse what lies beyond, so a receiver
-// may index its own tables with what it was sent. They mirror foosball's and cabinet's
-// enumerations, which wire does not know; the server, which knows both, asserts that they agree.
+// Limits of the values in the messages. The decoders reject values beyond them, so that a receiver
+// may index its tables with received values. They mirror the enumerations of foosball and cabinet,
+// which wire does not know; the server, which knows both, asserts that they agree.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace wire {
 
-// Simulated time in microseconds is tick * tick_us: below 2^62, so that it and differences of it
-// are computed in 64 bits without looking. 2^48 ticks of a millisecond are 8900 years.
+// Simulated time in microseconds is tick * tick_us. It stays below 2^62, so that times and their
+// differences fit into 64 bits without a check. 2^48 ticks of one millisecond are 8900 years.
 inline constexpr std::uint64_t kMaxTick = (std::uint64_t{1} << 48) - 1;
 inline constexpr std::uint32_t kMaxTickUs = 10'000;
 static_assert(kMaxTick <= (std::uint64_t{1} << 62) / kMaxTickUs);
@@ -26,7 +26,7 @@ inline constexpr unsigned kHeadgearCount = 6;       // foosball::Headgear
 inline constexpr unsigned kFaceCount = 4;           // foosball::Face
 inline constexpr unsigned kEventKindCount = number(EventKind::match_drawn) + 1;
 inline constexpr unsigned kRequestKindCount =
-    number(RequestKind::feed) + 1;  // that a client may send, and tune
+    number(RequestKind::feed) + 1;  // that a client may send; also tune
 inline constexpr unsigned kCommandKindCount = number(RequestKind::set_up) + 1;
 inline constexpr unsigned kTuningCount = 28;  // foosball::kTuningFields
 inline constexpr unsigned kRuleSetCount = number(RuleSet::itsf) + 1;
@@ -47,18 +47,18 @@ inline constexpr unsigned kRodStatusCount = number(RodStatus::held) + 1;
 inline constexpr unsigned kDeviceStateCount = number(DeviceState::over) + 1;
 inline constexpr unsigned kRodSourceCount = number(RodSource::replay) + 1;
 
-// Notice::topic of answers that are not kept.
+// Notice::topic of answers that are not stored.
 inline constexpr std::uint32_t kAnswersTopic = 301;
 
-// Notice::topic of a Game that is not taken, and of a tuning value that is not.
+// Notice::topic of a Game, or a tuning value, that is rejected.
 inline constexpr std::uint32_t kGameAnswerTopic = 303;
 
-// Notice::topic of a Kick that is not done; of a vote against a client: + its number.
+// Notice::topic of a Kick that is rejected; of a vote against a client: kKickTopics + its number.
 inline constexpr std::uint32_t kKickAnswerTopic = 302;
 inline constexpr std::uint32_t kKickTopics = 2'000'000;
 
-// Notice::topic of a vote says what it is about, so that a client can offer to agree: a request of
-// that kind and value.
+// Notice::topic of a vote. It encodes the kind and value of the request, so that a client can offer
+// to agree.
 inline constexpr std::uint32_t kVoteTopics = 200;
 struct VoteTopic {
   RequestKind kind;

@@ -1,5 +1,5 @@
-// What the phone's messages hold, once. See wire/description.h for the vocabulary. Each begins with
-// the version and its kind; kinds of the server have the highest bit.
+// The only description of the phone's messages. wire/description.h defines its elements. Each
+// message begins with the version and its kind. Kinds of the server have the highest bit set.
 #pragma once
 
 #include <limits>

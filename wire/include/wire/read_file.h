@@ -1,4 +1,4 @@
-// A whole file in memory, with a cap: what is read here comes from outside.
+// Reads a complete file into memory, with a size limit: the data comes from outside.
 #pragma once
 
 #include <cstddef>

@@ -1,18 +1,18 @@
-// Sealed bytes: what goes over a network is encrypted and authenticated, each direction under a key
-// of its own, each piece under a number that is never used twice. ChaCha20-Poly1305 as RFC 8439 has
-// it, by libsodium (crypto_aead_chacha20poly1305_ietf).
+// Sealed bytes: network data is encrypted and authenticated. Each direction has its own key, and
+// each piece has a number that is never reused. ChaCha20-Poly1305 as in RFC 8439, by libsodium
+// (crypto_aead_chacha20poly1305_ietf).
 //
 // A sealed datagram:
 //   offset  size  field
-//   0       4     id of the key: the client's, from Welcome; 0 for a multicast group's
-//   4       8     counter: rises with each datagram of the key
+//   0       4     id of the key: the client's, from Welcome; 0 for a multicast group
+//   4       8     counter: increases with each datagram of the key
 //   12      n     the datagram, encrypted
-//   12 + n  16    tag over all before it
-// The nonce is four zero bytes and the counter; the first 12 bytes are authenticated, not
+//   12 + n  16    tag over all bytes before it
+// The nonce is four zero bytes and the counter. The first 12 bytes are authenticated, but not
 // encrypted.
 //
-// A sealed stream is a sequence of frames: u32 length of what follows (17 to kMaxSealedFrame), then
-// the encrypted bytes, then the tag; the counter is the frame's number, from 0, and is not sent.
+// A sealed stream is a sequence of frames: u32 length of the rest (17 to kMaxSealedFrame), then the
+// encrypted bytes, then the tag. The counter is the frame's number, from 0, and is not sent.
 #pragma once
 
 #include <array>
@@ -28,36 +28,36 @@ using SealKey = std::array<std::byte, 32>;
 
 inline constexpr std::size_t kSealHead = 12;
 inline constexpr std::size_t kSealTag = 16;
-inline constexpr std::size_t kSealBytes = kSealHead + kSealTag;  // a sealed datagram is longer by
+inline constexpr std::size_t kSealBytes = kSealHead + kSealTag;  // added to the size of a datagram
 
-// Writes the sealed datagram; returns its size, or 0 if out is too small. counter: never twice with
-// one key, since two datagrams under one nonce give away both.
+// Writes the sealed datagram. Returns its size, or 0 if out is too small. counter: must never
+// repeat under one key, since two datagrams with one nonce reveal both.
 std::size_t seal_datagram(const SealKey& key, std::uint32_t id, std::uint64_t counter,
                           std::span<const std::byte> plain, std::span<std::byte> out);
 
 enum class SealVerdict : std::uint8_t {
   good,
   malformed,  // too short or too long
-  foreign,    // another key's
-  replayed,   // was taken before, or is older than the window
+  foreign,    // of another key
+  replayed,   // received before, or older than the window
   forged,     // the tag is wrong
 };
 
-// Takes each datagram of a key once, in any order within the window. The cheap checks come first:
-// a flood of garbage costs a comparison each.
+// Accepts each datagram of a key once, in any order within the window. The cheap checks come first:
+// a flood of garbage costs one comparison per datagram.
 class DatagramOpener {
  public:
-  // Datagrams further behind the newest than this are refused: a second of snapshots.
+  // Datagrams older than the newest by more than this are rejected: a second of snapshots.
   static constexpr std::uint64_t kWindow = 1024;
 
   DatagramOpener() = default;  // opens nothing
   DatagramOpener(const SealKey& key, std::uint32_t id) : key_(key), id_(id), usable_(true) {}
 
-  // From now on opens what this key and id seal. The window of a key that stays is kept: what was
-  // taken before is not taken again.
+  // Opens datagrams of this key and id from now on. If the key is unchanged, the window is kept, so
+  // that datagrams received before are rejected as replays.
   void use(const SealKey& key, std::uint32_t id);
 
-  // good: the datagram is the first `size` bytes of plain. Else plain is unspecified.
+  // good: the first `size` bytes of plain are the datagram. Otherwise plain is unspecified.
   SealVerdict open(std::span<const std::byte> sealed, std::span<std::byte> plain,
                    std::size_t& size);
 
@@ -89,8 +89,8 @@ class StreamSealer {
 class StreamOpener {
  public:
   explicit StreamOpener(const SealKey& key) : key_(key) {}
-  // Takes bytes of the stream in any pieces, and appends what they held. False, for good, when a
-  // frame is no frame of this key in its place.
+  // Takes the stream's bytes in pieces of any size, and appends the decrypted bytes. Returns false,
+  // from then on, if a frame is not the next frame of this key.
   bool open(std::span<const std::byte> bytes, std::vector<std::byte>& plain);
 
  private:

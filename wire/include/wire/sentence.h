@@ -1,7 +1,7 @@
-// What the server says to people: every sentence that a Notice, a Refusal or a Bye carries, as a
-// form with places for what changes. They travel in English, as logs have them; a client knows the
-// same forms and shows them in the person's language. A Sentence is made from a form alone, so that
-// none is said that clients do not know.
+// The sentences that the server shows to people: every sentence of a Notice, a Refusal or a Bye, as
+// a form with placeholders. They are sent in English, as logs have them. A client knows the same
+// forms and shows them in the person's language. A Sentence is made from a form, so that clients
+// know all of them.
 #pragma once
 
 #include <array>
@@ -13,11 +13,11 @@
 
 namespace wire {
 
-// Name and English form. %1 .. %9 stand for words, each once; a word may be another sentence, or
-// several with "; " between them. Texts are cut to kMaxText bytes.
+// Name and English form. %1 .. %9 are placeholders, each used once. A placeholder may hold another
+// sentence, or several separated by "; ". Texts are truncated to kMaxText bytes.
 // clang-format off
 #define WIRE_SENTENCES(X) \
-  /* who joins, and why not */ \
+  /* joining, and why it fails */ \
   X(other_version, "this server speaks control version %1, you speak %2: use the same release of both") \
   X(other_snapshots, "your snapshots are laid out otherwise: use the same release of both") \
   X(other_password_share, "a share that is none: use the same release of both") \
@@ -34,7 +34,7 @@ namespace wire {
   X(no_socket_left, "the server has no socket left for you: try again") \
   X(recording_plays, "a recording plays here") \
   X(recording_plays_join, "a recording plays here: join to watch") \
-  /* who has which rods */ \
+  /* assignment of rods */ \
   X(which_team, "choose a team to have rods of: 0 or 1") \
   X(team_taken, "team %1 is taken: ask for the other one, or join to watch") \
   X(rods_of_both_teams, "rods of both teams are for the table's own machine: ask for rods of team %1, or start the server with --mixed-teams") \
@@ -49,7 +49,7 @@ namespace wire {
   X(waits_for_players, "the match waits: nothing is heard of any player") \
   X(not_rated, "the match does not count for the rating of who played too little of it: %1") \
   X(lost_by_leaving, "whoever leaves a match has lost it: %1") \
-  /* what is played */ \
+  /* choice of the game */ \
   X(only_host_chooses, "only the host chooses what is played") \
   X(no_such_game, "this game cannot be played: 1 to 99 goals, an odd number of sets up to 17, at most 60 minutes, level 1 to 5") \
   X(challenge_is_set, "the challenge of the day has its own rules and opponent: choose none with it") \
@@ -95,7 +95,7 @@ namespace wire {
   X(recording_stalled, "recording to %1 ended early: the disk, or the pipe's reader, did not take the rest in time") \
   X(results_not_kept, "%1; play goes on") \
   X(results_problem, "results in %1: %2") \
-  /* %2 of it: the sentences of results::Store, which knows no wire */ \
+  /* values of %2: the sentences of results::Store, which does not know wire */ \
   X(results_locked, "another program has them locked; end it and try again") \
   X(results_no_database, "the file is no database of results; choose another file") \
   X(results_damaged, "the file is damaged; move it away, a new one is made") \
@@ -104,7 +104,7 @@ namespace wire {
   X(results_disk_full, "the disk is full; make room") \
   X(results_no_file, "it is no ordinary file; choose another") \
   X(results_too_new, "they are of version %1, this program knows %2; use the release that wrote them") \
-  /* its devices */ \
+  /* the server's devices */ \
   X(device_not_allowed, "%1 cannot be opened: %2; install cabinet/70-space-foosball.rules or join the device's group") \
   X(device_busy, "%1 cannot be opened: %2; end the other program that uses it") \
   X(device_refused, "%1 cannot be opened: %2; plug it in anew, or give another address") \
@@ -115,7 +115,7 @@ namespace wire {
   X(device_too_fast, "%1: a rod moved faster than its sensor can follow; push it to both stops once") \
   X(device_over, "%1 is over: its rods hold") \
   X(device_without_frames, "%1 holds no frame: give a recording of a controller") \
-  /* its end */ \
+  /* the server's end */ \
   X(server_stopped, "the server was stopped") \
   X(server_ends, "the server ends") \
   X(time_is_over, "the time is over") \
@@ -130,7 +130,7 @@ enum class Said : std::uint8_t { WIRE_SENTENCES(WIRE_NAME) };
 inline constexpr std::array kSentences{WIRE_SENTENCES(WIRE_FORM)};
 #undef WIRE_FORM
 
-// How many places the form has.
+// Number of placeholders of the form.
 constexpr int places_of(std::string_view form) {
   int places = 0;
   for (const char c : form) places += c == '%' ? 1 : 0;
@@ -140,7 +140,7 @@ constexpr int places_of(std::string_view form) {
 class Sentence {
  public:
   Sentence() = default;  // none
-  // Words of others (the operating system's, a library's), which no client knows.
+  // Text of other origin (operating system, library), which clients do not translate.
   static Sentence untranslated(std::string text);
 
   const std::string& text() const { return text_; }
@@ -158,7 +158,7 @@ class Sentence {
   std::string text_;
 };
 
-// Words in the order of the form's places: texts, whole numbers or sentences.
+// Fills the placeholders in order: texts, integers or sentences.
 template <Said said, class... Words>
 Sentence say(const Words&... words) {
   constexpr std::string_view form = kSentences[static_cast<std::size_t>(said)];

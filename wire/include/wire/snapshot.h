@@ -1,6 +1,6 @@
-// The snapshot: one UDP datagram a tick, server to every listener. What it holds is described once,
-// in wire/snapshot_description.h; encoder, decoder, layout hash and docs/protocol.md come from
-// there.
+// The snapshot: one UDP datagram per tick, from the server to every listener.
+// wire/snapshot_description.h describes its content; the encoder, the decoder, the layout hash and
+// docs/protocol.md are derived from it.
 #pragma once
 
 #include <array>
@@ -32,24 +32,23 @@ struct ManState {
 };
 
 struct RodSnapshot {
-  float slide = 0, angle = 0;  // as simulated [m], [rad] (unbounded, 24 bit at 1/65536 turn)
+  float slide = 0, angle = 0;  // as simulated [m], [rad] (unbounded, 24 bit at 1/65536 revolution)
   float slide_rate = 0, angle_rate = 0;  // [m/s], [rad/s]
   std::uint8_t status = 0;               // RodStatus (wire/enums.h)
   std::uint8_t source = 0;               // RodSource
 };
 
 struct EventSnapshot {
-  std::uint32_t id =
-      0;  // counts up; an event is repeated in 8 snapshots, so that a loss shows it still
+  std::uint32_t id = 0;   // counts up; an event is repeated in 8 snapshots, against packet loss
   std::uint8_t kind = 0;  // EventKind
   std::uint8_t team = 0, rod = 0, man = 0;
   float value = 0;
   std::array<float, 3> point{};
-  float angle = 0;   // of a shot or a goal's ball [rad]
+  float angle = 0;   // of a shot, or of the ball in a goal [rad]
   bool own = false;  // goal
 };
 
-// A ball that a man sent off.
+// A ball that a man has shot.
 struct ShotSnapshot {
   std::uint8_t team = 0, rod = 0, man = 0;
   float speed = 0;  // [m/s]
@@ -70,20 +69,20 @@ struct Snapshot {
   std::uint8_t mode = 0, rule_set = 0;  // Mode, RuleSet (wire/enums.h)
   std::array<std::uint8_t, 2> sets{};   // won
   std::array<std::uint8_t, 2> time_outs_left{};
-  float time_out_seconds = 0;  // left of a time-out; 0: none
+  float time_out_seconds = 0;  // remaining time of a time-out; 0: none
   std::uint8_t time_out_team = 0;
   bool timed = false, golden_goal = false;
   float seconds_left = 0;        // of a timed set
   std::uint8_t next_server = 0;  // team
-  bool fouled = false;           // since the last goal: why, and whose
+  bool fouled = false;           // since the last goal; the next two: reason, team
   std::uint8_t last_foul = 0, last_foul_team = 0;
   std::uint8_t possession_team = 0;
   float possession_seconds = 0;
-  std::array<bool, 2> computer{};           // plays the team
-  bool attract = false;                     // nobody plays: computers show a match
+  std::array<bool, 2> computer{};           // the computer plays the team
+  bool attract = false;                     // nobody plays: computers play a demonstration match
   std::uint8_t rung = 0;                    // of the ladder
-  std::uint8_t feed_rod = 0, feed_man = 0;  // training: to whom the ball is served
-  bool ball_visible = false;                // in play, or in the goal it went into
+  std::uint8_t feed_rod = 0, feed_man = 0;  // training: the man to whom the ball is served
+  bool ball_visible = false;                // in play, or in the goal that it entered
   ShotSnapshot last_goal, last_shot;
   bool last_goal_own = false;
   float screen_seconds = 0, play_seconds = 0;
@@ -93,18 +92,18 @@ struct Snapshot {
   std::vector<EventSnapshot> events;  // <= kMaxEvents, oldest first
 };
 
-// Writes one datagram; returns its size, <= kMaxDatagram for every snapshot within the stated
-// counts (further men and events are left out), or 0 if out is too small. Values out of a field's
-// range are clamped, those not finite are 0. out: kMaxDatagram bytes.
+// Writes one datagram. Returns its size, or 0 if out is too small. The size is <= kMaxDatagram for
+// every snapshot within the stated counts; further men and events are omitted. Clamps values to
+// their field's range; values that are not finite become 0. out: kMaxDatagram bytes.
 std::size_t encode_snapshot(const Snapshot& snapshot, std::span<std::byte> out);
 
-// False unless magic, version, layout hash, every range, the exact length and the checksum hold;
-// snapshot is then unspecified but valid. Never reads outside in; never asserts.
+// Returns false unless magic, version, layout hash, every range, the exact length and the checksum
+// are valid; snapshot is then unspecified but valid. Never reads outside in; never asserts.
 bool decode_snapshot(std::span<const std::byte> in, Snapshot& snapshot);
 
 std::uint32_t snapshot_layout_hash();
 
-// A rod's angle is sent modulo 256 turns. The full angle of that class which is nearest to `near`.
+// A rod's angle is sent modulo 256 revolutions. Returns the equivalent angle nearest to `near`.
 double unwrap_angle(double wrapped, double near);
 
 }  // namespace wire

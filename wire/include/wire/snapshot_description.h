@@ -1,4 +1,4 @@
-// What a snapshot holds, once. See wire/description.h for the vocabulary.
+// The only description of a snapshot. wire/description.h defines its elements.
 #pragma once
 
 #include <limits>
@@ -12,13 +12,13 @@ namespace wire {
 inline constexpr std::uint64_t kSnapshotMagic = 0x4E534653;  // "SFSN"
 inline constexpr std::uint64_t kSnapshotVersion = 4;
 
-// 15 um over +-2 m: a table is 1.2 m long, and a ball that left it is of no interest further out.
+// 15 um over +-2 m: a table is 1.2 m long, and a ball that has left it matters no further out.
 inline constexpr Fixed kPosition{"position", 18, 0x1p-16, "m", "x, y, z in the world"};
 inline constexpr Rotation kOrientation{"orientation", 15, "quaternion x, y, z, w, body to world"};
-// Up to 64 m/s: the fastest shots seen stay below 20, the simulation's ball below 40.
+// Up to 64 m/s: the fastest observed shots stay below 20 m/s, the simulation's ball below 40 m/s.
 inline constexpr Fixed kLinearVelocity{"linear_velocity", 16, 0x1p-9, "m/s",
                                        "of the body's origin, in the world"};
-// A spun rod reaches some 200 rad/s; a ball grazed by it turns with a radius ten times smaller.
+// A spun rod reaches about 200 rad/s; a ball that it grazes has a radius ten times smaller.
 inline constexpr Fixed kManSpin{"angular_velocity", 16, 0x1p-7, "rad/s", "in the world"};
 inline constexpr Fixed kBallSpin{"angular_velocity", 16, 0x1p-4, "rad/s", "in the world"};
 
