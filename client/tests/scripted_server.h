@@ -24,8 +24,7 @@ class ScriptedServer {
   // Each waits for its event, at most kPatience; then returns false or nothing.
   static constexpr std::chrono::milliseconds kPatience{10'000};
   bool accept();
-  void take_little();  // limits how many bytes of the next clients are buffered before they are
-                       // read
+  void take_little();  // limits the receive buffer of the next clients
   std::optional<wire::ControlMessage> next_message();
   std::optional<wire::InputDatagram> next_input();
   void forget_inputs();  // drops the inputs that have arrived

@@ -155,8 +155,7 @@ TEST_F(Buffer, DelayGrowsWithJitterAndMotionStaysEven) {
 
 TEST_F(Buffer, StarvingGoesOnBrieflyThenStandsStillAndSaysSo) {
   for (std::uint64_t t = 0; t < 300; ++t) push(t);
-  const std::int64_t end = on_time(299) + buffer.delay_us();  // the time at which the newest is
-                                                              // shown
+  const std::int64_t end = on_time(299) + buffer.delay_us();  // when the newest is shown
   const SceneSample brief = buffer.sample(end + 10'000);
   EXPECT_FALSE(brief.starving);
   EXPECT_NEAR(brief.state.ball.position[0], kSpeed * 0.309, 1e-5);

@@ -83,8 +83,7 @@ class AvrController final : public Controller {
   }
 
   void command(std::span<const std::uint8_t> packet) override {
-    sim_.send(board_ == Board::mega32u4 ? packet.subspan(1) : packet);  // without the report's
-                                                                        // number
+    sim_.send(board_ == Board::mega32u4 ? packet.subspan(1) : packet);  // no report number
   }
   std::vector<MotorWrite> take_motor_writes() override {
     std::vector<MotorWrite> fresh;

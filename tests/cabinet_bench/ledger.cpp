@@ -90,9 +90,7 @@ void Ledger::judge(int rod, const wire::DeviceFrame& frame, std::int64_t now_us)
     r.back = true;
     return;
   }
-  if (std::exchange(r.back, false))
-    r.offsets = possible(r, counts);  // the offsets at which it
-                                      // restarted
+  if (std::exchange(r.back, false)) r.offsets = possible(r, counts);  // where it restarted
   // Lost counts stay lost, even if later frames happen to be equal.
   if (!r.lost && agrees(r, counts)) {
     ++totals_.exact;

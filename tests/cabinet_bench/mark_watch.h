@@ -11,8 +11,7 @@ namespace cabinet_bench {
 struct MarkCounts {
   std::uint64_t passes = 0;              // from one side to the other, without sliding
   std::uint64_t slow = 0;                // ... slow enough for every sensor
-  std::uint64_t at_stop = 0, ticks = 0;  // rod ticks where the switches see their marks; all rod
-                                         // ticks
+  std::uint64_t at_stop = 0, ticks = 0;  // rod ticks with a visible mark; all rod ticks
 };
 
 class MarkWatch {

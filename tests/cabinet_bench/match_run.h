@@ -32,8 +32,7 @@ struct PulseCounts {
   std::uint64_t hits = 0;    // of men, in the match
   std::uint64_t pulses = 0;  // commands that the server sent
   std::uint64_t begun = 0;   // at the right motor, with the right strength
-  std::uint64_t merged = 0;  // a later pulse of the rod came first, or its motor already ran at
-                             // this strength
+  std::uint64_t merged = 0;  // a later pulse came first, or the motor already ran at this strength
   std::uint64_t missing = 0, stray = 0, not_ended = 0;
   std::vector<float> latency_us;  // from the command to the driver's register
   // Of pulses with a free bus: no other pulse began or ended in between.

@@ -32,8 +32,7 @@ struct TracePoint {
 struct SessionOptions {
   foosball::Layout layout = foosball::Layout::tournament;
   std::vector<int> rods{0, 1, 2, 3, 4, 5, 6, 7};                // in this order
-  cabinet::Calibration start = cabinet::nominal_calibration();  // of the rods that are not
-                                                                // calibrated
+  cabinet::Calibration start = cabinet::nominal_calibration();  // of rods not calibrated
 };
 
 class Session {

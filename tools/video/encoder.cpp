@@ -33,8 +33,7 @@ std::vector<std::string> command_line(const EncoderOptions& options, bool sound,
                   "-i", "pipe:" + std::to_string(kSound)});
   }
   words.insert(words.end(), codec.begin(), codec.end());
-  words.push_back("file:" + options.path);  // "file:" prevents a name from being parsed as another
-                                            // protocol
+  words.push_back("file:" + options.path);  // "file:": never parsed as another protocol
   return words;
 }
 

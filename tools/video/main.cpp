@@ -104,8 +104,7 @@ int run(const video::Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::signal(SIGPIPE, SIG_IGN);  // ffmpeg may end before its pictures do; write() then returns the
-                                  // error
+  std::signal(SIGPIPE, SIG_IGN);  // ffmpeg may end early; write() then returns the error
   const auto options = video::parse_options(argc, argv);
   if (!options) {
     const draw::Leave& leave = options.error();

@@ -27,14 +27,13 @@ struct ConnectionOptions {
   std::uint16_t port = kDefaultPort;
   std::string name = "player";
   std::uint8_t team = wire::kWatchOnly;
-  std::uint8_t rods = 0;  // rods of the team, bit 0 at -x; 0: all free rods
-  std::string password;   // required of clients on other machines
-  bool as_host = false;   // this client belongs to the host: asks for the host role from another
-                          // machine
-  bool trust_this_machine = true;     // false: also prove the password to a server on this machine
-  std::int64_t silence_us = 500'000;  // no snapshot for this time: the server counts as lost
-  std::int64_t gone_us = 5'000'000;   // no snapshot for this time: join again
-  std::int64_t retry_us = 250'000;    // between two attempts to join
+  std::uint8_t rods = 0;           // rods of the team, bit 0 at -x; 0: all free rods
+  std::string password;            // required of clients on other machines
+  bool as_host = false;            // the host's client: asks for the host role from another machine
+  bool trust_this_machine = true;  // false: also prove the password to a server on this machine
+  std::int64_t silence_us = 500'000;     // no snapshot for this time: the server counts as lost
+  std::int64_t gone_us = 5'000'000;      // no snapshot for this time: join again
+  std::int64_t retry_us = 250'000;       // between two attempts to join
   std::int64_t patience_us = 1'000'000;  // time limit for a connection and its Welcome
 };
 
@@ -69,7 +68,7 @@ class Connection {
   void start();
   ~Connection();  // sends Bye; returns at once, whatever the network does
 
-  // Thread-safe.
+  // Any thread may call these.
   ConnectionStatus status() const;
   std::string address() const;  // "HOST:PORT"
   SceneSample sample(std::int64_t now_us);

@@ -25,8 +25,7 @@ class CrewNames {
  private:
   void place_people(const Crew& crew, bool in_match);
 
-  std::array<int, kDevices + 1> places_ = none();  // by device + 1: the person's index; -1: none
-                                                   // yet
+  std::array<int, kDevices + 1> places_ = none();  // by device + 1: person's index; -1: none
   Settings named_;                                 // the settings whose names are in use
   bool named_once_ = false;
   std::optional<wire::Names> told_;

@@ -18,8 +18,7 @@ namespace client {
 class GameMenu {
  public:
   static constexpr std::int64_t kSettleUs = 250'000;   // after a step: wait for further steps
-  static constexpr std::int64_t kAgainUs = 1'000'000;  // repeat a request that had no effect after
-                                                       // this time
+  static constexpr std::int64_t kAgainUs = 1'000'000;  // repeat a request without effect
   static constexpr int kTries = 3;
 
   // Takes the game that the server sent in this session; none: nothing yet. refused: why the server

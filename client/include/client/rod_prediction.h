@@ -25,8 +25,7 @@ class RodPrediction {
   // Time constant [s] in which the offset closes 63% of a difference: 94% in five frames of a 60 Hz
   // display. With a shorter one, an error of a few milliseconds in the lag shows as jitter.
   static constexpr double kCorrectionS = 0.030;
-  static constexpr int kLongestLagMs = 250;  // later reports are compared with the rods of this
-                                             // time ago
+  static constexpr int kLongestLagMs = 250;  // maximum of the estimated lag
   // Differences that an error of this size in the lag explains are ignored.
   static constexpr int kLagMarginMs = 8;
 

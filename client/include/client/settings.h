@@ -41,8 +41,7 @@ struct Settings {
   float text_scale = 1.0f;       // kTextScale[0]..kTextScale[1]
   bool reduced_flashes = false;  // no bursts of light, no pulses
   bool reduced_shake = false;    // the camera does not shake
-  bool distinct_teams = false;   // teams differ in pattern and shape too; colours for colour-blind
-                                 // people
+  bool distinct_teams = false;   // teams differ in pattern and shape; colour-blind-safe colours
   Language language = Language::automatic;
   View view = View::seat;
   RodsShown rods = RodsShown::as_on_the_table;

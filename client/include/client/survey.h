@@ -6,7 +6,6 @@
 // begins the next match. Answers are sent only if the person consented and reached the end. Nobody
 // has to wait: a person without input for kIdleUs is no longer asked, and a new match ends the
 // questionnaire.
-// nothing for kIdleUs is asked no more, and a new match ends it.
 #pragma once
 
 #include <array>
@@ -49,8 +48,7 @@ struct SurveyPanel {
 
 class Survey {
  public:
-  static constexpr std::int64_t kDeafUs = 700'000;  // ignores input: the person is still in the
-                                                    // match
+  static constexpr std::int64_t kDeafUs = 700'000;  // no input: person still in the match
   static constexpr std::int64_t kStandUs = 2'500'000;
   static constexpr std::int64_t kIdleUs = 20'000'000;
   static constexpr std::int64_t kThanksUs = 2'000'000;

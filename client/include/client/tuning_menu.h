@@ -21,8 +21,7 @@ namespace client {
 class TuningMenu {
  public:
   static constexpr std::int64_t kEveryUs = 60'000;     // between two requests
-  static constexpr std::int64_t kAgainUs = 1'000'000;  // repeat a request that had no effect after
-                                                       // this time
+  static constexpr std::int64_t kAgainUs = 1'000'000;  // repeat a request without effect
   static constexpr int kTries = 3;
 
   // directory: of the profiles; empty: no profiles are stored.

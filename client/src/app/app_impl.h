@@ -136,8 +136,7 @@ class App {
   std::shared_ptr<const foosball::Characters> characters_;  // in use; null: the built-in ones
   std::uint64_t joins_seen_ = 0;
   Link link_seen_ = Link::connecting;
-  std::int64_t awaiting_since_ = 0;  // when joining began, while no scene of the match has arrived;
-                                     // else 0
+  std::int64_t awaiting_since_ = 0;  // start of joining without a scene of the match yet; else 0
   glm::ivec2 size_{1, 1};
   double seconds_ = 0.0;
 };

@@ -21,9 +21,9 @@ struct Options {
   std::optional<View> view;  // none: from the settings
   bool mute = false;
   bool show_fps = false;
-  bool cabinet_gamepads = false;   // also use gamepads that a cabinet's controller emulates; the
-                                   // server has its rods otherwise
-  bool until_server_ends = false;  // exit when the server says Bye; otherwise wait for it
+  // Also use the gamepads that a cabinet's controller emulates. Its server has the rods otherwise.
+  bool cabinet_gamepads = false;
+  bool until_server_ends = false;        // exit when the server says Bye; otherwise wait for it
   std::optional<draw::Quality> quality;  // none: chosen by what the machine can draw
   std::optional<double> seconds;         // play for this time, then exit
   std::optional<double> screenshot_at;   // none: at the end

@@ -44,8 +44,7 @@ class InputCollector {
   void connect(int pad, bool there);  // unplugged: its sticks return to zero
   bool connected(int pad) const { return pads_[static_cast<std::size_t>(pad)].there; }
   void button(int pad, PadButton button, bool down);
-  void sticks(int pad, const cabinet::PadState& state);  // up is positive; without the shoulder
-                                                         // buttons
+  void sticks(int pad, const cabinet::PadState& state);  // up positive; no shoulder buttons
 
   // The events of these devices since the last clear().
   InputEvents take(DeviceSet devices) const;

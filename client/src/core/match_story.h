@@ -38,10 +38,8 @@ struct StoryMoment {
 
 class MatchStory {
  public:
-  static constexpr float kShotSpeed = 2.5f;   // [m/s] towards the opponents' goal: a faster ball is
-                                              // a shot, a slower one a pass
-  static constexpr float kSaveWithin = 1.0f;  // [s] after a shot, a touch of the defence counts as
-                                              // a save
+  static constexpr float kShotSpeed = 2.5f;   // [m/s] towards the opponents' goal; slower: a pass
+  static constexpr float kSaveWithin = 1.0f;  // [s] from a shot to a defender's touch: a save
 
   // The drawn scene and the events that it has reached. dt [s] of play.
   void update(std::span<const wire::EventSnapshot> events, const wire::Snapshot& scene, float dt);

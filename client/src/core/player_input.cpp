@@ -141,8 +141,7 @@ foosball::AssistHand PlayerInput::hand_now() const {
 }
 
 void PlayerInput::assist(const foosball::AssistView& view, std::int64_t now_us) {
-  constexpr std::int64_t kTickUs = 1000, kLongestUs = 110'000;  // a stalled window must not fling a
-                                                                // rod
+  constexpr std::int64_t kTickUs = 1000, kLongestUs = 110'000;  // a stall must not fling rods
   const bool gap = assisted_us_ == 0 || now_us < assisted_us_ || now_us - assisted_us_ > kLongestUs;
   const auto ticks = gap ? 0 : static_cast<int>((now_us - assisted_us_) / kTickUs);
   assisted_us_ = gap ? now_us : assisted_us_ + ticks * kTickUs;

@@ -17,8 +17,7 @@ constexpr double kSlideUnit = 0.002;  // [m]
 constexpr double kAngleUnit = 0.05;   // [rad]
 constexpr double kMostDisagreement = 16.0;
 constexpr float kForget = 0.985f;      // decay of the disagreement per frame: about a second
-constexpr float kEnoughToTell = 2.0f;  // minimum difference between best and worst lag for an
-                                       // estimate
+constexpr float kEnoughToTell = 2.0f;  // minimum spread of the disagreement over the lags
 
 double squared(double x) {
   return x * x;

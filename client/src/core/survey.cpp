@@ -68,9 +68,7 @@ Survey::Outcome Survey::update(const Take& take, const wire::Snapshot* scene, st
     MenuSteps steps = asked.hand.steps(events, person.cabinet() ? scene : nullptr,
                                        person.cabinet() ? person.team : -1, now_us);
     steps.right += wheel;
-    if (person.cabinet())
-      steps = {.right = steps.down};  // only spins count; slides go on to the
-                                      // match
+    if (person.cabinet()) steps = {.right = steps.down};  // slides go on to the match
     if (!deaf(asked, now_us)) step(asked, steps, key, now_us, outcome);
   }
   std::erase_if(people_, [](const Asked& asked) { return asked.over; });

@@ -24,8 +24,7 @@ class GpuMesh {
   explicit GpuMesh(const MeshData& mesh);
 
   void set_instances(std::span<const Instance> instances);
-  void draw() const;  // all instances; without instances ever set, the mesh once, without instance
-                      // attributes
+  void draw() const;  // all instances; if never set, once without instance attributes
 
  private:
   draw::GlVertexArray array_;

@@ -77,8 +77,7 @@ void draw_score(const HudPen& whole, const HudState& hud, bool at_the_bottom) {
   pen.text(clock, {Face::regular, 14.0f, 0.04f, Align::centre}, {0.0f, y + 38.0f}, kInk);
 }
 
-constexpr float kSmallWindow = 0.75f;  // pixels per unit: below this, match messages are drawn
-                                       // larger
+constexpr float kSmallWindow = 0.75f;  // pixels per unit: below, match messages are larger
 
 // Beside the board.
 void draw_rules_line(const HudPen& whole, const HudState& hud, bool at_the_bottom) {

@@ -46,8 +46,7 @@ struct ReplayBar {
     double at;  // [s]
     int team;
   };
-  double now = 0.0, read = 0.0, total = 0.0;  // [s] of the recording; read: the last moment that
-                                              // can be shown
+  double now = 0.0, read = 0.0, total = 0.0;  // [s] of the recording; read: playable so far
   double speed = 1.0;                         // relative to the match's time
   bool paused = false, kept = false, being_made = false, show_keys = false;
   std::array<int, 2> score{};

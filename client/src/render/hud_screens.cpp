@@ -213,8 +213,7 @@ KeysLayout keys_in(std::size_t columns, const HudPen& whole, float room) {
   const HudPen pen =
       large.fitting(half + 4.0f, (fits < 0.999f ? height + 18.0f : height + 40.0f) / fits);
   const HudPen alone = whole.fitting(half + 4.0f, height + 40.0f);
-  constexpr float kSmallest = 0.85f;  // of its size without such a bound; smaller text is hard to
-                                      // read
+  constexpr float kSmallest = 0.85f;  // of its unbounded size; smaller is hard to read
   return {pen, columns, rows, half, height, pen.scale >= kSmallest * alone.scale};
 }
 

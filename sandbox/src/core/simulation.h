@@ -103,8 +103,7 @@ class Simulation {
   std::array<double, vp::kStages.size()> stage_us_{};
   int stages_averaged_ = 0;
   std::vector<Piece> pieces_;
-  std::size_t happened_ = 0;  // number of the scene's events when the pieces' bodies were last
-                              // updated
+  std::size_t happened_ = 0;  // number of the scene's events at the last update of the pieces
   Typical typical_;
   StepTimes times_;
   vp::StepStatus status_;
