@@ -1,6 +1,6 @@
-// A cabinet's rods through other people's software: the firmware in its simulator, its reports as
-// Linux makes events of them, these as SDL makes a controller of them, and then our own client,
-// which knows no more of it than of any gamepad.
+// A cabinet's rods through third-party software: the firmware in its simulator, its reports as
+// Linux converts them to events, these as SDL converts them to a controller, and then the project's
+// client, which treats it like any gamepad.
 #define SDL_MAIN_HANDLED
 #include <SDL2/SDL.h>
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@
 #include "scripted_scene.h"
 #include "wire/device_command.h"
 
-// SDL's connection to D-Bus, by which it hears of devices, is never closed.
+// SDL never closes its D-Bus connection, through which it learns of devices.
 extern "C" const char* __lsan_default_suppressions();   // NOLINT(bugprone-reserved-identifier)
 extern "C" const char* __lsan_default_suppressions() {  // NOLINT(bugprone-reserved-identifier)
   return "leak:libdbus-1";
@@ -30,9 +30,8 @@ extern "C" const char* __lsan_default_suppressions() {  // NOLINT(bugprone-reser
 
 namespace {
 
-// One gamepad of the controller, as SDL 2.26 sees it on Linux (SDL_sysjoystick.c): axes and buttons
-// numbered in the order of their codes, named by what the kernel's gamepad specification says of
-// these.
+// One gamepad of the controller, as SDL 2.26 sees it on Linux (SDL_sysjoystick.c). Axes and buttons
+// are numbered in the order of their codes. The kernel's gamepad specification gives their names.
 class LinuxPad {
  public:
   explicit LinuxPad(const hid::Description& description) : description_(description) {
@@ -110,7 +109,7 @@ std::vector<std::uint8_t> report_of(const wire::DeviceCommand& command) {
   return report;
 }
 
-// The first player's gamepad: rods 1 and 2 of the table, the left and the right hand's.
+// The first player's gamepad: rods 1 and 2 of the table, for the left and the right hand.
 class CabinetGamepads : public testing::Test {
  protected:
   static constexpr std::int64_t kFrameUs = 16'000;
@@ -133,7 +132,7 @@ class CabinetGamepads : public testing::Test {
     for (int ms = 0; ms < 3000 && !done(); ++ms) cabinet.advance_us(1000);
     return done();
   }
-  // What a person at the window sees and does in one.
+  // One frame of the window: reports in, client updated.
   void frame() {
     cabinet.advance_us(kFrameUs);
     for (const firmware_sim::PadReport& report : cabinet.take_pad_reports())
@@ -161,7 +160,7 @@ class CabinetGamepads : public testing::Test {
 
 TEST_F(CabinetGamepads, TheLeftHandsRodPushedAwaySlidesAwayAndPulledBackStands) {
   const double before = active().slide;
-  cabinet.mouse(0).move(540 * 8 / 4, 0);  // half of what the goalie can from its middle
+  cabinet.mouse(0).move(540 * 8 / 4, 0);  // half of the goalie's travel from its centre
   frames(20);
   const double away = active().slide;
   EXPECT_GT(away, before + 0.02);
@@ -176,9 +175,9 @@ TEST_F(CabinetGamepads, TheLeftHandsRodPushedAwaySlidesAwayAndPulledBackStands) 
 }
 
 TEST_F(CabinetGamepads, TheRightHandsRodTurnedSwingsTheFeetByItsAngle) {
-  cabinet.mouse(1).move(0, 50);  // an eighth of the 400 counts around
+  cabinet.mouse(1).move(0, 50);  // an eighth of the 400 counts per turn
   frames(20);
-  // A positive angle swings the feet towards -x, and to the right is towards +x for team 0.
+  // A positive angle swings the feet towards -x; right is +x for team 0.
   const double eighth = -active().angle;
   EXPECT_NEAR(eighth, 0.6, 0.2) << "0.7 of a swing of 1.4, less the dead zone";
   cabinet.mouse(1).move(0, 50);
@@ -189,7 +188,7 @@ TEST_F(CabinetGamepads, TheRightHandsRodTurnedSwingsTheFeetByItsAngle) {
   EXPECT_NEAR(active().angle, 0.0, 0.05) << "the feet hang down";
 }
 
-// Of the tournament table, by mice of 8 counts/mm.
+// For the tournament table, with mice of 8 counts/mm.
 TEST_F(CabinetGamepads, AQuarterOfEachRodsTravelIsHalfOfItsSticksWay) {
   struct Stick {
     int interface, axis;

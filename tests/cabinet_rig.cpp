@@ -90,7 +90,7 @@ void CabinetRig::join() {
   const auto* welcome = std::get_if<wire::Welcome>(&message);
   require(welcome != nullptr, "not welcome");
   opener_ = {welcome->snapshot_key, welcome->client};
-  // The tick learns of a new listener through a queue: the first snapshot says that it has.
+  // The tick receives a new listener through a queue: the first snapshot shows that it has.
   for (int i = 0; i < kDeadlineMs && first_; ++i) {
     sim_.advance_us(1000);
     forward_reports();
@@ -104,7 +104,7 @@ void CabinetRig::join() {
   require(!first_, "no snapshot after joining");
 }
 
-// False when there is none by the deadline.
+// False if there is none by the deadline.
 bool CabinetRig::next_message(int deadline_ms, wire::ControlMessage& message) {
   for (;;) {
     const auto status = reader_.next(message);

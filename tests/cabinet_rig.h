@@ -1,6 +1,6 @@
-// The whole way of the data in lockstep: the firmware in its simulator, a real socket pair in place
-// of hidraw, the server's tick, and a listener on UDP that decodes what a renderer would. Time is
-// the simulator's; every exchange is awaited, none is timed.
+// End-to-end rig in lockstep: the firmware in its simulator, a real socket pair in place of hidraw,
+// the server's tick, and a UDP listener that decodes like a renderer. The time is the simulator's;
+// every exchange is awaited, none is timed.
 #pragma once
 
 #include <cstdint>
@@ -24,27 +24,27 @@ class CabinetRig {
   CabinetRig(const CabinetRig&) = delete;
   CabinetRig& operator=(const CabinetRig&) = delete;
 
-  // One millisecond of everything; returns the snapshot that the listener got for it.
+  // Advances everything by one millisecond; returns the snapshot that the listener received for it.
   const wire::Snapshot& step();
 
   firmware_sim::CabinetSim& cabinet() { return sim_; }
-  // Pulls the cabinet's plug out of the server, and puts it back in.
+  // Unplugs the cabinet from the server, and plugs it in again.
   void unplug();
   void plug_in();
-  // What the server has told a person since the last call.
+  // The server's notices to a person since the last call.
   std::vector<wire::Notice> notices();
-  // Waits for the next notice, which travels by another thread than the tick's; none in 5 s: empty.
+  // Waits for the next notice, which another thread than the tick's sends; none in 5 s: empty.
   std::optional<wire::Notice> next_notice();
 
-  // A second reader of the same reports: what the PC made of the counts, before the physics.
+  // A second reader of the same reports: the PC's targets from the counts, before the physics.
   const cabinet::DeviceSource& tap() const { return *tap_; }
-  std::uint64_t haptic_pulses() const;  // that the server has sent to whoever has the rods
+  std::uint64_t haptic_pulses() const;  // that the server sent to the players of the rods
 
   // Ticks without a snapshot, or with one for another tick, since the listener joined.
   int snapshots_missed() const { return missed_; }
 
  private:
-  // A cable for 64-byte reports: where the simulator writes and where a device reads; -1:
+  // A cable for 64-byte reports: the simulator's end to write to, and the device's end to read; -1:
   // unplugged.
   struct Cable {
     int writing = -1, reading = -1;
@@ -60,7 +60,7 @@ class CabinetRig {
   void forward_commands();
 
   firmware_sim::CabinetSim sim_{firmware_sim::Board::mega32u4};
-  Cable to_server_, to_tap_;  // before what reads from them
+  Cable to_server_, to_tap_;  // before their readers
   std::unique_ptr<server::Server> server_;
   std::unique_ptr<cabinet::DeviceSource> tap_;
   int udp_ = -1, tcp_ = -1;

@@ -1,4 +1,5 @@
-// From a sensor to what the renderer receives, with every part real but the mice and the clock.
+// From a sensor to the snapshot that the renderer receives; all parts are real except the mice and
+// the clock.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +19,7 @@ namespace {
 using end_to_end::CabinetRig;
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kCountsPerMetre = 8000;  // 8 counts a millimetre of surface
+constexpr double kCountsPerMetre = 8000;  // 8 counts per millimetre of surface
 constexpr double kRodRadius = 0.008;      // [m]
 
 int slide_counts(double metres) {
@@ -37,7 +38,7 @@ TEST(CabinetToSnapshot, MouseThreeMovesRodThreeAndNoOther) {
   const wire::Snapshot before = rig.step();
   firmware_sim::SimMouse& mouse = rig.cabinet().mouse(3);
 
-  // A hand's stroke of 80 ms: 40 mm along, 90 degrees around.
+  // A stroke of 80 ms: 40 mm along, 90 degrees around.
   constexpr int kStrokeMs = 80;
   const int slide = slide_counts(0.040), spin = spin_counts(kPi / 2);
   std::uint64_t first_packet_us = 0;
@@ -76,8 +77,8 @@ TEST(CabinetToSnapshot, MouseThreeMovesRodThreeAndNoOther) {
   EXPECT_EQ(rig.snapshots_missed(), 0);
   ASSERT_GE(first_sign_ticks, 0) << "the rod never stirred";
   ASSERT_GE(settled_ticks, 0) << "the rod never arrived";
-  EXPECT_LE(settled_ticks, 50);  // measured: 3 to 30, by the phase of the last packet
-  // The report after the packet, the tick after the report, and the rod has to gather way.
+  EXPECT_LE(settled_ticks, 50);  // measured: 3 to 30, depending on the phase of the last packet
+  // The report after the packet, the tick after the report, and the acceleration of the rod.
   EXPECT_LE(first_sign_ticks, 5);
   std::printf(
       "from the first PS/2 packet to a snapshot in which the rod has moved 0.05 mm: %d ticks\n"
@@ -89,7 +90,7 @@ TEST(CabinetToSnapshot, MouseThreeMovesRodThreeAndNoOther) {
 constexpr std::uint8_t kHeld = static_cast<std::uint8_t>(cabinet::RodStatus::held);
 constexpr std::uint8_t kLive = static_cast<std::uint8_t>(cabinet::RodStatus::live);
 
-// Steps until every rod has the status; the ticks it took, or -1 after most.
+// Steps until every rod has the status; returns the number of ticks, or -1 after `most`.
 int ticks_until(CabinetRig& rig, std::uint8_t status, int most) {
   for (int tick = 1; tick <= most; ++tick) {
     const wire::Snapshot& now = rig.step();
@@ -101,7 +102,7 @@ int ticks_until(CabinetRig& rig, std::uint8_t status, int most) {
   return -1;
 }
 
-// The text of the next notice of the level that names the cabinet.
+// The text of the next notice of this level that names the cabinet.
 std::string notice_of_cabinet(CabinetRig& rig, wire::Notice::Level level) {
   while (const auto notice = rig.next_notice()) {
     if (notice->level == level && notice->text.find("cabinet") != std::string::npos) {
@@ -125,7 +126,7 @@ TEST(CabinetToSnapshot, AnUnpluggedCabinetHoldsItsRodsIsNamedAndComesBackWithout
   EXPECT_LE(noticed, 100);
   EXPECT_NE(notice_of_cabinet(rig, wire::Notice::Level::warning), "")
       << "no client was told which device is gone";
-  rig.cabinet().mouse(3).move(slide_counts(-0.05), 0);  // a hand goes on pulling
+  rig.cabinet().mouse(3).move(slide_counts(-0.05), 0);  // a hand continues to pull
   for (int ms = 0; ms < 1000; ++ms) rig.step();
   EXPECT_NEAR(rig.step().rods[3].slide, before.rods[3].slide, 0.0005);
 
@@ -189,7 +190,8 @@ TEST(CabinetToSnapshot, EightMiceAtOnceLoseNoCountInTenSeconds) {
               static_cast<unsigned long long>(reports));
 }
 
-// From a hit in the physics by the server's command over the controller's real firmware to a motor.
+// From a hit in the physics through the server's command and the controller's real firmware to a
+// motor.
 TEST(CabinetToSnapshot, AHitIsFeltAtTheMotorOfItsRod) {
   CabinetRig rig(foosball::Layout::tournament);
   firmware_sim::MotorBus& motors = rig.cabinet().motors();
@@ -198,9 +200,9 @@ TEST(CabinetToSnapshot, AHitIsFeltAtTheMotorOfItsRod) {
       return write.address == 2 && write.value != 0;
     });
   };
-  // Pushes of 0.12 m begin the match; then the men go round and round.
+  // Slides of 0.12 m begin the match; then the men rotate continuously.
   bool playing = false;
-  unsigned hit = 0;  // rods, a bit each
+  unsigned hit = 0;  // rods, one bit each
   for (int ms = 0; ms < 30'000 && played() < 5; ++ms) {
     const int along = playing ? (ms / 50 % 2 == 0 ? 2 : -2) : (ms / 100 % 2 == 0 ? 10 : -10);
     for (int rod = 0; rod < 8; ++rod) rig.cabinet().mouse(rod).move(along, playing ? 3 : 0);

@@ -1,4 +1,4 @@
-// The real client against the real server: passwords, gaps, cut connections, both families.
+// The real client against the real server: passwords, gaps, cut connections, both address families.
 #include <gtest/gtest.h>
 #include <poll.h>
 #include <sys/socket.h>
@@ -33,7 +33,7 @@ bool eventually(const std::function<bool()>& holds) {
   return true;
 }
 
-// A server whose ticks a thread makes, about one a millisecond, while it is not held.
+// A server on a thread that ticks about once a millisecond, unless paused by hold().
 class Table {
  public:
   explicit Table(const std::function<void(server::ServerOptions&)>& change) {
@@ -79,7 +79,7 @@ class Table {
   std::thread ticks_;
 };
 
-// A cable in the control connection's way, which can be cut; the next one goes through again.
+// A relay in the control connection that can be cut; the next connection passes again.
 class Cable {
  public:
   explicit Cable(std::uint16_t to) : to_(to), listener_(::socket(AF_INET, SOCK_STREAM, 0)) {
@@ -186,7 +186,7 @@ TEST(Network, AWrongPasswordIsSaidAndLetsNobodyIn) {
   ASSERT_TRUE(eventually([&] { return eve->status().link == Link::refused; }));
   EXPECT_NE(eve->status().detail.find("password"), std::string::npos) << eve->status().detail;
   EXPECT_EQ(table.control().joined, 0u);
-  options.trust_this_machine = true;  // without a word of passwords
+  options.trust_this_machine = true;  // without any password
   const auto mallory = started(options);
   ASSERT_TRUE(eventually([&] { return mallory->status().link == Link::refused; }));
   EXPECT_NE(mallory->status().detail.find("password is wanted"), std::string::npos);
@@ -203,7 +203,7 @@ TEST(Network, AHostFromAfarIsHost) {
   EXPECT_EQ(host->status().welcome.role, number(wire::Role::host));
 }
 
-// It cost the player the team, and a rival took it.
+// A bug cost the player the team, and a rival took it.
 TEST(Network, AGapOf700MsCostsNothing) {
   Table table([](server::ServerOptions&) {});
   const auto ann = started(player_at(table.port()));
@@ -212,7 +212,7 @@ TEST(Network, AGapOf700MsCostsNothing) {
   ASSERT_TRUE(eventually([&] { return ann->status().link == Link::lost; }));
   const auto rival = started(player_at(table.port()));
   ASSERT_TRUE(eventually([&] { return rival->status().link == Link::refused; }));
-  ::poll(nullptr, 0, 200);  // 0.7 s in all
+  ::poll(nullptr, 0, 200);  // 0.7 s in total
   table.hold(false);
   ASSERT_TRUE(in_play(*ann));
   EXPECT_EQ(ann->status().joins, 1u);
@@ -243,8 +243,8 @@ bool has_ipv6() {
   return probe && ::bind(probe.get(), here.generic(), here.size()) == 0;
 }
 
-// The rods that computers move for show come back from the client as its targets, or it looks as if
-// somebody had touched them.
+// In attract mode the client must return the rods' computer-driven poses as its targets. Otherwise
+// it looks as if a person had touched them.
 TEST(Network, AMatchThatIsShownIsNotEndedByAClientWhoseHandRests) {
   Table table([](server::ServerOptions& o) { o.match.rules.attract_seconds = 0.3; });
   const auto ann = started(player_at(table.port()));
@@ -268,13 +268,13 @@ TEST(Network, AMatchThatIsShownIsNotEndedByAClientWhoseHandRests) {
     ASSERT_TRUE(shown()) << "after rods had moved by " << farthest << " m";
   }
   EXPECT_GE(farthest, 0.03);
-  for (int i = 0; i < 150; ++i) {  // time for it to go to the server and back
+  for (int i = 0; i < 150; ++i) {  // time for a round trip to the server
     ::poll(nullptr, 0, 2);
     ASSERT_TRUE(shown());
   }
 }
 
-// Found by a reviewer: no client could ask for it. From a person's keys to the serve.
+// Regression: no client could request it. From a person's keys to the serve.
 TEST(Network, InTrainingAKeyChoosesTheManToWhomTheBallIsServed) {
   Table table([](server::ServerOptions& o) { o.match.mode = foosball::Mode::training; });
   const auto ann = started(player_at(table.port()));
@@ -337,7 +337,7 @@ TEST(Network, ByIpv6) {
 
 TEST(Network, ByAnAddressOfItsOwnThatIsNoLoopback) {
   if (!has_ipv6()) GTEST_SKIP() << "this machine has no IPv6";
-  // A server at all addresses, asked by one of them: the answer comes from that one.
+  // The server listens on all addresses; it must answer from the address that the client used.
   Table table([](server::ServerOptions& o) {
     from_afar(o);
     o.network.listen = "::";

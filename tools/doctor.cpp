@@ -1,4 +1,5 @@
-// space-foosball-doctor: what is connected that can move rods, and what to do about its troubles.
+// space-foosball-doctor: lists the connected devices that can move rods, and says how to fix
+// problems.
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>

@@ -38,7 +38,7 @@ void drain(Listener& listener, ListenerTotals& totals) {
   while (server::wait_readable(listener.client.udp(), 0)) take(listener, totals);
 }
 
-// One poll over all sockets, as one thread; ends when each connection has ended.
+// One poll over all sockets, on one thread; ends when each connection has ended.
 void listen(std::vector<Listener>& listeners, ListenerTotals& totals) {
   std::size_t open = listeners.size();
   std::vector<pollfd> polled;
@@ -53,7 +53,7 @@ void listen(std::vector<Listener>& listeners, ListenerTotals& totals) {
       if (polled[2 * i + 1].revents == 0 || l.over) continue;
       const auto message = l.client.hear(0);
       if (message && !std::holds_alternative<wire::Bye>(*message)) continue;
-      if (message) drain(l, totals);  // all was sent before the Bye
+      if (message) drain(l, totals);  // everything was sent before the Bye
       l.over = true;
       polled[2 * i + 1].fd = -1;
       --open;

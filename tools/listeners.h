@@ -1,4 +1,4 @@
-// The other end of the loop benchmark: a process of its own with N clients on real sockets, which
+// The clients of the loop benchmark: a separate process with N clients on real sockets, which
 // counts what arrives.
 #pragma once
 
@@ -12,19 +12,19 @@ namespace bench {
 struct ListenerTotals {
   std::uint64_t joined = 0;
   std::uint64_t received = 0;
-  std::uint64_t bad = 0;        // not a snapshot, or another session's
-  std::uint64_t gaps = 0;       // sequence numbers missing between the first and last of a listener
-  std::uint64_t reordered = 0;  // or twice
-  bool complete = false;        // all were told Bye
+  std::uint64_t bad = 0;        // not a snapshot, or of another session
+  std::uint64_t gaps = 0;       // sequence numbers missing between a listener's first and last
+  std::uint64_t reordered = 0;  // or duplicated
+  bool complete = false;        // all received Bye
 };
 
 class Listeners {
  public:
-  // Forks: call before any thread is made.
+  // Forks: call before any thread is created.
   explicit Listeners(int count);
   ~Listeners();
 
-  bool join(std::uint16_t port);           // tells them; false when not all could join
+  bool join(std::uint16_t port);           // tells the clients to join; false if not all could
   std::optional<ListenerTotals> totals();  // after the server's Bye
 
  private:

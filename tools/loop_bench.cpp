@@ -1,5 +1,5 @@
-// loop-bench: the server's loop at 1 kHz with two computer players at play and N listeners in
-// another process on loopback. Prints a table and writes the rows that ./bench keeps.
+// loop-bench: measures the server's loop at 1 kHz with two computer players and N listeners in
+// another process on loopback. Prints a table and writes the rows that ./bench stores.
 #include <CLI/CLI.hpp>
 #include <atomic>
 #include <cstdio>

@@ -1,5 +1,5 @@
-// foosball-replay: plays a recorded match without a screen, as fast as it goes, and says whether it
-// is the match that was played.
+// foosball-replay: simulates a recorded match without a screen, as fast as possible, and reports
+// whether the result equals the match that was played.
 #include <CLI/CLI.hpp>
 #include <cinttypes>
 #include <cstdio>
@@ -21,7 +21,7 @@ int fail(const std::string& sentence) {
   return server::kExitUsage;
 }
 
-// Goes on in a match of its own, made from the first one's snapshot alone.
+// Continues in another match that is restored from the first match's snapshot alone.
 bool continue_elsewhere(foosball::Match& match, const foosball::MatchDesc& desc) {
   std::vector<std::byte> saved;
   match.snapshot(saved);

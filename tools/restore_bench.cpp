@@ -1,6 +1,6 @@
-// restore-bench: what it costs to take a state down and to go back to it, beside a step: of a
-// foosball match and of other kinds of world. Prints a table and writes the rows that ./bench
-// keeps.
+// restore-bench: measures the cost of saving and restoring a state, compared with a step: for a
+// foosball match and for other kinds of world. Prints a table and writes the rows that ./bench
+// stores.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
@@ -22,7 +22,7 @@
 
 namespace {
 
-// What is measured: each of a subject, by whatever has these three calls.
+// A subject of the measurement, through these three calls.
 struct Subject {
   std::string name;
   std::function<void()> step;
@@ -33,7 +33,7 @@ struct Subject {
 struct Costs {
   std::size_t bytes = 0;
   double step = 0.0, snapshot = 0.0;  // medians [us]
-  // To the state of now, and to one that is some steps old, as look-ahead and rollback do.
+  // To the present state, and to one kLookAhead steps old, as in look-ahead and rollback.
   double restore_now = 0.0, restore_back = 0.0, step_after = 0.0;
 };
 
@@ -51,7 +51,7 @@ double median(std::vector<double>& times) {
   return *middle;
 }
 
-// Goes on between the rounds, so that many states are measured.
+// The subject advances between the iterations, so that many states are measured.
 bool measure(const Subject& subject, int rounds, Costs& costs) {
   std::vector<double> step, snapshot, now, back, after;
   std::vector<std::byte> bytes;
@@ -68,7 +68,7 @@ bool measure(const Subject& subject, int rounds, Costs& costs) {
   return ok;
 }
 
-// Two computer players play on it; what a match is restored to is of its own size.
+// Two computer players play the match; the restore target is the match itself.
 struct Played {
   foosball::Match match;
   foosball::ComputerPlayer home{{.team = 0, .seed = 1}}, away{{.team = 1, .seed = 2}};

@@ -42,7 +42,7 @@ int write(const std::string& path, const std::string& text) {
               : fail(server::kExitFailed, "cannot write " + path + "; is there space, may it be?");
 }
 
-// The summary; in CSV, or in --csv's file, the answers themselves.
+// Prints the summary, or in CSV the answers.
 int questionnaire(const Options& options, const results::Store& store,
                   const std::vector<results::MatchResult>& matches) {
   const auto answers = store.answers();

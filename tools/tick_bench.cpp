@@ -1,6 +1,6 @@
-// tick-bench: what the ticks of a match of two computer players cost, the worst of them too. A
-// match is played several times over, to the bit the same, and each tick counts as the fastest of
-// its repetitions: what interrupted one of them is no cost of the tick.
+// tick-bench: measures the cost of the ticks of a match of two computer players, including the
+// worst ones. The match is repeated several times, bit for bit. Each tick counts with its fastest
+// repetition, because an interruption is no cost of the tick.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
@@ -24,7 +24,7 @@ struct Options {
   std::uint64_t seed = 1;
 };
 
-// What happens in a tick beside play.
+// What happens in a tick besides play.
 enum class Kind { play, begins, tuned, after_tuning, stand_in, other };
 constexpr std::array kKindNames{"play",           "play begins",     "tuning changes",
                                 "the tick after", "stand-in begins", "other screens"};
@@ -47,11 +47,11 @@ class Stopwatch {
   std::chrono::steady_clock::time_point from_ = std::chrono::steady_clock::now();
 };
 
-// Two whole teams. Each kTuneEvery of play a value of the tuning changes; each kStandInEvery
-// another player takes over two rods of the first team, as for a person who is lost, and gives them
-// back half of that later. It is of the same level.
+// Two whole teams. Each kTuneEvery ticks of play a value of the tuning changes. Each kStandInEvery
+// ticks another player of the same level takes over two rods of the first team, as for a person who
+// lost the connection, and gives them back half of that time later.
 constexpr int kTuneEvery = 5'000, kStandInEvery = 4'000;  // ticks
-constexpr std::uint8_t kStandInRods = 0x0F;  // of the first team's those that are among them
+constexpr std::uint8_t kStandInRods = 0x0F;  // restricted to the rods of the first team
 
 class Run {
  public:

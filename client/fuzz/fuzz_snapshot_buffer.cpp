@@ -1,5 +1,6 @@
-// Any server the decoders let pass: ticks that jump, repeat and go back, any length of a tick, at
-// any times. Nothing overflows, the delay stays in its bounds, and what was taken in is shown.
+// Fuzzes with the snapshots of any server that the decoders accept: ticks that jump, repeat and go
+// back, any tick length, any times. Nothing overflows, the delay stays within its bounds, and
+// accepted snapshots are shown.
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
@@ -15,7 +16,7 @@ class Bytes {
  public:
   explicit Bytes(std::span<const std::uint8_t> data) : data_(data) {}
   bool any() const { return !data_.empty(); }
-  // The next `size` bytes as a number; what is missing is 0.
+  // The next `size` bytes as a number; missing bytes are 0.
   std::uint64_t number(std::size_t size) {
     std::uint64_t value = 0;
     const std::size_t there = std::min(size, data_.size());

@@ -1,4 +1,4 @@
-// space-foosball: the renderer. Its other words, calibrate and doctor, are programs beside it.
+// space-foosball: the renderer. Its subcommands calibrate and doctor are programs beside it.
 #include <unistd.h>
 
 #include <cerrno>
@@ -11,7 +11,7 @@
 
 namespace {
 
-// Returns only if the program cannot be started.
+// Replaces this process by the named program. Returns only if the program cannot be started.
 int become(const char* name, char** arguments) {
   std::error_code error;
   const auto self = std::filesystem::read_symlink("/proc/self/exe", error);

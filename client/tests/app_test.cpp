@@ -146,11 +146,11 @@ TEST(Sounds, ALoopGoesOverIntoItsBeginningAsEvenlyAsWithinItself) {
   }
 }
 
-// From the softest touch to the hardest shot each step is heard: no plateau within play.
+// Loudness increases over the whole range, from the softest touch to the hardest shot: no plateau.
 TEST(Sounds, VolumeFollowsImpulseOverTheWholeRangeOfPlay) {
   EXPECT_EQ(volume_of_impulse(0), 0.0f);
   EXPECT_EQ(volume_of_impulse(5), 1.0f);
-  // A good shot leaves at 10 m/s; half of it is 6 dB and more below it, not full volume.
+  // A good shot leaves at 10 m/s. Half of it is 6 dB and more below it, not at full volume.
   const float shot = 0.026f * 10.0f;
   EXPECT_LT(volume_of_impulse(0.5f * shot), 0.80f * volume_of_impulse(shot));
   EXPECT_LT(volume_of_impulse(shot), 0.75f);
@@ -243,7 +243,7 @@ TEST(MatchStory, NamesScorerSaveAndOwnGoal) {
   step({event_of(Kind::man_hit, 1, 7)}, -1.0f);
   EXPECT_EQ(story.statistics()[1].saves, 1);
   EXPECT_EQ(story.statistics()[1].shots, 0) << "a clearance is no shot";
-  // He then knocks it in himself.
+  // He then scores an own goal.
   wire::EventSnapshot own = event_of(Kind::goal, 0, 7, 1.0f);
   own.own = true;
   step({own}, 1.0f);
@@ -253,17 +253,17 @@ TEST(MatchStory, NamesScorerSaveAndOwnGoal) {
   EXPECT_EQ(story.statistics()[1].own_goals, 1);
   ASSERT_EQ(story.moments().size(), 1u);
   EXPECT_EQ(story.moments()[0].moment, Moment::own_goal);
-  // A goal that team 1's attack shoots.
+  // Team 1's attack scores.
   step({event_of(Kind::man_hit, 1, 2)}, -9.0f);
   step({event_of(Kind::goal, 1, 2, 9.0f)}, -9.0f);
   EXPECT_FALSE(story.last_goal().own_goal);
   EXPECT_EQ(story.last_goal().scorer_rod, 2);
-  // Nobody touched it.
+  // A goal without a touch.
   step({event_of(Kind::serve, 0)}, 0.0f);
   step({event_of(Kind::goal, 1)}, -1.0f);
   EXPECT_FALSE(story.last_goal().own_goal);
   EXPECT_EQ(story.last_goal().scorer_rod, -1);
-  // The next match begins with nothing.
+  // The next match begins with empty statistics.
   scene.screen = number(wire::Screen::selection);
   step({}, 0.0f);
   EXPECT_EQ(story.statistics()[0].shots, 0);
@@ -274,7 +274,7 @@ TEST(ViewMotion, IsGentleAndComesToRest) {
   wire::Snapshot scene = scripted_play(0);
   CameraView last = motion.step(&scene, 0, 0.016f);
   for (int i = 0; i < 600; ++i) {
-    scene.ball.position[0] = i % 2 == 0 ? 0.6f : -0.6f;  // the wildest rally
+    scene.ball.position[0] = i % 2 == 0 ? 0.6f : -0.6f;  // the fastest possible rally
     const CameraView view = motion.step(&scene, 0, 0.016f);
     EXPECT_LT(std::abs(view.lean.x - last.lean.x), 0.003f);
     last = view;
@@ -297,7 +297,7 @@ TEST(Camera, PutsTheOwnGoalOnTheLeftForEitherTeam) {
   }
 }
 
-// The table and its handles in the middle of their way, as they are drawn.
+// The drawn points of the table and of its handles at the centre of their travel.
 std::vector<glm::vec3> all_that_must_be_seen(const foosball::TableSpec& table) {
   std::vector<glm::vec3> points;
   for (const MeshData& mesh : {body_mesh(table, 1.0f), rim_mesh(table, 1.0f)}) {
@@ -314,7 +314,8 @@ std::vector<glm::vec3> all_that_must_be_seen(const foosball::TableSpec& table) {
   return points;
 }
 
-// Of the picture's halves, how much the outermost point takes: 1 at its edge.
+// The outermost point's distance from the centre, as a fraction of the picture's half: 1 at its
+// edge.
 float share_taken(const Camera& camera, const std::vector<glm::vec3>& points) {
   float most = 0.0f;
   for (const glm::vec3& point : points) {
@@ -337,7 +338,7 @@ TEST(Camera, ShowsTheWholeTableWithAllHandlesAtMidSlideInEveryWindow) {
               player_camera({.layout = layout, .team = team, .lean = {lean, 0.0f}}, screen);
           const float share = share_taken(camera, points);
           EXPECT_LT(share, 0.985f) << screen.x << "x" << screen.y << " team " << team;
-          // ... and no farther away than that needs.
+          // ... and no farther away than that requires.
           if (lean == 0.0f) {
             EXPECT_GT(share, 0.90f) << screen.x << "x" << screen.y;
           }

@@ -17,7 +17,7 @@
 namespace client {
 namespace {
 
-// Looks again and again until it holds; the wait is for another thread's event, with a far
+// Polls until the condition holds. It waits for an event of another thread, with a distant
 // deadline.
 bool eventually(const std::function<bool()>& holds) {
   const std::int64_t deadline = os::monotonic_us() + 10'000'000;
@@ -64,8 +64,8 @@ class ConnectionTest : public ::testing::Test {
       return connection->counters().received > before;
     });
   }
-  // Between the two the listening thread looked for what is to be sent: 45 ms after the last input,
-  // which a loss and a return take longer than, a repetition would be.
+  // Between the two snapshots the listening thread has checked what to send. A repetition is due 45
+  // ms after the last input; a loss and a return take longer, so it would have been sent.
   bool hears_twice(std::uint64_t session) {
     return hears(session, 20'000) && hears(session, 30'000);
   }
@@ -107,7 +107,7 @@ TEST_F(ConnectionTest, BadForeignAndRepeatedDatagramsAreEachCounted) {
 TEST_F(ConnectionTest, AServerThatTalksNonsenseIsLeftAndTriedAgain) {
   open();
   ASSERT_TRUE(server.accept());
-  const std::vector<std::byte> nonsense(64, std::byte{0xFF});  // a length far above the cap
+  const std::vector<std::byte> nonsense(64, std::byte{0xFF});  // a length far above the limit
   server.send_bytes(nonsense);
   EXPECT_TRUE(
       eventually([&] { return connection->status().detail == "it sends what is no message"; }));
@@ -121,8 +121,8 @@ TEST_F(ConnectionTest, AGapIsNoticedAndCostsNoSeat) {
   const std::int64_t silent_since = os::monotonic_us();
   ASSERT_TRUE(eventually([&] { return connection->status().link == Link::lost; }));
   EXPECT_GE(os::monotonic_us() - silent_since, 450'000);
-  EXPECT_TRUE(connection->sample(os::monotonic_us()).any);  // the last scene stands
-  ASSERT_TRUE(hears(42, 600));                              // the line is back
+  EXPECT_TRUE(connection->sample(os::monotonic_us()).any);  // the last scene stays
+  ASSERT_TRUE(hears(42, 600));                              // the link is back
   EXPECT_TRUE(eventually([&] { return connection->status().link == Link::joined; }));
   EXPECT_EQ(connection->status().joins, 1u) << "the connection was never let go";
 }
@@ -134,18 +134,18 @@ TEST_F(ConnectionTest, ALongSilenceIsTheEndOfAConnectionAndTheSeatIsAskedForAgai
   ASSERT_TRUE(server.welcome(42, 77));
   const wire::Hello first = server.hello();
   EXPECT_EQ(first.ticket, 0u);
-  ASSERT_TRUE(server.welcome(42, 77));  // the next attempt, answered
+  ASSERT_TRUE(server.welcome(42, 77));  // answers the next attempt
   EXPECT_EQ(server.hello().session, 42u);
   EXPECT_EQ(server.hello().ticket, 77u);
   EXPECT_TRUE(eventually([&] { return connection->status().joins == 2; }));
 }
 
-// Each of these froze the picture for good, or could have.
+// Each of these once froze the picture permanently, or could have.
 TEST_F(ConnectionTest, NoForgedDatagramMovesTheScene) {
   open();
   join(42);
   ASSERT_TRUE(hears(42, 1000));
-  ScriptedServer attacker;  // sockets of its own: another address
+  ScriptedServer attacker;  // separate sockets: another address
   const auto forge = [&](const ScriptedServer& from, std::span<const std::byte> bytes) {
     const auto to = os::loopback(server.hello().udp_port);
     ::sendto(from.udp(), bytes.data(), bytes.size(), 0, to.generic(), to.size());
@@ -158,11 +158,11 @@ TEST_F(ConnectionTest, NoForgedDatagramMovesTheScene) {
   wire::seal_datagram(wire::SealKey{}, server.said().client, ~std::uint64_t{0}, unsealed,
                       wrong_key);
   const auto replayed = server.sealed(snapshot(42, 1900));
-  // From another address nothing comes through at all, not even what is sealed well.
+  // From another address nothing is accepted, not even a correctly sealed snapshot.
   forge(attacker, unsealed);
   forge(attacker, wrong_key);
   forge(attacker, server.sealed(far));
-  // From the server's own address and port, as an attacker that can write any source.
+  // From the server's address and port, as an attacker can forge any source.
   forge(server, unsealed);
   forge(server, wrong_key);
   forge(server, replayed);
@@ -171,7 +171,7 @@ TEST_F(ConnectionTest, NoForgedDatagramMovesTheScene) {
   const SnapshotCounters after = connection->counters();
   EXPECT_EQ(after.bad + after.foreign, 2u);
   EXPECT_EQ(after.implausible, 0u);
-  // A server gone mad, or a group's member: a jump that nothing after it confirms.
+  // A faulty server, or a member of the group: a jump that no later snapshot confirms.
   server.send_snapshot(far);
   ASSERT_TRUE(eventually([&] { return connection->counters().implausible == 1; }));
   EXPECT_TRUE(hears(42, 1901));
@@ -207,7 +207,7 @@ TEST_F(ConnectionTest, AServerThatDiesAndReturnsWithANewSessionIsJoinedAgain) {
   EXPECT_TRUE(
       eventually([&] { return connection->sample(os::monotonic_us()).state.session == 43; }));
   EXPECT_EQ(connection->status().joins, 2u);
-  server.send_snapshot(snapshot(42, 9100));  // a straggler of the dead one
+  server.send_snapshot(snapshot(42, 9100));  // a late datagram of the dead session
   EXPECT_TRUE(eventually([&] { return connection->counters().foreign == 1; }));
 }
 
@@ -261,7 +261,7 @@ TEST_F(ConnectionTest, InputsCarrySessionAndTokenCountUpAndAreRepeated) {
   EXPECT_TRUE(first->rods[3].driven);
   EXPECT_FALSE(first->rods[2].driven);
   EXPECT_NEAR(first->rods[3].slide, 0.02f, 1e-4f);
-  const auto again = server.next_input();  // nobody moved: at least 20 a second all the same
+  const auto again = server.next_input();  // without input: still at least 20 a second
   ASSERT_TRUE(again);
   EXPECT_GT(again->sequence, first->sequence);
   EXPECT_NEAR(again->rods[3].slide, 0.02f, 1e-4f);
@@ -280,7 +280,7 @@ TEST_F(ConnectionTest, NothingOfAnOldMatchReachesANewServer) {
   ASSERT_TRUE(eventually([&] { return connection->status().link == Link::lost; }));
   const std::uint64_t sent = connection->inputs_sent();
   join(43);
-  connection->drive(42, old_rods);  // a window that has not heard of the new match yet
+  connection->drive(42, old_rods);  // a window that does not know of the new match yet
   connection->request(42, {0, 0, 0});
   ASSERT_TRUE(hears_twice(43));
   EXPECT_EQ(connection->inputs_sent(), sent);
@@ -311,7 +311,7 @@ TEST_F(ConnectionTest, AServerJoinedAgainGetsNoInputUntilTheHandMovesAnew) {
   ASSERT_TRUE(hears_twice(42));
   EXPECT_EQ(connection->inputs_sent(), sent);
   server.forget_inputs();
-  connection->drive(42, rods);  // the same as before: sent all the same
+  connection->drive(42, rods);  // unchanged input: still sent
   EXPECT_TRUE(server.next_input());
 }
 
@@ -337,7 +337,7 @@ TEST_F(ConnectionTest, TheGameIsHeardAndAskedForInItsSessionAlone) {
   ASSERT_TRUE(eventually([&] { return connection->game() == game; }));
   wire::Game training;
   training.mode = 1;
-  connection->choose(41, game);  // a window that has not heard of the new match yet
+  connection->choose(41, game);  // a window that does not know of the new match yet
   connection->choose(42, training);
   const auto asked = server.next_message();
   ASSERT_TRUE(asked && std::holds_alternative<wire::Game>(*asked));
@@ -346,7 +346,8 @@ TEST_F(ConnectionTest, TheGameIsHeardAndAskedForInItsSessionAlone) {
   EXPECT_TRUE(eventually([&] { return !connection->game(); }));
 }
 
-// Its kernel takes no more: the good-bye waits at the client, where a reset would discard it.
+// The server's kernel accepts no more data: Bye waits at the client, where a reset would discard
+// it.
 TEST_F(ConnectionTest, TheGoodByeReachesAServerThatReadsLate) {
   server.take_little();
   open();
@@ -357,7 +358,7 @@ TEST_F(ConnectionTest, TheGoodByeReachesAServerThatReadsLate) {
   while (pongs.size() < 100'000) wire::encode_control(wire::Pong{1}, pongs);
   server.send_bytes(pongs);  // not all read at the end
   auto end = std::async(std::launch::async, [this] { connection.reset(); });
-  end.wait_for(std::chrono::milliseconds(20));  // one that waits for nothing is gone by then
+  end.wait_for(std::chrono::milliseconds(20));  // a client that does not wait is gone by then
   int requests = 0;
   std::optional<wire::ControlMessage> message;
   while ((message = server.next_message()) && std::holds_alternative<wire::MatchRequest>(*message))

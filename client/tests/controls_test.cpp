@@ -41,7 +41,7 @@ TEST(ActionState, TwoKeysOfOneActionHoldItUntilBothAreReleased) {
   EXPECT_FALSE(keys.held(Action::push));
 }
 
-// A window of ten frames a second; a person taps a key for 40 ms between two of them.
+// A window with ten frames per second; a person taps a key for 40 ms between two frames.
 TEST(ActionState, AShortTapMovesTheRodAtTenFramesASecond) {
   constexpr std::int64_t kFrame = 100'000;
   PlayerInput player(1, 0, foosball::Layout::tournament);

@@ -1,4 +1,4 @@
-// Several people at one client, each with devices and rods of their own.
+// Several people at one client, each with separate devices and rods.
 #include "client/crew.h"
 
 #include <gtest/gtest.h>
@@ -82,7 +82,7 @@ TEST(InputCollector, APadThatIsUnpluggedLetsEverythingGo) {
   EXPECT_FALSE(events.has_pad);
   EXPECT_EQ(events.pad.left_y, 0.0f);
   EXPECT_EQ(events.pad.right_x, 0.0f);
-  input.connect(9, true);  // no such place
+  input.connect(9, true);  // no such index
   input.button(-1, PadButton::push, true);
 }
 
@@ -117,7 +117,7 @@ TEST(Crew, OnePersonHasAllDevicesUntilOneIsGivenRods) {
   EXPECT_EQ(table.crew.devices_of(Crew::kFirstPerson) & bit_of(Device::pad_1), 0);
 }
 
-// Mouse, and two gamepads: three people, two teams, each moves the own rod in hand and no other.
+// Mouse and two gamepads: three people, two teams; each moves only their own active rod.
 TEST(Crew, ThreePeopleAtOneClientPlayEachTheirOwnRods) {
   Table table(kAll);
   for (const int rod : {0, 1}) table.crew.give(rod, kPad1);
@@ -280,13 +280,13 @@ TEST_F(NamesTest, SeveralPeopleAtOneWindowHaveNamesOfTheirOwn) {
   EXPECT_EQ(now->name, "player");
 }
 
-// By the rules for leavers the old name would have lost the match.
+// By the rules for leaving, the old name would have lost the match.
 TEST_F(NamesTest, NobodyIsRenamedInAMatch) {
   table.crew.give(2, kPad2);
   EXPECT_EQ(told()->players[2], "player 2");
   settings.names = {"Ann", "Ben", "Cleo", ""};
   EXPECT_FALSE(told(true));
-  // Somebody comes whose device is before the others'.
+  // A person joins whose device precedes the others.
   table.crew.give(0, kPad1);
   const auto joined = told(true);
   ASSERT_TRUE(joined);
@@ -326,7 +326,7 @@ TEST(Crew, InTrainingAKeyOrAPadsButtonChoosesTheNextManOfTheRodInHand) {
   table.input.key(key("4"), false);
   EXPECT_EQ(asked(), -1);
   EXPECT_EQ(press(), foosball::feed_value(foosball::Line::attack, 2));
-  // Faster than the server's answer comes back.
+  // Faster than the server's answer.
   EXPECT_EQ(press(), foosball::feed_value(foosball::Line::attack, 0));
   EXPECT_EQ(press(), foosball::feed_value(foosball::Line::attack, 1));
   table.now += 1'000'000;

@@ -1,4 +1,4 @@
-// The page of the game, without a picture.
+// The page of the game, without drawing.
 #include "client/game_menu.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::int64_t kSecond = 1'000'000;  // [us]
 
-// As a server tells it that was started without an option.
+// The game of a server that was started without options.
 wire::Game usual() {
   wire::Game game;
   game.goals = 5;
@@ -41,7 +41,7 @@ class GamePage : public testing::Test {
   }
   std::string value(const std::string& label) { return row(label).value; }
   void turn(const std::string& label, int way) { menu.step(index(label), {.right = way}); }
-  // A server that grants every request, for so long; how many it was asked.
+  // A server that grants every request, for this time; returns the number of requests.
   int grant(std::int64_t long_us = 2 * kSecond) {
     int asked = 0;
     for (const std::int64_t end = now + long_us; now < end; now += 16'000) {

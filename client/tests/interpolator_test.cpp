@@ -12,13 +12,13 @@ namespace {
 
 constexpr double kGravity = 9.81;
 
-// A ball thrown up: the closed form that the curve must follow.
+// A thrown ball: the closed form that the curve must match.
 wire::PoseVelocity thrown(double t) {
   wire::PoseVelocity ball;
   ball.position = {static_cast<float>(2.0 * t), static_cast<float>(-0.7 * t),
                    static_cast<float>(0.1 + 1.5 * t - 0.5 * kGravity * t * t)};
   ball.linear_velocity = {2.0f, -0.7f, static_cast<float>(1.5 - kGravity * t)};
-  const double half = 0.5 * 30.0 * t;  // turns at 30 rad/s about y
+  const double half = 0.5 * 30.0 * t;  // rotates at 30 rad/s about y
   ball.orientation = {0, static_cast<float>(std::sin(half)), 0, static_cast<float>(std::cos(half))};
   ball.angular_velocity = {0, 30, 0};
   return ball;
@@ -43,7 +43,7 @@ TEST(Interpolator, UniformlyAcceleratedMotionIsReproduced) {
     const double share = i / 40.0;
     const auto drawn = interpolate(thrown(0.05), thrown(0.05 + span), share, span);
     const auto truth = thrown(0.05 + share * span);
-    EXPECT_LT(distance(drawn, truth), 1e-6) << share;      // measured 6e-8: the rounding of floats
+    EXPECT_LT(distance(drawn, truth), 1e-6) << share;      // measured 6e-8: rounding of floats
     EXPECT_LT(turn_between(drawn, truth), 2e-3) << share;  // measured 7e-4, likewise
   }
 }
@@ -92,7 +92,7 @@ TEST(Interpolator, WhatCountsChangesOnlyWhenItsSnapshotIsReached) {
 TEST(Interpolator, ARodSpunPastTheEndOfTheWiresAnglesGoesOnTheSameWay) {
   constexpr double kTurn = 6.283185307179586, kRate = 60.0, kSpan = 0.004;
   for (const double way : {1.0, -1.0}) {
-    // The end of the wire's range, half way between two snapshots, which go over the wire itself.
+    // The end of the wire's range, half way between two snapshots, which are encoded and decoded.
     wire::Snapshot scenes[2];
     for (int i = 0; i < 2; ++i) {
       wire::Snapshot sent;

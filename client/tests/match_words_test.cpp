@@ -1,4 +1,4 @@
-// What the rules decide is told: words from snapshots and stories, without a window.
+// The texts for the rules' decisions, from snapshots and stories, without a window.
 #include "render/match_words.h"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ struct Told {
   }
 };
 
-// The ball lies before this rod.
+// The ball is in front of this rod.
 wire::Snapshot held_by(int rod, float seconds, wire::RuleSet rules) {
   wire::Snapshot state = scripted_play(0.35);
   const auto& table = foosball::table_spec(foosball::Layout::tournament);
@@ -80,7 +80,8 @@ TEST(MatchWords, NoClockRunsWhereNobodyHasTheBall) {
   EXPECT_FALSE(possession_clock(state));
   state = held;
   const auto& rods = foosball::table_spec(foosball::Layout::tournament).rods;
-  state.ball.position[0] = static_cast<float>(rods[kFirstMidfield].x + 0.11);  // nearer to the next
+  // closer to the next rod
+  state.ball.position[0] = static_cast<float>(rods[kFirstMidfield].x + 0.11);
   EXPECT_FALSE(possession_clock(state)) << "on its way to another rod";
 }
 
@@ -260,7 +261,7 @@ struct SetStory {
 TEST(MatchStory, KeepsTheGoalsOfEachSet) {
   SetStory sets;
   sets.win(0, {5, 3});
-  sets.play_on(1);  // who lost it
+  sets.play_on(1);  // the loser of the set
   sets.win(1, {4, 5});
   EXPECT_EQ(sets.story.sets(), (std::vector<std::array<int, 2>>{{5, 3}, {4, 5}}));
 }
@@ -268,7 +269,7 @@ TEST(MatchStory, KeepsTheGoalsOfEachSet) {
 TEST(MatchStory, ChangesTheSidesOfSetsWithTheirPlayers) {
   SetStory sets;
   sets.win(0, {5, 3});
-  sets.play_on(0);  // who lost it, on the other side now
+  sets.play_on(0);  // the loser of the set, now on the other side
   EXPECT_EQ(sets.story.sets(), (std::vector<std::array<int, 2>>{{3, 5}}));
   sets.scene.screen = number(wire::Screen::logo);
   sets.story.update({}, sets.scene, 0.01f);

@@ -1,4 +1,4 @@
-// The pages of the menu: tuning and seats, without a picture.
+// The pages of the menu: tuning, seats and controllers, without drawing.
 #include "client/menu.h"
 
 #include <gtest/gtest.h>
@@ -42,7 +42,7 @@ class TuningPanel : public testing::Test {
   }
   ~TuningPanel() override { std::filesystem::remove_all(folder); }
   int row(const std::string& label) const { return row_of(menu.page(0), label); }
-  // A server that grants every request, for so long; what it was asked.
+  // A server that grants every request, for this time; returns the requests.
   std::vector<wire::MatchRequest> grant(std::int64_t long_us, std::uint64_t session = 1) {
     std::vector<wire::MatchRequest> all;
     for (const std::int64_t end = now + long_us; now < end; now += 16'000) {
@@ -184,7 +184,7 @@ TEST(SeatsMenu, ARodGoesRoundAllDevicesAndToNobody) {
     EXPECT_EQ(asked.claim->team, 0);
     ++given_up;
   }
-  // First person, mouse, both halves of the keyboard and the one pad that is plugged in.
+  // First person, mouse, both halves of the keyboard, and the one pad that is plugged in.
   EXPECT_EQ(players.size(), 5u);
   EXPECT_EQ(given_up, 1);
 }
@@ -269,7 +269,8 @@ TEST(SeatsMenu, TellsPeopleAtOneOtherWindowApart) {
 
 class ControllersPage : public testing::Test {
  protected:
-  // A controller of 1000 frames a second of which every 50th is lost, and 0.4 ms old when taken.
+  // A controller with 1000 frames per second, of which every 50th is lost; frames are 0.4 ms old
+  // when used.
   void hear(double seconds) {
     wire::Devices told{std::llround(1e6 * seconds), {{}}};
     wire::DeviceReport& device = told.devices[0];
@@ -338,7 +339,7 @@ TEST_F(ControllersPage, SaysWhyNothingIsSeen) {
   EXPECT_NE(menu.page(0).note.find("--device"), std::string::npos);
   hear(1.0);
   hear(2.0);
-  menu.hear({3'000'000, {}});  // all are gone
+  menu.hear({3'000'000, {}});  // all are unplugged
   EXPECT_FALSE(menu.page(3).device);
 }
 

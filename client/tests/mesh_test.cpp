@@ -16,13 +16,13 @@ namespace {
 
 using Place = std::tuple<long, long, long>;
 
-// Vertices that share a place are one corner of the surface, whatever their normals.
+// Vertices at one position are one corner of the surface, whatever their normals.
 Place place_of(const glm::vec3& p) {
   const auto grid = [](float v) { return std::lround(static_cast<double>(v) * 2e6); };
   return {grid(p.x), grid(p.y), grid(p.z)};
 }
 
-// Every edge is walked as often one way as the other: the surface has no hole and no flipped
+// Every edge is traversed equally often in both directions: the surface has no hole and no flipped
 // triangle.
 void expect_closed(const MeshData& mesh) {
   std::map<std::pair<Place, Place>, int> walked;
@@ -95,7 +95,7 @@ TEST(MeshBuilder, AFineEllipsoidHasItsVolume) {
   EXPECT_NEAR(volume(b.mesh()), exact, 0.01 * exact);
 }
 
-// The built-in ones, then men at the bounds of what a file may say.
+// The built-in characters, then men at the limits that a file may specify.
 int figure_count() {
   return static_cast<int>(foosball::built_in_characters().size()) + 2;
 }
@@ -133,7 +133,7 @@ TEST_P(Figures, AreClosedSolidsThatFillTheBoxesOfThePhysics) {
     high = glm::max(high, v.position);
     sole_low = std::min(sole_low, v.position.z);
   }
-  EXPECT_NEAR(sole_low, box_low.z, 1e-5f);  // the sole is where the physics has it
+  EXPECT_NEAR(sole_low, box_low.z, 1e-5f);  // the sole matches the collision model
   for (int i = 0; i < 3; ++i) {
     EXPECT_GE(low[i], box_low[i] - kFigureOverhang) << i;
     EXPECT_LE(high[i], box_high[i] + kFigureOverhang) << i;
@@ -174,9 +174,9 @@ TEST(TableMesh, IsClosedAndLeavesTheGoalMouthsOpen) {
       expect_sound_triangles(*part);
       expect_closed(*part);
     }
-    // What is mirrored as if it stood on the field must not hang below it.
+    // Parts that are mirrored as if they stood on the field must not extend below it.
     for (const MeshVertex& v : body.vertices) EXPECT_LT(v.position.z, 0.0f);
-    // No vertex stands in the mouth, where the ball rolls in.
+    // No vertex is in the mouth, where the ball rolls in.
     for (const MeshVertex& v : mesh.vertices) {
       const bool in_mouth =
           std::abs(v.position.x) > 0.5 * table.length + 0.02 &&
@@ -188,7 +188,7 @@ TEST(TableMesh, IsClosedAndLeavesTheGoalMouthsOpen) {
   }
 }
 
-// Where no rods are drawn, nothing that carries them stands in the men's way.
+// Without drawn rods, no bearings obstruct the men.
 TEST(TableMesh, SideWallsAreLowAndBareWithoutTheirBearings) {
   const auto& table = foosball::table_spec(foosball::Layout::paper);
   for (const MeshVertex& v : rim_mesh(table, 1.0f).vertices) {

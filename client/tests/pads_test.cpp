@@ -1,11 +1,11 @@
-// Gamepads as SDL tells of them: a virtual one, plugged in, pressed and unplugged.
+// Gamepads as SDL reports them: a virtual pad that is plugged in, pressed and unplugged.
 #include "app/pads.h"
 
 #define SDL_MAIN_HANDLED
 #include <SDL2/SDL.h>
 #include <gtest/gtest.h>
 
-// SDL's connection to D-Bus, by which it hears of devices, is never closed.
+// SDL never closes its D-Bus connection, through which it learns of devices.
 extern "C" const char* __lsan_default_suppressions();   // NOLINT(bugprone-reserved-identifier)
 extern "C" const char* __lsan_default_suppressions() {  // NOLINT(bugprone-reserved-identifier)
   return "leak:libdbus-1";
@@ -18,7 +18,7 @@ struct VirtualPad {
   VirtualPad()
       : device(SDL_JoystickAttachVirtual(SDL_JOYSTICK_TYPE_GAMECONTROLLER, SDL_CONTROLLER_AXIS_MAX,
                                          SDL_CONTROLLER_BUTTON_MAX, 0)) {}
-  // Found by its number of now: numbers move when another is unplugged.
+  // By its present index: indices change when another pad is unplugged.
   SDL_Joystick* joystick() const {
     return SDL_JoystickFromInstanceID(SDL_JoystickGetDeviceInstanceID(device));
   }
@@ -69,7 +69,8 @@ TEST(Pads, APressBetweenTwoFramesIsThereAndAnUnpluggedPadIsTold) {
   EXPECT_TRUE(input.connected(0)) << "has the place that it had";
 }
 
-// A server beside a cabinet has its rods from the controller: they are not played twice.
+// A server beside a cabinet reads its rods from the controller, so the client must not play them
+// too.
 TEST(Pads, ThoseOfACabinetArePlayedOnlyWhenAskedFor) {
   for (const bool asked : {false, true}) {
     Pads pads(asked);

@@ -45,7 +45,8 @@ TEST_P(PlayerInputTest, DrivesTheOwnFourRodsOnlyAndTakesThemOverWhereTheyAre) {
 
 INSTANTIATE_TEST_SUITE_P(BothTeams, PlayerInputTest, ::testing::Values(0, 1));
 
-// What another moves for this person is no motion of the hand: the server would take it for one.
+// A rod that another cause moves must not change the hand's targets: the server would take that for
+// input.
 TEST(PlayerInput, AHandThatRestsSendsItsOwnPlacesWhateverBecomesOfTheRods) {
   PlayerInput player(kSession, 0, foosball::Layout::tournament);
   wire::Snapshot scene = scripted_play(0.0);
@@ -57,9 +58,9 @@ TEST(PlayerInput, AHandThatRestsSendsItsOwnPlacesWhateverBecomesOfTheRods) {
   EXPECT_NEAR(player.rods()[0].slide, 0.02, 1e-6) << "it takes them over where they are";
   all_at(0.02f, wire::RodSource::client);
   player.update({}, &scene, 2 * kFrame);
-  all_at(0.03f, wire::RodSource::client);  // a ball has pushed them
+  all_at(0.03f, wire::RodSource::client);  // a ball has moved them
   player.update({}, &scene, 3 * kFrame);
-  all_at(-0.05f, wire::RodSource::computer);  // the computer stands in
+  all_at(-0.05f, wire::RodSource::computer);  // the stand-in computer plays
   player.update({}, &scene, 4 * kFrame);
   for (const int rod : {0, 1, 3, 5}) {
     EXPECT_TRUE(player.rods()[static_cast<std::size_t>(rod)].driven);
@@ -192,7 +193,7 @@ TEST(PlayerInput, TheRodsOfAnotherMatchAreNotTakenForItsBeginning) {
   EXPECT_TRUE(player.rods()[active].driven);
   EXPECT_NEAR(player.rods()[active].slide, match.rods[active].slide, 1e-6);
   EXPECT_NEAR(player.rods()[active].angle, match.rods[active].angle, 1e-6);
-  // A straggler of the old match moves nothing any more, and what the hand did in it is lost.
+  // A late snapshot of the old match moves nothing, and input during that match is discarded.
   player.update(events, &old_match, 3 * kFrame);
   EXPECT_NEAR(player.rods()[active].slide, match.rods[active].slide, 1e-6);
 }

@@ -1,6 +1,6 @@
-// For whoever works on the picture: draws scripted moments without a server and writes them as PNG.
+// For work on the renderer: draws scripted moments without a server and writes them as PNG.
 //   client_preview DIRECTORY [low|high] [WxH] [en|de|ko] [NAME] [TEXT_SCALE]
-// NAME: only the moments whose name begins with it, all of them if it is empty.
+// NAME: only the moments whose name begins with it; all if it is empty.
 #include <GLES3/gl3.h>
 
 #include <algorithm>
@@ -105,7 +105,7 @@ constexpr Shot kShots[] = {{"logo", 0.4, 0, 0},
                            {"challenge-play", 2.4, 2, 0},
                            {"training-play", 2.4, 2, 0}};
 
-// What the rules decide at this moment.
+// Sets the state of the rules at this moment.
 void decide(const std::string& shot, wire::Snapshot& state, HudState& hud) {
   const auto has = [&shot](const char* word) { return shot.find(word) != std::string::npos; };
   if (shot.starts_with("rules")) state.sets = {1, 0};
@@ -153,7 +153,7 @@ void decide(const std::string& shot, wire::Snapshot& state, HudState& hud) {
   }
 }
 
-// A controller whose rods move, one that is away, and a mouse.
+// A controller whose rods move, an absent one, and a mouse.
 MenuPage controllers_page() {
   Menu menu("/nowhere");
   menu.toggle(Menu::Page::controllers);
@@ -164,7 +164,7 @@ MenuPage controllers_page() {
   return menu.page({settings, nobody, nullptr});
 }
 
-// As a person sees it who shares the table with others.
+// As seen by a person who shares the table with others.
 MenuPage menu_page(Menu::Page page, int row, bool host = true,
                    std::uint8_t game_mode = number(wire::Mode::match)) {
   static SeatsView seats;
@@ -379,7 +379,7 @@ int run(const std::string& directory, draw::Quality quality, const glm::ivec2& s
       particles.celebrate({-0.6f, 0, 0.06f}, {0.9f, 0.4f, 0.1f}, 1.0f);
       for (int i = 0; i < 30; ++i) particles.step(0.016f);
     }
-    // CPU time of all threads: what software OpenGL costs, whatever else the machine does.
+    // CPU time of all threads: the cost of software OpenGL, independent of the machine's load.
     double best = 1e9;
     for (int i = 0; i < 4; ++i) {
       const double start = cpu();

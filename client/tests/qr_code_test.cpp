@@ -9,7 +9,7 @@
 namespace client {
 namespace {
 
-// The dark ring with a core by which a camera finds the code.
+// The finder pattern, a dark ring with a core, by which a camera locates the code.
 bool finder_at(const QrCode& code, int left, int top) {
   for (int y = 0; y < 7; ++y) {
     for (int x = 0; x < 7; ++x) {

@@ -1,4 +1,4 @@
-// The real window with a scene and the HUD, for tests that look at the pixels. Needs a display.
+// The real window with a scene and the HUD, for tests that examine the pixels. Needs a display.
 #pragma once
 
 #include <GLES3/gl3.h>
@@ -21,8 +21,8 @@ namespace client {
 
 inline constexpr glm::ivec2 kSize{960, 540};
 
-// What all tests draw with. Opened once for all suites: a display server starts anew, and refuses
-// for a moment, when its last window closes.
+// Shared by all tests, and opened once for all suites: a display server restarts when its last
+// window closes, and rejects connections for a moment.
 class Display : public ::testing::Environment {
  public:
   void SetUp() override {
@@ -46,7 +46,7 @@ inline ::testing::Environment* const display = ::testing::AddGlobalTestEnvironme
 
 class RenderTest : public ::testing::TestWithParam<draw::Quality> {
  protected:
-  // Made once for all tests of a quality: setting up takes longer than drawing.
+  // Created once for all tests of a quality: setup takes longer than drawing.
   void SetUp() override {
     ASSERT_TRUE(Display::window);
     std::unique_ptr<Scene>& shared = Display::scenes[static_cast<std::size_t>(GetParam())];
@@ -77,7 +77,7 @@ class RenderTest : public ::testing::TestWithParam<draw::Quality> {
       draw_hud(*ui, *hud, kSize);
     }
     const draw::Image image = draw::read_pixels(kSize);
-    // For a person to look at after a failure.
+    // For a person to examine after a failure.
     if (const char* directory = std::getenv("CLIENT_TEST_PICTURES")) {
       static int count = 0;
       (void)draw::write_png(image,
@@ -87,7 +87,7 @@ class RenderTest : public ::testing::TestWithParam<draw::Quality> {
     return image;
   }
 
-  // The HUD alone, over an even grey.
+  // The HUD alone, over a uniform grey.
   draw::Image written(const wire::Snapshot& state, const HudState& hud) {
     return written(*ui, state, hud, kSize);
   }
@@ -117,7 +117,7 @@ class RenderTest : public ::testing::TestWithParam<draw::Quality> {
     return sum / static_cast<float>((high.x - low.x) * (high.y - low.y));
   }
 
-  // How many pixels around differ clearly between two pictures.
+  // Number of pixels around the centre that differ clearly between two pictures.
   static int changed(const draw::Image& a, const draw::Image& b, glm::ivec2 centre, int radius) {
     int count = 0;
     for (int y = std::max(0, centre.y - radius); y < std::min(kSize.y, centre.y + radius); ++y) {

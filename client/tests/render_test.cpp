@@ -1,4 +1,4 @@
-// Opens the real window, draws scripted moments and looks at the pixels. Needs a display.
+// Opens the real window, draws scripted moments and examines the pixels. Needs a display.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -16,7 +16,7 @@ TEST_P(RenderTest, TheFieldIsTealWhereNothingStandsOnIt) {
   wire::Snapshot state = scripted_play(0.35);
   state.ball_in_play = false;
   const draw::Image image = draw(state);
-  // Between the rods, off the markings, out of every shadow's reach at this moment's light.
+  // Between the rods, off the markings, outside all shadows at this moment.
   for (const std::array<float, 3>& p :
        {std::array{0.02f, -0.28f, 0.0f}, std::array{-0.30f, 0.20f, 0.0f}}) {
     const glm::ivec2 at = pixel_of(p);
@@ -105,7 +105,7 @@ TEST_P(RenderTest, AManThatMovesLeavesHisPlace) {
   EXPECT_EQ(changed(a, b, pixel_of(still.body.position), 6), 0);
 }
 
-// For how long less than half of the ball is seen at a stretch, over scripted play [s].
+// The longest time during which less than half of the ball is visible, over scripted play [s].
 double longest_hidden(Scene& scene, foosball::Layout layout, int team, View kind) {
   constexpr double kStep = 0.06;
   constexpr glm::ivec2 kPicture{400, 225};
@@ -113,7 +113,7 @@ double longest_hidden(Scene& scene, foosball::Layout layout, int team, View kind
   double hidden = 0.0, longest = 0.0;
   for (double t = 0.0; t < 8.0; t += kStep) {
     wire::Snapshot state = scripted_play(t, layout);
-    // Half of the time on the field's surface, where feet hide most.
+    // Half of the time on the field's surface, where feet hide most of it.
     if (std::fmod(t, 2.0) < 1.0) state.ball.position[2] = 0.0173f;
     SceneView view;
     const auto& at = state.ball.position;
@@ -127,8 +127,8 @@ double longest_hidden(Scene& scene, foosball::Layout layout, int team, View kind
   return longest;
 }
 
-// Men and rods before the ball let it be seen: it is never more than half hidden for longer than
-// 0.3 s, in any view that is meant for play, from either side. The paper's layout has 32 men.
+// Men and rods in front of the ball become transparent: it is never more than half hidden for
+// longer than 0.3 s, in any view for play, from either side. The paper's layout has 32 men.
 TEST_P(RenderTest, TheBallIsSeenInEveryViewMeantForPlay) {
   if (GetParam() == draw::Quality::high) GTEST_SKIP() << "the same places are left out";
   for (const auto layout : {foosball::Layout::tournament, foosball::Layout::paper}) {

@@ -1,5 +1,5 @@
-// What is written over the picture, judged by its pixels: that it is there, can be read, and covers
-// nothing. Needs a display.
+// The text over the picture, judged by its pixels: it is present, legible, and covers nothing.
+// Needs a display.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -19,7 +19,7 @@
 namespace client {
 namespace {
 
-// The words are the same at every quality.
+// The text is the same at every quality.
 class RenderedWords : public RenderTest {};
 
 TEST_P(RenderedWords, ScoreAndMessagesAreWritten) {
@@ -30,7 +30,7 @@ TEST_P(RenderedWords, ScoreAndMessagesAreWritten) {
   EXPECT_GT(changed(before, after, left_figure, 18), 40);
   EXPECT_EQ(changed(before, after, right_figure, 18), 0);
   const draw::Image scored = draw(state, HudState{});
-  // Orange figures left of the middle, blue ones right of it.
+  // Orange digits left of the centre, blue ones right of it.
   const glm::vec3 left = mean(scored, {kSize.x / 2 - 60, 18}, {kSize.x / 2 - 25, 52});
   const glm::vec3 right = mean(scored, {kSize.x / 2 + 25, 18}, {kSize.x / 2 + 60, 52});
   EXPECT_GT(left.r, left.b + 10);
@@ -82,7 +82,7 @@ TEST_P(RenderedWords, APlayerIsToldTheKeysWhereAChoiceIsToBeMadeAndWhenAskingFor
   EXPECT_TRUE(told(2, false, true));
 }
 
-// The page with its longest words: of the rod, of the value and of what went wrong.
+// The page with its longest texts: of the row, the value and the error.
 MenuPage menu_page(Menu::Page page) {
   static SeatsView seats;
   seats.scene = scripted_play(0.35);
@@ -110,7 +110,7 @@ MenuPage menu_page(Menu::Page page) {
   return shown;
 }
 
-// The longest words of the rules and the modes.
+// The longest texts of the rules and the modes.
 void tell_all_rules(wire::Snapshot& state, HudState& hud, int which) {
   state.ball_visible = which % 2 == 0;
   state.mode = number(which % 3 == 0 ? wire::Mode::challenge : wire::Mode::ladder);
@@ -125,8 +125,8 @@ void tell_all_rules(wire::Snapshot& state, HudState& hud, int which) {
   hud.sets = {{8, 7}, {2, 5}, {5, 1}, {3, 5}, {8, 7}};
 }
 
-// Every screen, in windows of every shape, in each language, at the largest text: nothing reaches
-// over an edge (but for the soft rim of a letter).
+// Every screen, in windows of every shape, in each language, at the largest text: nothing extends
+// beyond an edge (except for the soft rim of a letter).
 TEST_P(RenderedWords, NothingWrittenIsCutInAnyWindow) {
   constexpr float kRim = 6.0f;  // [px]
   for (const char* language : {"en", "de", "ko"}) {
@@ -176,8 +176,8 @@ TEST_P(RenderedWords, NothingWrittenIsCutInAnyWindow) {
   use_language("en", CLIENT_CATALOGUES);
 }
 
-// The clock of possession takes the room of the board and no more; from the seat neither they nor
-// what stands below for long hide any place where the ball may be.
+// The possession clock takes no more space than the board. In the view from the seat, neither they
+// nor the lines that stay below them hide any possible position of the ball.
 TEST_P(RenderedWords, TheClockOfPossessionAndAGoldenGoalHideNoBall) {
   const auto& table = foosball::table_spec(foosball::Layout::tournament);
   UiBatch words = UiBatch::create(Font::load().value()).value();
@@ -215,7 +215,7 @@ TEST_P(RenderedWords, TheClockOfPossessionAndAGoldenGoalHideNoBall) {
   }
 }
 
-// Where two pictures differ: what was written more in the second.
+// Pixels at which two pictures differ: the additional text of the second.
 std::vector<glm::ivec2> added(const draw::Image& before, const draw::Image& after,
                               const glm::ivec2& size) {
   std::vector<glm::ivec2> pixels;
@@ -228,8 +228,8 @@ std::vector<glm::ivec2> added(const draw::Image& before, const draw::Image& afte
   return pixels;
 }
 
-// Hints, notices and keys are written beside the board, never through it, and from above never over
-// the middle of the table.
+// Hints, notices and keys are drawn beside the board, never over it, and in the view from above
+// never over the centre of the table.
 TEST_P(RenderedWords, NothingIsWrittenThroughTheScoreNorFromAboveOverTheGoals) {
   for (const char* language : {"en", "de", "ko"}) {
     use_language(language, CLIENT_CATALOGUES);
@@ -249,7 +249,7 @@ TEST_P(RenderedWords, NothingIsWrittenThroughTheScoreNorFromAboveOverTheGoals) {
         const draw::Image all = written(words, state, hints, size);
         const auto hint = added(board, all, size);
         EXPECT_GT(hint.size(), 500u) << "the hints are written";
-        // The board alone is on the grey, a little darker than it.
+        // The board alone is on the grey, slightly darker than it.
         int through = 0, mid_table = 0;
         for (const glm::ivec2& p : hint) {
           through += board.at(p.x, p.y) != glm::ivec3(board.at(size.x / 2, size.y / 2));
@@ -258,7 +258,7 @@ TEST_P(RenderedWords, NothingIsWrittenThroughTheScoreNorFromAboveOverTheGoals) {
         EXPECT_EQ(through, 0) << language << " " << size.x << "x" << size.y << " " << scale;
         if (view == View::above) {
           EXPECT_EQ(mid_table, 0) << language << " " << size.x << "x" << size.y << " " << scale;
-          // The pause's keys stand above the board too: its figures stay as they are.
+          // The pause's keys are above the board too: its digits stay unchanged.
           wire::Snapshot paused = state;
           paused.paused = true;
           const draw::Image keys = written(words, paused, plain, size);
@@ -273,7 +273,7 @@ TEST_P(RenderedWords, NothingIsWrittenThroughTheScoreNorFromAboveOverTheGoals) {
   use_language("en", CLIENT_CATALOGUES);
 }
 
-// At the largest text too, and in high windows the lists use the height.
+// At the largest text too; in tall windows the lists use the height.
 TEST_P(RenderedWords, TheKeysOfTheSelectionCoverNobodysChoice) {
   wire::Snapshot state = scripted_play(1.0), ready = state;
   state.screen = ready.screen = number(wire::Screen::selection);
@@ -345,7 +345,7 @@ TEST_P(RenderedWords, NoBoardPeeksOutBehindAMenuAndOneNoticeAtMostLiesOverTheFie
   EXPECT_FALSE(added(written(state, one), written(state, three), kSize).empty());
 }
 
-// Down the middle of the picture, the result and the questions are apart.
+// Along the vertical centre line of the picture, the result and the questions are separate.
 TEST_P(RenderedWords, TheQuestionnaireLeavesTheResultFree) {
   wire::Snapshot state = scripted_play(0.35);
   state.screen = number(wire::Screen::end);
@@ -358,7 +358,7 @@ TEST_P(RenderedWords, TheQuestionnaireLeavesTheResultFree) {
     hud.survey = {{.kind = SurveyPanel::Kind::consent, .team = 0, .text = "Six short questions?"}};
     const draw::Image image = written(words, state, hud, size);
     const glm::ivec3 grey = image.at(2, size.y / 2);
-    std::vector<int> panels;  // how high each is [px]
+    std::vector<int> panels;  // height of each [px]
     bool inside = false;
     for (int y = 0; y < size.y; ++y) {
       const bool written_on = image.at(size.x / 2, y) != grey;
@@ -373,7 +373,7 @@ TEST_P(RenderedWords, TheQuestionnaireLeavesTheResultFree) {
 }
 
 // Names of any length, in a narrow window: letters as high as those of 11 pixels, and nothing over
-// the date, the mark of what is kept, or the window's edge.
+// the date, the mark of a kept recording, or the window's edge.
 TEST_P(RenderedWords, NamesInTheListOfRecordingsAreReadableAndStayInTheirPlace) {
   UiBatch words = UiBatch::create(Font::load().value()).value();
   ReplayList list;
@@ -392,7 +392,7 @@ TEST_P(RenderedWords, NamesInTheListOfRecordingsAreReadableAndStayInTheirPlace) 
     return draw::read_pixels(size);
   };
   for (const glm::ivec2 size : {glm::ivec2(480, 540), glm::ivec2(640, 360), kSize}) {
-    // A date is written to its last figure.
+    // A date is drawn to its last digit.
     const draw::Image minute = drawn(" ", size);
     row.when.back() = '7';
     EXPECT_FALSE(added(minute, drawn(" ", size), size).empty()) << size.x << "x" << size.y;
@@ -410,7 +410,7 @@ TEST_P(RenderedWords, NamesInTheListOfRecordingsAreReadableAndStayInTheirPlace) 
       over += before.r + before.g + before.b > 240;
       EXPECT_TRUE(place.holds(p)) << p.x << " " << p.y;
     }
-    EXPECT_GE(high - low + 1, 8) << size.x << "x" << size.y;  // a capital of 11 px is 8 high
+    EXPECT_GE(high - low + 1, 8) << size.x << "x" << size.y;  // a capital of 11 px is 8 px high
     EXPECT_EQ(over, 0) << size.x << "x" << size.y;
   }
 }
@@ -434,7 +434,7 @@ TEST_P(RenderedWords, ARodIsSaidToBeHeldLegiblyAndNeverInARecording) {
   EXPECT_GE(high - low + 1, 7);  // capitals of a line of 10 px
 }
 
-// Of the paper's layout unless asked for: there is no handle to be marked.
+// The default for the paper's layout: there is no handle to mark.
 TEST_P(RenderedWords, WhereNoRodsAreDrawnNoHandleIsMarked) {
   const wire::Snapshot state = scripted_play(0.35, foosball::Layout::paper);
   const auto& table = foosball::table_spec(foosball::Layout::paper);

@@ -11,14 +11,13 @@ namespace {
 
 constexpr std::int64_t kFrame = 16'667;
 
-// In a ceremony of 4 s three quarters of a second before the goal and a fifth after it, at 0.3 of
-// their speed.
+// In a ceremony of 4 s: from 0.75 s before the goal to 0.2 s after it, at 0.3 times the speed.
 TEST(ReplayReel, ShowsTheGoalAgainInSlowMotionAndEndsWithinTheCeremony) {
   ReplayReel reel;
   std::int64_t now = 0;
   wire::Snapshot scene = scripted_play(0.0);
   for (int i = 0; i < 200; ++i, now += kFrame) {
-    scene.ball.position[0] = 1e-6f * static_cast<float>(now);  // [m] for [s]: tells the time
+    scene.ball.position[0] = 1e-6f * static_cast<float>(now);  // [m] equals [s]: encodes the time
     scene.ball.linear_velocity = {1, 0, 0};
     reel.record(scene, now);
     EXPECT_FALSE(reel.showing(now));
@@ -59,7 +58,7 @@ TEST(ReplayReel, IsSkippedAndNeedsAGoal) {
   EXPECT_FALSE(reel.showing(now + ReplayReel::kWaitUs + kFrame));
 }
 
-// Whether anything was shown again within the four seconds after the play.
+// Whether a replay was shown within the four seconds after the play.
 bool shown_again(wire::Screen next, bool ball_in_goal) {
   ReplayReel reel;
   bool shown = false;

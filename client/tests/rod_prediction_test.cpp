@@ -1,4 +1,4 @@
-// From hand to picture in software, with a scripted server and a scripted clock.
+// From input to picture in software, with a scripted server and a scripted clock.
 #include "client/rod_prediction.h"
 
 #include <gtest/gtest.h>
@@ -18,8 +18,8 @@ constexpr int kRod = 3;  // midfield of team 0
 constexpr std::int64_t kMs = 1000;
 using Hand = std::array<wire::InputRod, 8>;
 
-// A server whose rods move as foosball/rod_motion.h has them; inputs and snapshots take their time
-// on the way. Frames of a window are drawn from a SnapshotBuffer with and without prediction.
+// A server whose rods follow foosball/rod_motion.h; inputs and snapshots have a transit time.
+// Frames of a window are drawn from a SnapshotBuffer with and without prediction.
 class HandToPicture {
  public:
   HandToPicture(std::int64_t way_us, std::int64_t frame_us) : way_us_(way_us), frame_us_(frame_us) {
@@ -29,7 +29,7 @@ class HandToPicture {
     for (int i = 0; i < 20; ++i) frame(hand_);
   }
 
-  // Draws one frame in which the hand is there.
+  // Draws one frame with this input.
   void frame(const Hand& hand) {
     hand_ = hand;
     for (std::int64_t to = now_us_ + frame_us_; now_us_ < to; now_us_ += kMs) server_tick();
@@ -93,13 +93,13 @@ class HandToPicture {
 };
 
 struct Latency {
-  int seen_ms = -1, drawn_ms = -1;  // until the rod has made half of its way
+  int seen_ms = -1, drawn_ms = -1;  // until the rod has moved half of its distance
 };
 
 Latency latency(std::int64_t way_us, std::int64_t frame_us) {
   HandToPicture play(way_us, frame_us);
   Latency result;
-  const std::int64_t moved_at = play.now() + frame_us;  // the window sees the hand in this frame
+  const std::int64_t moved_at = play.now() + frame_us;  // the window reads the input in this frame
   for (int i = 0; i < 100 && (result.seen_ms < 0 || result.drawn_ms < 0); ++i) {
     play.frame(HandToPicture::at(0.04f));
     const auto since = static_cast<int>((play.now() - moved_at) / kMs);
@@ -116,7 +116,7 @@ TEST(RodPrediction, TheOwnRodIsDrawnWithTheHandWhateverTheWayToTheServer) {
   for (const std::int64_t way : {0, 10, 60}) {
     for (const std::int64_t frame : {8, 16, 33, 100}) {
       const Latency of = latency(way * kMs, frame * kMs);
-      // In the frame that read the hand, if that frame is as long as the rod's own motion takes.
+      // In the frame that read the input, if that frame is as long as the rod's own motion takes.
       EXPECT_LE(of.drawn_ms, 16) << way << " " << frame;
       EXPECT_GE(of.seen_ms, of.drawn_ms + 2 * way) << way << " " << frame;
     }
@@ -130,20 +130,20 @@ TEST(RodPrediction, AMovingHandIsDrawnWithoutTrembling) {
     const float t = 0.016f * static_cast<float>(i);
     play.frame(HandToPicture::at(0.05f * std::sin(6.0f * t)));
     if (i > 60) {
-      // The hand's own step in a frame is at most 4.8 mm.
+      // The input's own step in a frame is at most 4.8 mm.
       roughest = std::max(roughest, std::fabs(play.drawn() - last));
       EXPECT_NEAR(play.drawn(), 0.05f * std::sin(6.0f * t), 0.003) << i;
     }
     last = play.drawn();
   }
   EXPECT_LT(roughest, 0.0062);
-  // Two ways, a frame, a tick, the interpolation.
+  // Two transit times, a frame, a tick, the interpolation.
   EXPECT_NEAR(play.prediction().lag_ms(), 98, 8);
 }
 
 TEST(RodPrediction, APinchedRodIsDrawnPinchedWithinAFewFrames) {
   HandToPicture play(5 * kMs, 16 * kMs);
-  for (int i = 0; i < 60; ++i)  // so that the lag is known
+  for (int i = 0; i < 60; ++i)  // to estimate the lag
     play.frame(HandToPicture::at(0.03f * std::sin(0.2f * static_cast<float>(i))));
   play.blocked_at = 0.010;
   int frames = 0;
@@ -155,7 +155,7 @@ TEST(RodPrediction, APinchedRodIsDrawnPinchedWithinAFewFrames) {
   EXPECT_LE(frames, 8);
   for (int i = 0; i < 30; ++i) play.frame(HandToPicture::at(0.05f));
   EXPECT_NEAR(play.drawn(), 0.010, 0.0005);
-  // Freed, it follows the hand again.
+  // Released, it follows the input again.
   play.blocked_at = 1.0;
   for (int i = 0; i < 30; ++i) play.frame(HandToPicture::at(0.05f));
   EXPECT_NEAR(play.drawn(), 0.05, 0.0005);
@@ -177,7 +177,7 @@ TEST(RodPrediction, MenMoveWithTheirRodAndOthersStay) {
   }
 }
 
-// A hinged man whom the ball holds: the hand is seen at once, he is where the server has him.
+// A hinged man blocked by the ball: the input shows at once, but he stays where the server has him.
 TEST(RodPrediction, AManWhoIsHeldStaysWhereTheServerHasHim) {
   wire::Snapshot server = scripted_play(0.0, foosball::Layout::paper);
   for (auto& rod : server.rods) rod = {0, 0, 0, 0, 1, 2};
@@ -210,7 +210,7 @@ TEST(RodPrediction, AManWhoIsHeldStaysWhereTheServerHasHim) {
 
 TEST(RodPrediction, RodsOfOthersAndOfAPausedMatchAreTheServers) {
   const Hand hand = HandToPicture::at(0.05f);
-  wire::Snapshot scene = scripted_play(0.7);  // no rod of team 0 moves by a client but as scripted
+  wire::Snapshot scene = scripted_play(0.7);  // rods of team 0 move only as scripted
   for (auto& rod : scene.rods) rod.source = number(wire::RodSource::computer);
   wire::Snapshot paused = scripted_play(0.7);
   paused.paused = true;

@@ -1,4 +1,4 @@
-// A server for tests: real sockets on loopback, worked step by step by the test itself.
+// A server for tests: real sockets on loopback; the test calls each step.
 #pragma once
 
 #include <chrono>
@@ -21,13 +21,13 @@ class ScriptedServer {
   explicit ScriptedServer(std::uint16_t port = 0);  // 0: any
   std::uint16_t port() const { return port_; }
 
-  // Each waits until it happened, at most kPatience; false or nothing after that.
+  // Each waits for its event, at most kPatience; then returns false or nothing.
   static constexpr std::chrono::milliseconds kPatience{10'000};
   bool accept();
-  void take_little();  // of what clients who are yet to come send, before it is read
+  void take_little();  // limits the receive buffer of the next clients
   std::optional<wire::ControlMessage> next_message();
   std::optional<wire::InputDatagram> next_input();
-  void forget_inputs();  // that have come, and were not asked for
+  void forget_inputs();  // drops the inputs that have arrived
 
   void send(const wire::ControlMessage& message);
   void send_bytes(std::span<const std::byte> bytes);

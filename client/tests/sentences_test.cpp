@@ -1,4 +1,4 @@
-// Sentences that others say in English, in the person's language.
+// English sentences of other programs, in the person's language.
 #include "render/sentences.h"
 
 #include <gtest/gtest.h>
@@ -56,7 +56,7 @@ TEST(Sentences, ThatAreNotKnownStayAsTheyAreWhateverIsInThem) {
       << "a name is no form";
 }
 
-// The server can say nothing else: a Sentence is made from these forms.
+// The server produces no other sentences: a Sentence is made from these patterns.
 TEST(Sentences, OfTheServerAreAllKnownInEachLanguage) {
   for (const char* code : {"de", "ko"}) {
     const Language language(code);

@@ -75,7 +75,7 @@ TEST(SettingsMenu, ANameIsTypedAndKeptByEnterAlone) {
   EXPECT_TRUE(menu.step({.text = "\r"}, 0, settings));
   EXPECT_FALSE(menu.waits_for_key());
   EXPECT_EQ(settings.names[0], "Jo");
-  // As it was: by Esc, and by an Enter that changes nothing.
+  // Unchanged after Esc, and after an Enter without a change.
   menu.step({.confirm = true}, 0, settings);
   menu.step({.text = "hn"}, 0, settings);
   EXPECT_FALSE(menu.step({.back = true}, 0, settings));
@@ -83,7 +83,7 @@ TEST(SettingsMenu, ANameIsTypedAndKeptByEnterAlone) {
   EXPECT_EQ(settings.names[0], "Jo");
   menu.step({.confirm = true}, 0, settings);
   EXPECT_FALSE(menu.step({.text = "\r"}, 0, settings));
-  // Emptied it is the default again; and no name is longer than a message's.
+  // An empty name resets it to the default; a name is limited to the length in a message.
   menu.step({.confirm = true}, 0, settings);
   EXPECT_TRUE(menu.step({.text = "\b\b\b\b\r"}, 0, settings));
   EXPECT_EQ(menu.rows(settings)[row].value, "player");
@@ -118,7 +118,7 @@ TEST(MenuHand, KeysMouseAndRodsMakeTheSameSteps) {
     steps = hand.steps({}, &moved, team);
     EXPECT_EQ(steps.down, 1);
     EXPECT_EQ(steps.right, -1);
-    steps = hand.steps({}, &moved, team);  // a rod that stays makes no more
+    steps = hand.steps({}, &moved, team);  // an unmoved rod makes no more steps
     EXPECT_EQ(steps.down, 0);
     EXPECT_EQ(steps.right, 0);
   }

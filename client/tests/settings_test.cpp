@@ -133,7 +133,7 @@ TEST(Settings, RodsAreDrawnWhereTheTableHasThemUnlessTheyAreAskedForOrAway) {
     EXPECT_TRUE(rods_are_drawn(RodsShown::on, layout));
     EXPECT_FALSE(rods_are_drawn(RodsShown::off, layout));
   }
-  // Files of before there was a third way.
+  // Files of versions with only two choices.
   EXPECT_EQ(parse_settings("hide_rods = yes\n").settings.rods, RodsShown::off);
   EXPECT_EQ(parse_settings("hide_rods = no\n").settings.rods, RodsShown::as_on_the_table);
 }

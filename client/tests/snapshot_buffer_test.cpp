@@ -17,7 +17,7 @@ namespace {
 using Verdict = SnapshotBuffer::Verdict;
 
 constexpr std::uint64_t kSession = 77;
-constexpr std::int64_t kStart = 5'000'000;  // of this process' clock at tick 0 [us]
+constexpr std::int64_t kStart = 5'000'000;  // of this process's clock at tick 0 [us]
 constexpr double kSpeed = 3.0;              // of the ball along x [m/s]
 
 wire::Snapshot at_tick(std::uint64_t tick) {
@@ -130,7 +130,7 @@ TEST_F(Buffer, DelayGrowsWithJitterAndMotionStaysEven) {
   float last = -1;
   double worst = 0;
   std::int64_t last_now = 0;
-  // Arrivals are taken in their own order; a frame is drawn each 7 ms.
+  // Arrivals are processed in order of time; a frame is drawn each 7 ms.
   std::vector<std::pair<std::int64_t, std::uint64_t>> arrivals;
   for (std::uint64_t t = 0; t < 4000; ++t) arrivals.emplace_back(on_time(t) + late(random), t);
   std::sort(arrivals.begin(), arrivals.end());
@@ -155,7 +155,7 @@ TEST_F(Buffer, DelayGrowsWithJitterAndMotionStaysEven) {
 
 TEST_F(Buffer, StarvingGoesOnBrieflyThenStandsStillAndSaysSo) {
   for (std::uint64_t t = 0; t < 300; ++t) push(t);
-  const std::int64_t end = on_time(299) + buffer.delay_us();  // when the newest is just being shown
+  const std::int64_t end = on_time(299) + buffer.delay_us();  // when the newest is shown
   const SceneSample brief = buffer.sample(end + 10'000);
   EXPECT_FALSE(brief.starving);
   EXPECT_NEAR(brief.state.ball.position[0], kSpeed * 0.309, 1e-5);
@@ -167,7 +167,7 @@ TEST_F(Buffer, StarvingGoesOnBrieflyThenStandsStillAndSaysSo) {
 
 TEST_F(Buffer, PlayGoesOnInTimeAfterAStallOfTheServer) {
   for (std::uint64_t t = 0; t < 300; ++t) push(t);
-  // The server stood still for 2 s and goes on with the next tick.
+  // The server stood still for 2 s and continues with the next tick.
   for (std::uint64_t t = 300; t < 320; ++t) buffer.push(at_tick(t), on_time(t) + 2'000'000);
   const SceneSample sample = buffer.sample(on_time(319) + 2'000'000);
   EXPECT_FALSE(sample.starving);
@@ -188,7 +188,7 @@ TEST_F(Buffer, APauseThatStopsTheTickIsNoStarving) {
   EXPECT_EQ(buffer.counters().lost, 0u);
 }
 
-// The most that the decoders let in: computed in 64 bits, which the sanitizer watches.
+// The largest values that the decoders accept: computed in 64 bits, checked by the sanitizer.
 TEST_F(Buffer, TheLastTickOfTheLongestTicksIsShownAndLeftAgain) {
   buffer.begin_session(kSession + 1, wire::kMaxTickUs);
   wire::Snapshot s = at_tick(wire::kMaxTick);
@@ -220,7 +220,7 @@ TEST_F(Buffer, AnEventRepeatedInManySnapshotsIsGivenOnceWhenItsTickIsShown) {
   EXPECT_EQ(seen[1].id, 6u);
 }
 
-// One of these, believed, made everything after it old for good.
+// If accepted, one of these made everything after it too old permanently.
 TEST_F(Buffer, AJumpOfTickOrSequenceIsNotBelievedAndStopsNothing) {
   for (std::uint64_t t = 0; t < 100; ++t) push(t);
   wire::Snapshot far_tick = at_tick(100), far_sequence = at_tick(100);

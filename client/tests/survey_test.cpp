@@ -1,4 +1,4 @@
-// The questionnaire as hands work it.
+// The questionnaire, operated by input events.
 #include "client/survey.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ constexpr std::int64_t kFrameUs = 16'000;
 
 const SurveyPerson kAlone{.team = 0, .rods = 0x2B, .devices = kAllDevices, .name = "", .number = 0};
 
-// One person or several before it; what their devices do is set by the test for one frame.
+// One or several people; the test sets their devices' events for one frame.
 class SurveyTest : public testing::Test {
  protected:
   void ask(std::vector<SurveyPerson> people) {
@@ -190,7 +190,7 @@ TEST_F(SurveyTest, PeopleAnswerEachWithTheirOwnDevice) {
   EXPECT_EQ(survey_.devices(now_), pad.devices);
 }
 
-// A cabinet: spin chooses, standing confirms, a slide does nothing here.
+// A cabinet: spinning chooses, waiting confirms, a slide does nothing here.
 TEST_F(SurveyTest, IsAnsweredBySpinningTheRodsOfACabinet) {
   ask({{.team = 0, .rods = 0x2B, .devices = 0, .name = "", .number = 0}});
   const auto& table = foosball::table_spec(foosball::Layout::tournament);

@@ -41,7 +41,7 @@ TEST(Text, GlyphsRunFromLeftToRightAndSpacesTakeRoomWithoutInk) {
     EXPECT_GE(g.uv_low.x, 0.0f);
     EXPECT_LE(g.uv_high.y, 1.0f);
     EXPECT_LT(g.uv_low.x, g.uv_high.x);
-    EXPECT_LT(g.low.y, 50.0f);  // stands on the base line
+    EXPECT_LT(g.low.y, 50.0f);  // stands on the baseline
   }
 }
 

@@ -50,15 +50,14 @@ CLI::Validator within(double low, double high) {
       "NUMBER");
 }
 
-// Only trying tells: of a file system that is full of promises (/proc) or read-only, the
-// permissions say nothing.
+// Only an attempt shows it: permissions say nothing for /proc or a read-only file system.
 tl::expected<void, std::string> can_be_written(const char* option, const std::string& path) {
   std::error_code none;
   const auto status = std::filesystem::status(path, none);
   const bool there = std::filesystem::exists(status);
   if (path.empty() || (there && !std::filesystem::is_regular_file(status) &&
                        !std::filesystem::is_directory(status)))
-    return {};  // a device or a pipe: to open it may do something
+    return {};  // a device or a pipe: opening it may have an effect
   errno = 0;
   const bool good = std::ofstream(path, std::ios::app).is_open();
   const std::string why = std::strerror(errno);

@@ -9,7 +9,8 @@ GlRenderbuffer make_renderbuffer(const TargetDesc& desc, GLenum format) {
   GlRenderbuffer buffer = GlRenderbuffer::make();
   glBindRenderbuffer(GL_RENDERBUFFER, buffer.get());
   if (desc.samples > 0) {
-    // What a format may have differs between drivers; 4 is promised for these two.
+    // The maximum number of samples of a format depends on the driver; 4 is guaranteed for these
+    // two.
     GLint most = 4;
     glGetInternalformativ(GL_RENDERBUFFER, format, GL_SAMPLES, 1, &most);
     glRenderbufferStorageMultisample(GL_RENDERBUFFER, std::min(desc.samples, most), format,

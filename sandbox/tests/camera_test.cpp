@@ -13,7 +13,7 @@ namespace {
 
 constexpr glm::ivec2 kScreen{1280, 720};
 
-// Where a point is in the picture, [-1, 1] on both axes.
+// Position of a point in the picture, [-1, 1] on both axes.
 glm::vec3 projected(const OrbitCamera& camera, const vp::Vec3& p, const glm::ivec2& screen) {
   const vp::Vec3 q = p - camera.target();
   const glm::vec4 clip =
@@ -39,7 +39,7 @@ TEST(OrbitCamera, ShowsAllThatItIsFittedToAndNoMoreThanThat) {
                          (corner & 4) != 0 ? low.z : high.z},
                         screen);
           const auto c = static_cast<float>(covered);
-          const float x = (p.x - c) / (1.0f - c);  // in what is free
+          const float x = (p.x - c) / (1.0f - c);  // in the free part
           most = std::max({most, std::abs(x), std::abs(p.y)});
         }
         EXPECT_LT(most, 1.0f) << screen.x << " " << covered << " " << yaw;

@@ -23,7 +23,7 @@ struct Drawn {
   vp::Shape shape;
   glm::vec3 half;    // extents
   double volume;     // of the shape
-  double tolerance;  // how much of it facets and rounded edges may take
+  double tolerance;  // volume that facets and rounded edges may remove
 };
 
 std::vector<Drawn> all_drawn() {
@@ -51,7 +51,7 @@ std::vector<Drawn> all_drawn() {
   };
 }
 
-// As body.vert has it.
+// As in body.vert.
 glm::vec3 point_of(const Drawn& drawn, std::uint32_t index) {
   const ShapeVertex& v = drawn.mesh.vertices[index];
   const glm::vec4 stretch = stretch_of(drawn.shape);
@@ -67,7 +67,8 @@ TEST(ShapeMesh, IsAsLargeAsItsShapeWithTheShapesVolume) {
       const glm::vec3 b = point_of(drawn, drawn.mesh.indices[i + 1]);
       const glm::vec3 c = point_of(drawn, drawn.mesh.indices[i + 2]);
       for (const glm::vec3& p : {a, b, c}) low = glm::min(low, p), high = glm::max(high, p);
-      // Outwards all triangles' tetrahedra with the origin add up to the volume.
+      // The signed volumes of the triangles' tetrahedra with the origin add up to the shape's
+      // volume.
       volume += static_cast<double>(glm::dot(a, glm::cross(b, c))) / 6.0;
     }
     for (int axis = 0; axis < 3; ++axis) {
@@ -116,7 +117,7 @@ TEST(ShadowFit, HoldsAllThatCastsAShadow) {
     }
   }
   EXPECT_LT(fit.width, 60.0f);
-  // What is farther away than asked for does not make the map coarser.
+  // Casters beyond the given distance do not make the map coarser.
   EXPECT_LT(fit_shadow(casters, 5.0f).width, 4.0f);
 }
 

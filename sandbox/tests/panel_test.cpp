@@ -26,7 +26,7 @@ class SandboxPanel : public ::testing::Test {
   }
   void TearDown() override { ImGui::DestroyContext(); }
 
-  // What a frame requests in which the keys are down that were not in the last one.
+  // The requests of a frame in which these keys are newly pressed.
   Requests frame(std::initializer_list<int> keys) {
     ImGuiIO& io = ImGui::GetIO();
     for (const bool down : {false, true}) {

@@ -1,4 +1,4 @@
-// Opens the real window, draws scenes and looks at the pixels. Needs a display.
+// Opens the real window, draws scenes and examines the pixels. Needs a display.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -54,7 +54,7 @@ class SandboxRender : public ::testing::TestWithParam<draw::Quality> {
   draw::Image drawn(const Simulation& simulation, const ViewOptions& options = {}) {
     view->draw(simulation, camera, options, kSize);
     const draw::Image image = draw::read_pixels(kSize);
-    // For a person to look at after a failure.
+    // For a person to examine after a failure.
     if (const char* directory = std::getenv("SANDBOX_TEST_PICTURES")) {
       static int count = 0;
       (void)draw::write_png(image, std::string(directory) + "/" + std::to_string(count++) + ".png");
@@ -69,7 +69,7 @@ class SandboxRender : public ::testing::TestWithParam<draw::Quality> {
     return {static_cast<int>((0.5f + 0.5f * clip.x / clip.w) * static_cast<float>(kSize.x)),
             static_cast<int>((0.5f - 0.5f * clip.y / clip.w) * static_cast<float>(kSize.y))};
   }
-  // How many pixels around differ clearly between two pictures.
+  // Number of pixels around the centre that differ clearly between two pictures.
   static int changed(const draw::Image& a, const draw::Image& b, glm::ivec2 centre, int radius) {
     int count = 0;
     const glm::ivec2 low = glm::max(centre - radius, 0), high = glm::min(centre + radius, kSize);
@@ -84,7 +84,7 @@ class SandboxRender : public ::testing::TestWithParam<draw::Quality> {
   static int changed(const draw::Image& a, const draw::Image& b) {
     return changed(a, b, kSize / 2, kSize.x);
   }
-  // Of pixels, how many are coloured: more than 40 between their least and their largest channel.
+  // Number of coloured pixels: more than 40 between their smallest and their largest channel.
   static int coloured(const draw::Image& image) {
     int count = 0;
     for (int y = 0; y < kSize.y; ++y) {
@@ -146,7 +146,7 @@ TEST_P(SandboxRender, MarksAreOnWhatTheyMark) {
   ViewOptions options;
   options.marks.contacts = true;
   const draw::Image contacts = drawn(simulation, options);
-  // The corners of the sixth box's foot, on the sides that face the eye.
+  // The corners of the sixth box's base, on the sides that face the eye.
   const vp::Vec3 box = simulation.world().pose(simulation.pieces()[6].body).position();
   const vp::Vec3 side = camera.forward();
   const vp::Vec3 corner = box + vp::Vec3{side.x > 0 ? -0.5 : 0.5, side.y > 0 ? -0.5 : 0.5, -0.5};
@@ -192,7 +192,7 @@ TEST_P(SandboxRender, AWallBetweenTheEyeAndTheBodiesIsSeenThrough) {
   Simulation simulation = opened("pile1120");
   run(simulation, 50);
   for (const double yaw : {-1.1, 0.4, 2.0, 3.6}) {
-    camera.look_from(yaw, 0.15);  // level: over no wall
+    camera.look_from(yaw, 0.15);  // level: not over a wall
     look_at_all(simulation);
     EXPECT_GT(coloured(drawn(simulation)), kSize.x * kSize.y / 30) << yaw;
   }

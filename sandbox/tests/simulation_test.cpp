@@ -26,7 +26,7 @@ Simulation opened(std::string_view scene, int rate = 1000) {
   return must(Simulation::open(scene, rate, kStopped));
 }
 
-// One ball of 1 m that nothing pulls, at the origin.
+// One ball of radius 1 m without gravity, at the origin.
 constexpr double kBallMass = 1000.0 * 4.0 / 3.0 * vp::kPi;
 Simulation floating_ball(int rate) {
   scenes::Scene scene;
@@ -43,7 +43,7 @@ vp::Vec3 velocity_in_world(const Simulation& simulation, vp::BodyId body) {
 
 TEST(SandboxSimulation, EverySceneOpensAndSteps) {
   for (const scenes::Entry& entry : scenes::catalogue()) {
-    if (entry.name == "pile10k") continue;  // as pile1120, and long to build
+    if (entry.name == "pile10k") continue;  // like pile1120, but slow to build
     Simulation simulation = opened(entry.name, 240);
     EXPECT_EQ(simulation.scene().name, entry.name);
     EXPECT_EQ(simulation.pieces().size(), simulation.scene().bodies.size());
@@ -94,7 +94,7 @@ TEST(SandboxSimulation, BodiesThatComeAndGoAreFollowed) {
   EXPECT_TRUE(simulation.grip());
   for (int i = 0; i < 10; ++i) must(simulation.step());
   EXPECT_TRUE(!there(0) && there(1));
-  EXPECT_FALSE(simulation.grip());  // what is gone is not held
+  EXPECT_FALSE(simulation.grip());  // a removed body is not held
   for (int i = 0; i < 10; ++i) must(simulation.step());
   EXPECT_EQ(simulation.moving(), 0u);
   vp::Vec3 low, high;
@@ -116,7 +116,7 @@ TEST(SandboxSimulation, StepsOnceWhenAskedForOne) {
 
 TEST(SandboxSimulation, StepsAsManyTimesAsTheFramesSecondsHold) {
   Simulation simulation = opened("tower10", 1000);
-  // 60 frames of a second that no step divides: what is left over is carried on.
+  // 60 frames per second, whose duration is no multiple of the step: the remainder carries over.
   for (int frame = 0; frame < 60; ++frame) must(simulation.advance(1.0 / 60.0, 1.0, 1.0));
   EXPECT_NEAR(static_cast<double>(simulation.steps()), 1000.0, 1.0);
   const std::size_t before = simulation.steps();
@@ -130,13 +130,13 @@ TEST(SandboxSimulation, StepsAsManyTimesAsTheFramesSecondsHold) {
 
 std::int64_t ticking_now = 0;
 std::int64_t ticking_clock() {
-  return ticking_now += 1'000'000;  // a millisecond each time it is asked
+  return ticking_now += 1'000'000;  // a millisecond for each call
 }
 
 TEST(SandboxSimulation, LetsGoOfWhatItsBudgetDoesNotHold) {
   Simulation simulation = must(Simulation::open("tower10", 1000, {ticking_clock, ticking_clock}));
   must(simulation.advance(0.1, 1.0, 0.030));
-  // Asked three times a step: before it, after it, and for the budget.
+  // Called three times per step: before it, after it, and for the budget.
   EXPECT_NEAR(static_cast<double>(simulation.steps()), 10.0, 1.0);
   const std::size_t before = simulation.steps();
   must(simulation.advance(0.001, 1.0, 0.030));
@@ -162,14 +162,14 @@ TEST(SandboxSimulation, BeginsAnewToTheBit) {
 
 TEST(SandboxPicking, TakesTheFirstMovingBodyThatTheRayMeets) {
   Simulation simulation = opened("tower10");
-  // From above, through the top box's middle.
+  // From above, through the top box's centre.
   const vp::Vec3 top = simulation.world().pose(simulation.pieces().back().body).position();
   ASSERT_TRUE(simulation.grab({{top.x + 0.2, top.y + 0.1, 50.0}, {0, 0, -1}}));
   EXPECT_EQ(simulation.grip()->body, simulation.pieces().back().body);
   EXPECT_NEAR(norm(simulation.grip()->target - vp::Vec3{top.x + 0.2, top.y + 0.1, top.z + 0.5}),
               0.0, 1e-6);
   EXPECT_NEAR(norm(simulation.grip()->point_body - vp::Vec3{0.2, 0.1, 0.5}), 0.0, 1e-6);
-  // The ground is met, and not taken; nor is the sky.
+  // The ray hits the ground, which cannot be grabbed; then the sky.
   EXPECT_FALSE(simulation.grab({{top.x + 20.0, top.y, 50.0}, {0, 0, -1}}));
   EXPECT_FALSE(simulation.grip());
   EXPECT_FALSE(simulation.grab({{top.x, top.y, 50.0}, {0, 0, 1}}));
@@ -183,14 +183,14 @@ TEST(SandboxPicking, DragsInThePlaneThatFacesTheEye) {
   simulation.drag({{-10, 0, 0}, (1.0 / norm(aside)) * aside}, forward);
   EXPECT_NEAR(norm(simulation.grip()->target - vp::Vec3{-1.0, 1.8, -0.9}), 0.0, 1e-9);
   const vp::Vec3 kept = simulation.grip()->target;
-  simulation.drag({{-10, 0, 0}, {-1, 0, 0}}, forward);  // behind the eye: stays
+  simulation.drag({{-10, 0, 0}, {-1, 0, 0}}, forward);  // behind the eye: unchanged
   EXPECT_EQ(simulation.grip()->target, kept);
   simulation.let_go();
   EXPECT_FALSE(simulation.grip());
 }
 
-// Held at the point nearest to the eye and pulled along the sight, a ball is a point mass on a
-// spring of 4 Hz that damps critically: x = d (1 - (1 + w t) exp(-w t)).
+// Grabbed at the point closest to the eye and pulled along the line of sight, a ball is a point
+// mass on a critically damped spring of 4 Hz: x = d (1 - (1 + w t) exp(-w t)).
 TEST(SandboxPicking, FollowsAsACriticallyDampedSpringDoes) {
   for (const int rate : {60, 240, 1000}) {
     Simulation simulation = floating_ball(rate);
@@ -215,7 +215,8 @@ TEST(SandboxPicking, FollowsAsACriticallyDampedSpringDoes) {
       worst = std::max(worst, std::abs(x - expected));
       overshoot = std::max(overshoot, x - distance);
     }
-    // The spring's implicit step lags by a step or so at the fastest: v dt = 0.37 w d / rate.
+    // The spring's implicit step lags by about one step at the highest speed: v dt = 0.37 w d /
+    // rate.
     EXPECT_LT(worst, 1.2 * 0.37 * w * distance / rate) << rate << " Hz";
     EXPECT_LT(overshoot, 1e-3) << rate << " Hz";
     EXPECT_NEAR(-pulled.world().pose(ball).position().x, distance, 1e-3) << rate << " Hz";
@@ -223,9 +224,8 @@ TEST(SandboxPicking, FollowsAsACriticallyDampedSpringDoes) {
   }
 }
 
-// Pulled at its side the ball turns too, and then swings about the point that is held, since
-// nothing else brakes it: that comes to where it is wanted but for the little that the swinging
-// takes.
+// Pulled at its side the ball rotates too, and then swings about the grabbed point without other
+// damping. That point reaches its target, except for a small offset from the swing.
 TEST(SandboxPicking, TheHeldPointComesToTheHandAndTheForceIsBounded) {
   constexpr double kStrongest = 60.0 * 9.81;  // [m/s^2]
   for (const int rate : {60, 240, 1000}) {
@@ -305,7 +305,7 @@ TEST(SandboxThrowing, WhatCannotBeIsRefusedAndLeavesNothing) {
 
 std::int64_t told_ns = 0;
 
-// A clock that goes on by a microsecond whenever it is read: each stage takes one.
+// A clock that advances by a microsecond at each call: each stage takes one.
 TEST(SandboxSimulation, TellsHowLongEachStageTakes) {
   const auto stopped = [] { return std::int64_t{0}; };
   const Simulation::Clocks ticking{stopped, stopped, [] { return told_ns += 1000; }};

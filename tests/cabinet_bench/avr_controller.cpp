@@ -1,4 +1,4 @@
-// The two AVRs in simavr, with PS/2 mice.
+// The two AVR controllers in simavr, with PS/2 mice.
 #include <algorithm>
 #include <cmath>
 
@@ -11,11 +11,11 @@ namespace {
 using firmware_sim::CabinetSim;
 using firmware_sim::SimMouse;
 
-// Bytes of a serial line have no time of their own: they are taken so often.
+// Bytes of a serial line have no time stamps: they are polled at this interval.
 constexpr std::uint64_t kSliceUs = 250;
-constexpr std::uint8_t kPlayback = 0x02;  // a driver's register that its motor obeys
+constexpr std::uint8_t kPlayback = 0x02;  // the driver's register that sets the motor's amplitude
 
-// Mice differ: their clocks, how long they think, whether they say that they moved too far.
+// Mice differ in clock rate, reply time, and in how they report an overflow.
 firmware_sim::MouseOptions drawn_mouse(std::mt19937& random) {
   const auto between = [&](std::uint32_t low, std::uint32_t high) {
     return std::uniform_int_distribution<std::uint32_t>(low, high)(random);
@@ -83,7 +83,7 @@ class AvrController final : public Controller {
   }
 
   void command(std::span<const std::uint8_t> packet) override {
-    sim_.send(board_ == Board::mega32u4 ? packet.subspan(1) : packet);  // no number of the report
+    sim_.send(board_ == Board::mega32u4 ? packet.subspan(1) : packet);  // no report number
   }
   std::vector<MotorWrite> take_motor_writes() override {
     std::vector<MotorWrite> fresh;
@@ -103,7 +103,7 @@ class AvrController final : public Controller {
 
  private:
   struct Sensor {
-    std::int64_t slide = 0, spin = 0;  // asked for by the mouse
+    std::int64_t slide = 0, spin = 0;  // requested by the mouse
     bool enabled = false;
     std::uint64_t packets = 0;
     std::vector<Told> told;
@@ -154,7 +154,7 @@ class AvrController final : public Controller {
   std::int64_t began_us_ = 0;
   PerRod<Sensor> sensors_{};
   std::vector<Packet> packets_;
-  std::size_t writes_ = 0;  // of the motors, taken
+  std::size_t writes_ = 0;  // number of motor writes taken
 };
 
 std::string AvrController::trouble(int rod, std::mt19937& random) {

@@ -1,4 +1,4 @@
-// Short runs of what cabinet-bench does for long, and that it would see what it looks for.
+// Short runs of cabinet-bench, and tests that its checks detect errors.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -22,15 +22,15 @@ INSTANTIATE_TEST_SUITE_P(Boards, OnEachController, testing::ValuesIn(kBoards),
 
 struct Expected {
   double slide_rms, angle_rms;  // [mm], [degrees]
-  double within;                // 1 mm and 2 degrees, of the ticks and rods
+  double within;                // fraction of the ticks and rods within 1 mm and 2 degrees
 };
 // Measured: 1.0 mm, 0.9 degrees, 0.93; 1.0, 1.0, 0.93; 0.06, 0.05, 1. A mouse's reports are 5 ms
 // apart.
 Expected expected(Board board) {
   return board == Board::rp2040 ? Expected{0.15, 0.15, 0.999} : Expected{2, 2, 0.85};
 }
-// Of half a minute: what is played in a few seconds, and with it the share, follows from each
-// microsecond. A person sees the feet to 1.5 degrees, so that a mouse's mark is known to one.
+// For half a minute: the play of a few seconds, and so the fraction, depends on each microsecond. A
+// person sees the feet to 1.5 degrees, so a mouse's mark is known to 1 degree.
 constexpr Expected kCalibrated{2, 2, 0.7};
 
 void expect_played(Board board, const MatchResult& match, const Expected& limits) {
@@ -55,7 +55,7 @@ void expect_played(Board board, const MatchResult& match, const Expected& limits
   EXPECT_EQ(pulses.not_ended, 0u);
   EXPECT_LE(pulses.pulses - pulses.begun - pulses.merged, 1u) << "one may be on its way";
   EXPECT_LE(spread(pulses.free_latency_us).most, 2000);
-  // One that comes as another pulse ends waits for the bus besides: 0.8 ms.
+  // A pulse that comes as another one ends also waits for the bus: 0.8 ms.
   EXPECT_LE(spread(pulses.latency_us).most, 3000);
   EXPECT_GE(2 * pulses.free_latency_us.size(), pulses.latency_us.size());
 }
@@ -116,7 +116,7 @@ TEST(Hands, SwingTheirMenPastTheMarksAtTheNearStopAndGiveTheRodsBack) {
   EXPECT_EQ(watch.counts().slow, 2u * cabinet::kRods);
 }
 
-// ---- what the runs are judged by
+// ---- tests of the checks
 
 struct MarkedTable {
   MarkedTable() {
@@ -150,7 +150,7 @@ TEST(MarkWatch, CountsPassesAndWhichOfThemAreSlow) {
 
 TEST(MarkWatch, DoesNotCountWhatARodThatSlidesOrIsElsewhereDoes) {
   MarkedTable t;
-  for (double angle = -0.8; angle < 0.8; angle += 0.1) {  // one of them is the mark's
+  for (double angle = -0.8; angle < 0.8; angle += 0.1) {  // one of these angles is the mark's
     t.slide_to(0, 200);
     t.turn_to(angle, 200);
     t.slide_to(Table::near_stop(0), 200);

@@ -14,7 +14,7 @@ namespace cabinet_bench {
 namespace {
 
 constexpr double kPutBackSeconds = 0.5;
-constexpr int kMostSetUpMs = 5000;  // of the sensors, before the persons begin
+constexpr int kMostSetUpMs = 5000;  // for the sensors, before the people begin
 
 cabinet::GuideOptions guide_options(int rod) {
   const auto& spec =
@@ -31,7 +31,7 @@ calibrate::SessionOptions session_options(int rod, double counts_per_mm) {
   return options;
 }
 
-// A rod of the table, of which its person hears what the controller counts.
+// A rod of the table whose person receives the controller's counts.
 class RodOnTable final : public cabinet_test::SimulatedRod {
  public:
   RodOnTable(std::uint32_t seed, std::function<void()> wait_for_ms)
@@ -46,7 +46,7 @@ class RodOnTable final : public cabinet_test::SimulatedRod {
   std::function<void()> wait_for_ms_;
 };
 
-// One rod, its person and the program that leads him.
+// One rod, its person and the program that guides the person.
 struct Place {
   Place(int rod, const std::function<void()>& wait_for_ms)
       : options(guide_options(rod)),
@@ -88,7 +88,7 @@ class Workshop {
     const double down = turns * 2 * M_PI + place.hand.draw(place.person.angle_error);
     place.hand.move(0, down, kPutBackSeconds);
   }
-  // Each person by a millisecond; false: all are done.
+  // Advances each person by a millisecond; false: all are done.
   bool all_move_on() {
     bool anybody = false;
     for (auto& person : persons_) {

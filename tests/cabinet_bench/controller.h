@@ -1,6 +1,6 @@
-// A controller of the cabinet: its own firmware in a simulator, eight simulated sensors and eight
-// motors on its pins, and a PC at the other end of its cable. Time is the simulator's, and passes
-// in advance() alone.
+// A controller of the cabinet: its firmware in a simulator, eight simulated sensors and eight
+// motors on its pins, and a PC at the other end of its cable. The time is the simulator's, and
+// passes only in advance().
 #pragma once
 
 #include <array>
@@ -22,26 +22,26 @@ enum class Board { mega32u4, mega2560, rp2040 };
 inline constexpr std::array kBoards{Board::mega32u4, Board::mega2560, Board::rp2040};
 std::string name_of(Board board);
 std::optional<Board> board_named(const std::string& name);
-// Of the sensors that the documents give it [counts/mm].
+// Of the sensors that the documentation recommends for it [counts/mm].
 double usual_counts_per_mm(Board board);
 
 template <class T>
 using PerRod = std::array<T, cabinet::kRods>;
 
-// What has passed under a sensor since power-on [counts]; real, for a sensor hands over whole ones.
+// Motion of the surface under a sensor since power-on [counts]; real, the sensor reports integers.
 struct Surface {
   double slide = 0, spin = 0;
 };
 
 struct Packet {
-  std::int64_t time_us;  // when the PC had all of it
+  std::int64_t time_us;  // when the PC had received all of it
   std::vector<std::uint8_t> bytes;
 };
-struct MotorWrite {  // the register of a driver that its motor obeys
+struct MotorWrite {  // the register of a motor's driver
   std::int64_t time_us;
   int rod, amplitude;
 };
-// Of all that passed under a sensor, whole counts of power-on until it spoke last.
+// Accumulated integer counts that a sensor has reported from power-on to its last report.
 struct Told {
   std::int64_t time_us;
   std::int64_t slide, spin;
@@ -51,30 +51,30 @@ class Controller {
  public:
   virtual ~Controller() = default;
 
-  // One millisecond, in which the surfaces move on evenly to where they are at its end. Throws
-  // std::runtime_error where the firmware crashes.
+  // Advances by one millisecond, in which the surfaces move uniformly to `to`. Throws
+  // std::runtime_error if the firmware crashes.
   virtual void advance(const PerRod<Surface>& to) = 0;
-  // From now on: a bit for each rod whose index mark is under its switch. Until the first call no
-  // expander is attached.
+  // From now on: one bit for each rod whose index mark is under its switch. Before the first call
+  // no expander is attached.
   virtual void show_marks(std::uint8_t under) = 0;
   virtual std::int64_t now_us() const = 0;
   virtual cabinet::DeviceFraming framing() const = 0;
-  // What came to the PC since the last call, oldest first.
+  // The packets that the PC received since the last call, oldest first.
   virtual std::vector<Packet> take_packets() = 0;
 
   // ---- motors
-  // A packet from the PC, as cabinet::DeviceSource::send() gives it to the line.
+  // A packet from the PC, as cabinet::DeviceSource::send() writes it to the line.
   virtual void command(std::span<const std::uint8_t> packet) = 0;
   virtual std::vector<MotorWrite> take_motor_writes() = 0;
 
   // ---- troubles
-  // What the rod's sensor has told, oldest first; asking forgets it.
+  // The reports of the rod's sensor since the last call, oldest first.
   virtual std::vector<Told> take_told(int rod) = 0;
-  // Does something to the rod's sensor or to the controller, and returns what. Empty: not now.
+  // Injects a fault at the rod's sensor or at the controller, and returns its name. Empty: not now.
   virtual std::string trouble(int rod, std::mt19937& random) = 0;
 };
 
-// Powered just now. Throws std::runtime_error where a part of the simulator is missing.
+// Powered on just now. Throws std::runtime_error if a part of the simulator is missing.
 std::unique_ptr<Controller> power_on(Board board);
 
 std::unique_ptr<Controller> power_on_avr(Board board);

@@ -7,8 +7,8 @@
 namespace cabinet_bench {
 namespace {
 
-// A hand that goes and rests for times that are drawn; now and then further between two reports
-// than a mouse can say.
+// A hand that moves and rests for random times. Sometimes it moves further between two reports than
+// a mouse can report.
 class Wanderer {
  public:
   void step(std::mt19937& random, Surface& surface) {
@@ -42,7 +42,7 @@ FaultResult run_faults(Controller& controller, const FaultOptions& options) {
   Frames frames(controller.framing());
   Ledger ledger;
   FaultResult result;
-  constexpr double kQuietMs = 4'000;  // all sensors are set up by then
+  constexpr double kQuietMs = 4'000;  // all sensors are initialised by then
   double next_ms = kQuietMs + wait(random);
   const double end_ms = kQuietMs + options.seconds * 1e3;
   for (double ms = 0; ms < end_ms; ++ms) {

@@ -1,4 +1,4 @@
-// Hands that move all rods, and troubles at random times: is anything lost without being counted?
+// Moves all rods and injects faults at random times. Checks that no loss of counts goes uncounted.
 #pragma once
 
 #include <map>
@@ -16,7 +16,7 @@ struct FaultOptions {
   std::uint32_t seed = 1;
 };
 struct FaultResult {
-  std::map<std::string, int> troubles;  // by name, how many
+  std::map<std::string, int> troubles;  // number by name
   Ledger::Totals totals;
   std::vector<std::string> violations;
 };

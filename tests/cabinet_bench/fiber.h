@@ -1,5 +1,5 @@
-// Work with a stack of its own that gives way in the middle and goes on from there: many persons on
-// one thread, in an order that is always the same.
+// A coroutine with a separate stack. Many simulated people run on one thread, in a deterministic
+// order.
 #pragma once
 
 #include <ucontext.h>
@@ -27,14 +27,14 @@ class Fiber {
   Fiber& operator=(const Fiber&) = delete;
 
   bool done() const { return done_; }
-  // Until it gives way or is done; throws what the work has thrown. Precondition: not done().
+  // Runs until it yields or is done; rethrows what the work has thrown. Precondition: not done().
   void resume() {
     Fiber* const before = std::exchange(running(), this);
     ::swapcontext(&caller_, &own_);
     running() = before;
     if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
   }
-  // From within work.
+  // Yields to the caller of resume(); call from within work.
   void give_way() { ::swapcontext(&own_, &caller_); }
 
  private:

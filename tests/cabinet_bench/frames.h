@@ -1,4 +1,4 @@
-// The frames in what a controller sends.
+// Decodes the frames in a controller's data.
 #pragma once
 
 #include <functional>

@@ -7,14 +7,14 @@
 namespace cabinet_bench {
 namespace {
 
-// A swing: the rod is pulled to its near stop, its men swung slowly past their mark, there and
-// back, and pushed to the other stop, which ends a ceremony. Rods in doubles have a hand each.
+// A swing: the rod is pulled to its near stop, its men rotate slowly past their mark and back, and
+// the rod is pushed to the other stop, which ends a ceremony. In doubles, one hand holds each rod.
 struct KeyPose {
   double seconds;
-  double reach;  // of the stops, towards the near one
+  double reach;  // fraction of the travel, towards the near stop
   double angle;  // [rad]
 };
-constexpr double kGiveBack = 0.5;  // [s] from there to where the players want the rods
+constexpr double kGiveBack = 0.5;  // [s] from there to the players' targets
 constexpr double kAside = 1.4;     // [rad]: beyond a mark and half its width
 constexpr KeyPose kSwing[] = {
     {0.3, 0, 0}, {0.7, 1, -kAside}, {1.7, 1, kAside}, {2.7, 1, -kAside}, {3.1, -1, 0}};

@@ -1,5 +1,5 @@
-// Both teams' hands on a cabinet's rods: where computer players want the rods, as fast as a hand
-// can; and between balls what people do who know that counts drift.
+// Both teams' hands on a cabinet's rods. In play they follow the computer players' targets as fast
+// as a hand can. Between balls they do what people do who know that counts drift.
 #pragma once
 
 #include <optional>
@@ -13,7 +13,7 @@ namespace cabinet_bench {
 
 inline constexpr foosball::Layout kLayout = foosball::Layout::tournament;
 
-// A rod of the match by one tick, as a hand drives it.
+// Advances a rod of the match by one tick, as a hand drives it.
 foosball::RodState step_rod(const foosball::MatchView& view, std::size_t rod,
                             const foosball::RodState& now, const foosball::RodTarget& target);
 

@@ -47,7 +47,7 @@ void Ledger::note_faults(const wire::DeviceFrame& frame, std::int64_t now_us) {
   }
 }
 
-// The frame may be as of any report since kOldUs ago.
+// The frame may show any report since kOldUs ago.
 bool Ledger::agrees(Rod& rod, Offset counts) {
   const std::vector<Offset> now = possible(rod, counts);
   std::vector<Offset> both;
@@ -69,7 +69,7 @@ std::vector<Ledger::Offset> Ledger::possible(const Rod& rod, Offset counts) {
   return offsets;
 }
 
-// A sensor that fell silent is missed later than an error on its line is.
+// A silent sensor is detected later than an error on its line.
 bool Ledger::explained(const Rod& rod) const {
   if (rod.fault_us >= rod.good_us - kOldUs) return true;
   return std::ranges::any_of(errors_us_, [&](std::int64_t us) {
@@ -90,8 +90,8 @@ void Ledger::judge(int rod, const wire::DeviceFrame& frame, std::int64_t now_us)
     r.back = true;
     return;
   }
-  if (std::exchange(r.back, false)) r.offsets = possible(r, counts);  // what it began to tell at
-  // Counts that were missing once are missing, whatever later frames happen to be equal to.
+  if (std::exchange(r.back, false)) r.offsets = possible(r, counts);  // where it restarted
+  // Lost counts stay lost, even if later frames happen to be equal.
   if (!r.lost && agrees(r, counts)) {
     ++totals_.exact;
     r.good_us = now_us;

@@ -1,8 +1,9 @@
-// Whether a controller's counts are those that its sensors have told, or else a fault was counted.
+// Checks that a controller's counts equal those that its sensors reported, or that a fault was
+// counted.
 //
-// Of each rod it is known which counts the sensor has told until when (the truth), and how far the
-// frames' counts are off from them: 0 at first, and after a loss that was counted whatever the next
-// frames say. Between frames without a counted fault that difference may not change.
+// The sensor's reported counts over time are known for each rod (the truth). The ledger tracks the
+// offset of the frames' counts from them. It is 0 at first. After a counted loss the next frames
+// define it. Between frames without a counted fault the offset must not change.
 #pragma once
 
 #include <deque>
@@ -19,10 +20,10 @@ class Ledger {
  public:
   struct Totals {
     std::uint64_t frames = 0;
-    std::uint64_t exact = 0;   // of frames and rods: the counts are those that were told
-    std::uint64_t behind = 0;  // ... or not known yet: a loss whose fault is still awaited
+    std::uint64_t exact = 0;   // of frames and rods: the counts equal the reported ones
+    std::uint64_t behind = 0;  // ... or not decided yet: a loss whose fault is still awaited
     std::uint64_t absent = 0;  // ... or the frame says that the sensor does not answer
-    std::uint64_t losses = 0;  // times that counts were missing, explained by a fault in the frames
+    std::uint64_t losses = 0;  // number of losses of counts that a fault in the frames explains
     std::uint64_t unexplained = 0;
     std::uint64_t errors = 0, resynchronised = 0, overflows = 0, absences = 0, restarts = 0;
   };
@@ -32,26 +33,26 @@ class Ledger {
   const Totals& totals() const { return totals_; }
   const std::vector<std::string>& violations() const { return violations_; }
 
-  // A frame's counts are as old as this at most: made before it was asked for, and on the line.
-  // Less than a mouse's 5 ms, so that a lost report does not look like a late one.
+  // Maximum age of a frame's counts: they were read before the frame was requested, and took time
+  // on the line. Less than a mouse's 5 ms, so that a lost report does not look like a late one.
   static constexpr std::int64_t kOldUs = 4'000;
-  // An error is counted no later than this after the loss.
+  // Maximum time from a loss until its error is counted.
   static constexpr std::int64_t kCountedUs = 60'000;
-  // A sensor that is gone is known to be within this.
+  // Maximum time until an absent sensor is known to be absent.
   static constexpr std::int64_t kMissedUs = 1'600'000;
 
  private:
-  struct Offset {  // of the frames' counts from those that were told, modulo 2^16
+  struct Offset {  // of the frames' counts from the reported ones, modulo 2^16
     std::uint16_t slide = 0, spin = 0;
     bool operator==(const Offset&) const = default;
   };
   struct Rod {
-    std::deque<Told> told;            // the last one that is older than kOldUs, and those after it
-    std::vector<Offset> offsets{{}};  // those that all frames since the last loss agree with
-    std::int64_t good_us = 0;         // the last frame that agreed
-    std::int64_t fault_us = -1;       // the last that was counted for this rod
+    std::deque<Told> told;            // the last report older than kOldUs, and all later ones
+    std::vector<Offset> offsets{{}};  // consistent with all frames since the last loss
+    std::int64_t good_us = 0;         // the last consistent frame
+    std::int64_t fault_us = -1;       // the last fault counted for this rod
     bool present = false, lost = false;
-    bool back = false;  // it was absent in the frame before
+    bool back = false;  // it was absent in the previous frame
   };
 
   void note_faults(const wire::DeviceFrame& frame, std::int64_t now_us);
@@ -62,7 +63,7 @@ class Ledger {
 
   PerRod<Rod> rods_{};
   std::optional<wire::DeviceFrame> last_;
-  std::deque<std::int64_t> errors_us_;  // frames that counted an error of whatever rod
+  std::deque<std::int64_t> errors_us_;  // times of frames that counted an error of any rod
   Totals totals_;
   std::vector<std::string> violations_;
 };

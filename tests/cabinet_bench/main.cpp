@@ -1,4 +1,4 @@
-// cabinet-bench: a whole match, or an hour of troubles, with the controllers' firmware in
+// cabinet-bench: runs a whole match, or an hour of faults, with the controllers' firmware in
 // simulators.
 #include <CLI/CLI.hpp>
 #include <chrono>
@@ -20,7 +20,7 @@ constexpr double kDegrees = 180 / 3.14159265358979323846;
 struct Options {
   std::vector<std::string> boards{"32u4", "2560", "rp2040"};
   double seconds = 600;
-  double counts_per_mm = 0;  // 0: the usual of the board
+  double counts_per_mm = 0;  // 0: the board's usual value
   bool square = false;
   bool no_marks = false, no_swings = false;
   int level = 4;
@@ -34,7 +34,7 @@ struct Options {
 };
 
 Table table_of(const Options& options, double counts_per_mm) {
-  // Marks mean nothing without a calibration that has seen them.
+  // Marks are useful only with a calibration that has detected them.
   const bool marks = !options.square && !options.no_marks;
   return {options.square ? Mounting::square : Mounting::drawn, marks ? Marks::drawn : Marks::none,
           counts_per_mm, static_cast<std::uint32_t>(options.seed)};
@@ -97,7 +97,7 @@ void report(const std::string& board, const PulseCounts& pulses, Rows& rows) {
 }
 
 void report(const std::string& board, const MatchResult& match, Rows& rows) {
-  const double minutes = static_cast<double>(match.marks.ticks) / 60e3;  // of rods
+  const double minutes = static_cast<double>(match.marks.ticks) / 60e3;  // rod minutes
   const double passes = static_cast<double>(match.marks.passes) / minutes,
                slow = static_cast<double>(match.marks.slow) / minutes;
   fmt::print(

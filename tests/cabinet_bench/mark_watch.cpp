@@ -7,9 +7,9 @@
 namespace cabinet_bench {
 namespace {
 
-constexpr double kStands = 0.5e-3;  // [m] along itself in a pass
-constexpr double kLeastTurn = 0.2;  // [rad] in a pass: it did not turn back half way
-constexpr double kSlow = 4.7;       // [rad/s]: a count and a half of a mouse a report
+constexpr double kStands = 0.5e-3;  // [m] maximum slide in a pass
+constexpr double kLeastTurn = 0.2;  // [rad] minimum rotation in a pass: it did not turn back
+constexpr double kSlow = 4.7;       // [rad/s]: one and a half counts of a mouse per report
 constexpr double kSeen = 3e-3;      // [m] from the near stop
 constexpr double kMs = 1e-3;
 

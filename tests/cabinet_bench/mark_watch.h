@@ -1,4 +1,4 @@
-// How often index marks pass their switches in a match, by the truth.
+// Counts how often index marks pass their switches in a match, from the true poses.
 #pragma once
 
 #include <optional>
@@ -11,12 +11,12 @@ namespace cabinet_bench {
 struct MarkCounts {
   std::uint64_t passes = 0;              // from one side to the other, without sliding
   std::uint64_t slow = 0;                // ... slow enough for every sensor
-  std::uint64_t at_stop = 0, ticks = 0;  // of rods: where the switches see their marks; in all
+  std::uint64_t at_stop = 0, ticks = 0;  // rod ticks with a visible mark; all rod ticks
 };
 
 class MarkWatch {
  public:
-  // Each millisecond, once the table has moved.
+  // Call each millisecond, after the table has moved.
   void moved(const Table& table);
   const MarkCounts& counts() const { return counts_; }
 

@@ -18,14 +18,14 @@
 namespace cabinet_bench {
 namespace {
 
-constexpr std::int64_t kSettleMs = 50;  // frames, before a hand moves
+constexpr std::int64_t kSettleMs = 50;  // of frames, before a hand moves
 
 void require(bool held, const char* what) {
   if (!held) throw std::runtime_error(what);
 }
 
-// The cable between the controller and the server, on which a packet takes as long as the PC needs
-// to notice it.
+// The cable between the controller and the server. A packet is delayed by the time that the PC
+// needs to notice it.
 class Cable {
  public:
   Cable(Controller& controller, std::uint32_t seed) : controller_(controller), random_(seed) {
@@ -40,7 +40,7 @@ class Cable {
   int host_end() { return host_.release(); }
   std::int64_t arrived_us() const { return arrived_us_; }
 
-  // What has arrived by now, into the server's hands.
+  // Delivers the packets that have arrived by now to the server.
   void carry() {
     for (Packet& packet : controller_.take_packets()) {
       packet.time_us += std::uniform_int_distribution<int>(100, 300)(random_);
@@ -55,8 +55,8 @@ class Cable {
       under_way_.pop_front();
     }
   }
-  // What the server has sent, to the controller: packet by packet, which a serial line runs
-  // together.
+  // Delivers the server's data to the controller, packet by packet; a serial line concatenates
+  // packets.
   template <class Each>
   void carry_back(const Each& each) {
     std::uint8_t bytes[4096];
@@ -94,7 +94,7 @@ class MatchRun {
         options_(options),
         cable_(controller, 5),
         hands_(options, table.poses()) {
-    controller.take_packets();  // of before
+    controller.take_packets();  // drops earlier packets
     server::ServerOptions wanted;
     wanted.match.layout = kLayout;
     wanted.match.seed = options.seed;
@@ -157,7 +157,7 @@ class MatchRun {
       if (event.kind == foosball::EventKind::man_hit) ++result_.pulses.hits;
     }
   }
-  // The tick before has brought the rods to where the hands are now.
+  // The previous tick has moved the rods to the hands' present poses.
   void note_rods() {
     const foosball::MatchView& view = server_->match().view();
     for (std::size_t rod = 0; rod < view.rods.size(); ++rod) {

@@ -1,5 +1,5 @@
-// Motions of single rods, one after the other, as a maker does them at the bench: what the
-// controller sends meanwhile is what `head -c ... /dev/ttyACM0 > FILE` would keep.
+// Motions of single rods, one after the other, as a builder performs them at the bench. Records
+// what the controller sends, as `head -c ... /dev/ttyACM0 > FILE` would.
 #pragma once
 
 #include <optional>
@@ -19,7 +19,7 @@ struct Motion {
 // "6:252:-5": rod 6 (from 1) by 252 mm and five turns.
 std::optional<Motion> motion_of(const std::string& text);
 
-// All sensors are set up first, which is not recorded.
+// All sensors are initialised first, which is not recorded.
 std::vector<std::uint8_t> record_motions(Controller& controller, Table& table,
                                          const std::vector<Motion>& motions);
 

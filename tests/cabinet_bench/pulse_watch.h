@@ -11,7 +11,7 @@ namespace cabinet_bench {
 
 class PulseWatch {
  public:
-  // A packet to the controller; what is no pulse is passed over.
+  // A packet to the controller; packets other than pulses are ignored.
   void commanded(std::span<const std::uint8_t> packet, cabinet::DeviceFraming framing,
                  std::int64_t now_us);
   void written(const MotorWrite& write);
@@ -24,13 +24,13 @@ class PulseWatch {
   struct Pulse {
     std::int64_t us;
     int amplitude;
-    bool runs_already;     // its motor, at this amplitude
-    std::uint64_t writes;  // before it
+    bool runs_already;     // its motor already runs at this amplitude
+    std::uint64_t writes;  // number of writes before it
   };
   struct Motor {
     std::deque<Pulse> waiting;
-    int amplitude = 0;        // as its driver has it
-    std::int64_t end_us = 0;  // by when it has to be silent
+    int amplitude = 0;        // in the driver's register
+    std::int64_t end_us = 0;  // deadline for the motor to stop
   };
   PerRod<Motor> motors_;
   std::uint64_t writes_ = 0;  // to all motors

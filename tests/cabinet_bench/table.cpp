@@ -16,7 +16,7 @@ Table::Table(Mounting mounting, Marks marks, double counts_per_mm, std::uint32_t
   if (has_marks()) draw_marks(seed);
 }
 
-// By numbers of their own: a table with marks has the sensors of one without.
+// With a separate generator: a table with marks has the same sensors as one without.
 void Table::draw_marks(std::uint32_t seed) {
   std::mt19937 random(seed + 1000);
   for (std::size_t rod = 0; rod < mounts_.size(); ++rod) {

@@ -1,4 +1,4 @@
-// Eight rods with hands on them, and what passes under the sensors that look at them: the truth.
+// Eight rods with hands on them, and the motion of their surfaces under the sensors: the truth.
 #pragma once
 
 #include <random>
@@ -13,24 +13,25 @@ struct Pose {
 };
 
 enum class Mounting {
-  square,  // no error of any kind: what the nominal calibration is for
+  square,  // no errors: what the nominal calibration is for
   drawn,   // tilt and lean up to 4 degrees, 3 % of scale, 0.15 mm of eccentricity, 0.4 % of noise
 };
 
 enum class Marks {
   none,
-  drawn,  // a magnet a rod, up to an eighth of a turn from the feet, with a switch at the near stop
+  drawn,  // one magnet per rod, up to an eighth of a turn from the feet, with a switch at the near
+          // stop
 };
 
 class Table {
  public:
   Table(Mounting mounting, Marks marks, double counts_per_mm, std::uint32_t seed);
 
-  // The hands move the rods in one millisecond.
+  // The hands move the rods for one millisecond.
   void move(const PerRod<Pose>& to);
-  // That millisecond on the controller, whose switches are as they were in the middle of it.
+  // Runs that millisecond on the controller; its switches have their state at its midpoint.
   void pass(Controller& controller) const;
-  // The rods are taken for feet down after whole turns; nothing passes under a sensor.
+  // Takes the rods as feet down after whole turns; no surface moves under a sensor.
   void forget_turns();
 
   const PerRod<Pose>& poses() const { return poses_; }
@@ -41,7 +42,7 @@ class Table {
   static double near_stop(std::size_t rod);
 
  private:
-  static constexpr int kNoiseMs = 5;  // a sensor's error of scale lasts so long
+  static constexpr int kNoiseMs = 5;  // duration of one sample of a sensor's scale error
 
   void draw_marks(std::uint32_t seed);
 

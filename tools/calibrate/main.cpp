@@ -50,7 +50,7 @@ int fail(int code, const std::string& sentence) {
   return code;
 }
 
-// Reads the device each millisecond, however seldom a picture is drawn.
+// Reads the device each millisecond, independent of the frame rate.
 class Listener {
  public:
   explicit Listener(std::unique_ptr<cabinet::DeviceSource> device) : device_(std::move(device)) {
@@ -107,7 +107,8 @@ class Run {
     for (const wire::DeviceFrame& frame : listener_.take()) session_.hear(frame);
     keep();
   }
-  // As soon as a rod fits: whoever stops half way has those rods.
+  // Stores each rod as soon as it is fitted, so that an aborted calibration keeps the finished
+  // rods.
   void keep() {
     if (session_.kept() == kept_) return;
     kept_ = session_.kept();
@@ -169,7 +170,7 @@ class Terminal {
     if (::poll(&input, 1, 20) <= 0) return;
     char bytes[64];
     const ssize_t got = ::read(STDIN_FILENO, bytes, sizeof bytes);
-    closed_ = got <= 0;  // nobody is there to go on
+    closed_ = got <= 0;  // end of input: nobody can continue
     done_ = done_ || closed_;
     for (ssize_t i = 0; i < got; ++i) {
       if (bytes[i] != '\n') {
@@ -237,7 +238,8 @@ int show(const Options& options, Run& run) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (::fcntl(STDIN_FILENO, F_GETFD) < 0) (void)::open("/dev/null", O_RDONLY);  // takes its place
+  // so that no file opened later becomes descriptor 0
+  if (::fcntl(STDIN_FILENO, F_GETFD) < 0) (void)::open("/dev/null", O_RDONLY);
   Options options;
   std::string size = "1280x720";
   CLI::App cli{
@@ -312,7 +314,7 @@ int main(int argc, char** argv) {
     start = std::move(*loaded);
   }
   if (!serial.empty()) start.serial = serial;
-  // Found out before an hour of strokes, not after.
+  // Checked before an hour of work, not after.
   if (const auto good = draw::can_be_written("--out", path); !good)
     return fail(kUsage, good.error());
   auto device = cabinet::open_device(options.device, cabinet::nominal_calibration());

@@ -1,5 +1,5 @@
-// The program on a real serial line (a pty), on the terminal: a simulated controller and person at
-// the other end.
+// Runs the program on a real serial line (a pty), on the terminal, with a simulated controller and
+// person at the other end.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <poll.h>
@@ -63,7 +63,7 @@ class Program {
     if (poll(&ready, 1, 10) > 0) hear();
     return said_.find(text) != std::string::npos;
   }
-  // After what was found the last time.
+  // After the text found last.
   bool says(const std::string& text) {
     while (said_.find(text, found_) == std::string::npos)
       if (!hear()) return false;
@@ -80,7 +80,7 @@ class Program {
   const std::string& said() const { return said_; }
 
  private:
-  // False: it goes on for longer than patience.
+  // False: the output continues for longer than the time limit.
   bool says_its_last() {
     while (hear()) {
     }
@@ -120,11 +120,11 @@ TEST(CalibrateProgram, GuidesOverASerialLineAndKeepsTheCalibration) {
                                       .forward_sign = -foosball::attack_sign(spec.team)};
   cabinet::CalibrationGuide guide(options);
   SimulatedRod rod({.counts_per_mm = 39.4, .tilt = 0.05, .scale = 1.02}, 5);
-  // At the stop already: what is typed may overtake what the line still holds.
+  // At the stop already: keys may overtake data still on the line.
   rod.slide = -options.push_side * options.reach;
   Person person(guide, rod, options);
   SimulatedDevice device;
-  // Until the program has opened the line and has heard of the controller.
+  // Until the program has opened the line and has received data from the controller.
   for (int i = 0; i < 2000 && !program.has_said("press Enter.\n"); ++i)
     line.master.send_what_fits(cobs(device.frame(5'000)));
   ASSERT_TRUE(program.says("press Enter.\n")) << program.said();
@@ -134,7 +134,7 @@ TEST(CalibrateProgram, GuidesOverASerialLineAndKeepsTheCalibration) {
     device.slide[1] += c.slide;
     device.spin[1] += c.spin;
     const Bytes bytes = cobs(device.frame(5'000));
-    // The program reads as long as it lives: this waits for it alone.
+    // The program reads until it exits; this write waits only for the program.
     ASSERT_EQ(write(line.master.fd, bytes.data(), bytes.size()),
               static_cast<ssize_t>(bytes.size()));
   };

@@ -1,4 +1,4 @@
-// The calibration's pictures at several moments, in a real window: nothing written is cut.
+// Draws several moments of the calibration in a real window: no text is cut.
 #include <GLES3/gl3.h>
 #include <gtest/gtest.h>
 

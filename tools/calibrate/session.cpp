@@ -6,7 +6,7 @@
 namespace calibrate {
 namespace {
 
-constexpr double kFade = 0.5;         // [s] in which what a rod has moved fades to 1/e
+constexpr double kFade = 0.5;         // [s] decay time to 1/e of a rod's recent motion
 constexpr double kMovesClearly = 60;  // [counts] of another rod, while this one rests
 constexpr double kMovesBarely = 6;
 constexpr std::int32_t kLongestGapUs = 500'000;
@@ -44,7 +44,7 @@ void Session::line_is(cabinet::DeviceState state, int error) {
   line_error_ = error;
 }
 
-// A controller that was restarted, or a sensor that was away, has lost what moved meanwhile.
+// After a restart of the controller or an absence of a sensor, the motion meanwhile is lost.
 void Session::hear(const wire::DeviceFrame& frame) {
   ++frames_;
   if (heard_) {
@@ -114,7 +114,7 @@ void Session::back() {
   begin_rod();
 }
 
-// What was begun of this rod is given up.
+// Abandons an unfinished run of this rod.
 void Session::next_rod(int by) {
   if (states_[index(rod())] == RodState::guided)
     states_[index(rod())] = fits_[index(rod())] ? RodState::fitted : RodState::open;

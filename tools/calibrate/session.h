@@ -1,5 +1,5 @@
-// A calibration of the cabinet from beginning to end: rod after rod, each led by a guide, fitted,
-// and kept as soon as it fits. Knows no window and no device: frames and keys are handed in.
+// A complete calibration of the cabinet: rod by rod, each led by a guide, fitted, and stored as
+// soon as the fit succeeds. Independent of window and device: frames and keys are arguments.
 #pragma once
 
 #include <array>
@@ -18,9 +18,9 @@ namespace calibrate {
 
 enum class RodState {
   open,     // not calibrated in this session
-  guided,   // its guide asks
-  fitted,   // and kept
-  refused,  // its run could not be fitted: problem() says why
+  guided,   // its guide is asking for motions
+  fitted,   // and stored
+  refused,  // the fit of its run failed: problem() says why
 };
 
 // For the live trace: counts since the session began.
@@ -32,7 +32,7 @@ struct TracePoint {
 struct SessionOptions {
   foosball::Layout layout = foosball::Layout::tournament;
   std::vector<int> rods{0, 1, 2, 3, 4, 5, 6, 7};                // in this order
-  cabinet::Calibration start = cabinet::nominal_calibration();  // of the rods that are left alone
+  cabinet::Calibration start = cabinet::nominal_calibration();  // of rods not calibrated
 };
 
 class Session {
@@ -40,18 +40,18 @@ class Session {
   explicit Session(const SessionOptions& options);
 
   void hear(const wire::DeviceFrame& frame);
-  // What the controller's line is like now; error: errno of an attempt to open it.
+  // Sets the state of the controller's line. error: errno of an attempt to open it.
   void line_is(cabinet::DeviceState state, int error);
   cabinet::DeviceState line() const { return line_; }
   int line_error() const { return line_error_; }
-  // This rod was started again: frames were missing, and with them counts.
+  // This rod was restarted, because frames and their counts were missing.
   bool interrupted() const { return interrupted_; }
-  // The one key that everything can be done with: what is next is done. At the start of a rod it
-  // marks; where its guide waits it marks by force; after a fit it goes on to the next rod, after a
-  // refusal it begins the rod anew.
+  // The single key that suffices for a calibration. At the start of a rod it marks; where its guide
+  // waits, it forces the mark; after a fit it goes to the next rod; after a failed fit it restarts
+  // the rod.
   void confirm();
-  void back();            // the step before once more; after a fit: the rod anew
-  void next_rod(int by);  // leaves this rod as it is; wraps round
+  void back();            // repeats the previous step; after a fit: restarts the rod
+  void next_rod(int by);  // leaves this rod unchanged; wraps around
 
   int rod() const { return rods_[at_]; }
   const std::vector<int>& rods() const { return rods_; }
@@ -61,15 +61,15 @@ class Session {
   const std::string& problem() const { return problems_[index(rod())]; }
   bool all_fitted() const;
 
-  // With what fits so far.
+  // With the successful fits so far.
   const cabinet::Calibration& calibration() const { return calibration_; }
-  // Counted up with each rod that has come to fit: there is something to keep.
+  // Increases with each successful fit: there is something to store.
   int kept() const { return kept_; }
 
   bool sensor_answers() const { return heard_ && (last_.present >> rod() & 1) != 0; }
-  // The rod that is moved instead of this one, or -1.
+  // The rod that moves instead of this one, or -1.
   int other_rod_moves() const;
-  const std::deque<TracePoint>& trace() const { return trace_; }  // of this rod, kTraceSeconds
+  const std::deque<TracePoint>& trace() const { return trace_; }  // of this rod, over kTraceSeconds
   std::uint64_t frames() const { return frames_; }
 
   static constexpr double kTraceSeconds = 10.0;
@@ -97,7 +97,7 @@ class Session {
   std::uint64_t frames_ = 0;
   double seconds_ = 0;
   std::deque<TracePoint> trace_;
-  std::array<double, cabinet::kRods> moved_{};  // [counts] lately, fading
+  std::array<double, cabinet::kRods> moved_{};  // recent motion [counts], decaying
 };
 
 }  // namespace calibrate

@@ -1,4 +1,4 @@
-// Rod after rod, by a simulated person on a simulated controller.
+// Calibrates rod after rod with a simulated person and a simulated controller.
 #include "session.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ cabinet::GuideOptions options_of(int rod) {
 struct Table {
   explicit Table(const SessionOptions& options = {}) : session(options) {}
 
-  // One rod by a person who follows a guide of the same kind.
+  // Calibrates one rod with a person who follows an identical guide.
   void calibrate(int rod, const Mount& mount) {
     cabinet::CalibrationGuide guide(options_of(rod));
     SimulatedRod simulated(mount, static_cast<std::uint32_t>(50 + rod));
@@ -34,7 +34,7 @@ struct Table {
     person.follow();
   }
   void send(int rod, const cabinet::CountIncrement& c) {
-    // A magnet that slips on its rod: each second it comes another while later.
+    // A magnet that slips on its rod: its signal's delay changes each second.
     seen.push_front(c.mark);
     if (seen.size() > 50) seen.pop_back();
     if (loose > 0 && device.sequence % 200 == 0) late = random() % loose;
@@ -125,14 +125,14 @@ TEST(CalibrationSession, ARunThatDoesNotFitIsRefusedAndBegunAnew) {
   SimulatedRod rod({}, 3);
   Person person(guide, rod, options_of(0));
   int frames = 0;
-  // The sensor slips: it loses every report of some strokes' ends.
+  // The sensor slips: it loses half of the counts at the ends of some strokes.
   person.on_counts = [&](cabinet::CountIncrement c) {
     if (++frames % 1100 > 700 && guide.step() > 9) c.slide = static_cast<std::int16_t>(c.slide / 2);
     table.send(0, c);
   };
   person.on_start = [&] { table.session.confirm(); };
   person.follow();
-  // Where the guide did not see the end of a step for itself, the person insists.
+  // Where the guide did not detect the end of a step, the person confirms it.
   for (int i = 0; i < 100 && table.session.state(0) == RodState::guided; ++i)
     table.session.confirm();
   ASSERT_EQ(table.session.state(0), RodState::refused);
@@ -165,7 +165,7 @@ TEST(CalibrationSession, SaysWhichRodMovesAndWhichSensorIsSilent) {
   EXPECT_EQ(advice_words(table.session), "");
 }
 
-// Its counts, clock and sequence start again at 0, which is no motion.
+// Its counts, clock and sequence restart at 0, which is no motion.
 TEST(CalibrationSession, AControllerThatIsRestartedStartsTheRodAgain) {
   for (const bool only_the_sensor : {false, true}) {
     Table table;

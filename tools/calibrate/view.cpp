@@ -20,9 +20,9 @@ constexpr Colour kPanel{0.06f, 0.09f, 0.14f, 1.0f}, kTrack{0.16f, 0.21f, 0.29f, 
     kBright{0.93f, 0.96f, 1.0f, 1.0f}, kDim{0.62f, 0.70f, 0.80f, 1.0f},
     kSlide{0.30f, 0.80f, 0.95f, 1.0f}, kSpin{0.98f, 0.72f, 0.30f, 1.0f},
     kGood{0.42f, 0.86f, 0.52f, 1.0f}, kBad{0.98f, 0.45f, 0.38f, 1.0f};
-constexpr float kWide = 420.0f;  // half of what is written on [units]
+constexpr float kWide = 420.0f;  // half width of the text area [units]
 
-// Below the line that was written; text that is too long goes over several.
+// Draws text below the previous line, wrapped; returns its lower edge.
 float paragraph(const HudPen& pen, const std::string& text, float size, float top,
                 const Colour& colour, Face face = Face::regular) {
   const client::TextStyle style{face, size, 0.0f, Align::centre};
@@ -33,7 +33,7 @@ float paragraph(const HudPen& pen, const std::string& text, float size, float to
   return top;
 }
 
-// Each rod of the table as a small field: what it is at.
+// Each rod of the table as a small field with its state.
 void draw_rods(const HudPen& pen, const Session& session, float top) {
   const float step = 2 * kWide / static_cast<float>(cabinet::kRods);
   for (int rod = 0; rod < cabinet::kRods; ++rod) {
@@ -58,7 +58,7 @@ void draw_bar(const HudPen& pen, float top, double share, const Colour& colour) 
   if (right > -kWide + 14.0f) pen.panel({-kWide, top}, {right, top + 14.0f}, 7.0f, colour);
 }
 
-// The last seconds of both counts, each scaled to its own range.
+// The last seconds of both counts, each scaled to its range.
 void draw_trace(const HudPen& pen, const Session& session, float top, float bottom) {
   pen.panel({-kWide, top}, {kWide, bottom}, 8.0f, kPanel);
   const auto& trace = session.trace();
@@ -91,7 +91,7 @@ void draw_trace(const HudPen& pen, const Session& session, float top, float bott
   pen.text(tr(N_("counts around")), small, {-kWide + 150.0f, top + 18.0f}, kSpin);
 }
 
-// How far off each mark is, as a share of what is accepted.
+// The residual of each mark, as a fraction of the accepted one.
 void draw_residuals(const HudPen& pen, const cabinet::RodFit& fit, float top, float bottom) {
   constexpr double kMostSlide = 1e-3, kMostAngle = 5.0 / 180 * M_PI;
   pen.panel({-kWide, top}, {kWide, bottom}, 8.0f, kPanel);

@@ -1,5 +1,5 @@
-// The calibration on the screen: what to do, how far it has come, the raw counts as they arrive,
-// and what the fit has found.
+// The calibration on the screen: the instructions, the progress, the raw counts as they arrive, and
+// the result of the fit.
 #pragma once
 
 #include "render/ui_batch.h"
@@ -7,7 +7,7 @@
 
 namespace calibrate {
 
-// path: where the numbers are kept; problem: why they could not be, or empty.
+// path: where the calibration is stored; problem: why it could not be stored, or empty.
 struct ViewState {
   foosball::Layout layout = foosball::Layout::tournament;
   std::string device{}, path{}, problem{};

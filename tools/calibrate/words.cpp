@@ -145,7 +145,7 @@ std::string advice_words(const Session& session) {
 std::vector<std::string> fit_words(const cabinet::RodFit& fit) {
   const cabinet::RodCalibration& c = fit.calibration;
   const auto& d = fit.deviation;
-  // Of the longer of each pair: a sensor may be mounted at any angle.
+  // Of the larger component of each pair: a sensor may be mounted at any angle.
   const double along = std::hypot(c.m[0][0], c.m[0][1]), around = std::hypot(c.m[1][0], c.m[1][1]);
   const auto spread = [](double a, double b, double da, double db) {
     const double length = std::hypot(a, b);

@@ -1,4 +1,4 @@
-// What a person is told in a calibration, in the window and on the terminal.
+// The texts of a calibration, for the window and the terminal.
 #pragma once
 
 #include <string>
@@ -9,11 +9,11 @@
 namespace calibrate {
 
 std::string rod_words(foosball::Layout layout, int rod);  // "Rod 3: midfield of team 1"
-// What to do now: of the guide, or of a fit that is there or was refused.
+// What to do now: the guide's step, or after a successful or failed fit.
 std::string request_words(const Session& session);
-// What keeps it from going on; empty: nothing.
+// What blocks the progress; empty: nothing.
 std::string advice_words(const Session& session);
-// The coefficients with their deviations, and what is left over; a line each.
+// The coefficients with their standard deviations, and the residuals; one line each.
 std::vector<std::string> fit_words(const cabinet::RodFit& fit);
 
 }  // namespace calibrate

@@ -18,7 +18,7 @@
 namespace video {
 namespace {
 
-constexpr int kSound = 3;  // the descriptor that ffmpeg reads the sound from
+constexpr int kSound = 3;  // the descriptor from which ffmpeg reads the sound
 
 std::vector<std::string> command_line(const EncoderOptions& options, bool sound,
                                       const std::vector<std::string>& codec) {
@@ -33,11 +33,11 @@ std::vector<std::string> command_line(const EncoderOptions& options, bool sound,
                   "-i", "pipe:" + std::to_string(kSound)});
   }
   words.insert(words.end(), codec.begin(), codec.end());
-  words.push_back("file:" + options.path);  // a name is a name, whatever protocol it looks like
+  words.push_back("file:" + options.path);  // "file:": never parsed as another protocol
   return words;
 }
 
-// ffmpeg reads the pictures as its standard input; what it says goes to the file.
+// ffmpeg reads the pictures from its standard input; its messages go to the file.
 int spawn(std::vector<std::string> words, int pictures, int sound, int complaints, pid_t& process) {
   std::vector<char*> arguments;
   arguments.reserve(words.size() + 1);
@@ -66,7 +66,7 @@ std::string first_line(int fd) {
 
 tl::expected<std::vector<std::string>, std::string> codec_for(const std::string& path) {
   const std::string ending = std::filesystem::path(path).extension();
-  // yuv420p is what every player shows. crf: the quality that is hardly told from the pictures.
+  // All players support yuv420p. crf: visually almost lossless.
   if (ending == ".mp4" || ending == ".mkv") {
     return std::vector<std::string>{"-c:v", "libx264",  "-preset", "veryfast",  "-crf",
                                     "18",   "-pix_fmt", "yuv420p", "-movflags", "+faststart",
@@ -143,7 +143,7 @@ std::string Encoder::failure() {
   if (process < 0) return "ffmpeg has ended already.";
   while (::waitpid(process, &status, 0) < 0 && errno == EINTR) {
   }
-  // A full disk is said by it, but is no failure to it.
+  // ffmpeg reports a full disk without a failing exit code.
   const std::string said = first_line(complaints_.get());
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0 && said.empty()) return {};
   if (!said.empty()) return "ffmpeg could not write the video: " + said;

@@ -1,5 +1,5 @@
-// The picture of a match at moments of its own time: what the game's window would show, drawn frame
-// by frame without a clock.
+// The picture of a match at given moments of the match's time: what the game's window would show,
+// drawn frame by frame without a clock.
 #pragma once
 
 #include <memory>
@@ -17,7 +17,7 @@
 
 namespace video {
 
-// What is seen and heard of a match beside its bodies, as time goes on: the camera, sparks, sounds.
+// The presentation of a match beside its bodies: camera, sparks, sounds.
 class Staging {
  public:
   Staging(int team, const foosball::Characters& characters, client::View view = client::View::seat)
@@ -25,14 +25,14 @@ class Staging {
     effects_.set_characters(characters_);
   }
 
-  // Time goes on by dt [s] to this state; events: what happened in between. sounds: null for none.
+  // Advances by dt [s] to this state; events: those in between. sounds: null for none.
   void advance(const wire::Snapshot& state, std::span<const wire::EventSnapshot> events, float dt,
                client::SoundPlayer* sounds);
   client::Camera camera(const glm::ivec2& size) const { return camera(view_, size); }
   client::Camera camera(client::View view, const glm::ivec2& size) const {
     return motion_.camera(view, size);
   }
-  // Goes to another moment, of which a person has been told this.
+  // Jumps to another moment; story: what a person has seen of the match by then.
   void jump(const client::MatchStory& story);
   client::Particles& particles() { return particles_; }
   const client::MatchStory& story() const { return story_; }
@@ -54,7 +54,7 @@ struct FilmOptions {
 
 class Film {
  public:
-  // Opens a window that nobody sees. The error is a sentence.
+  // Opens an invisible window. The error is a sentence.
   static tl::expected<std::unique_ptr<Film>, draw::WindowError> open(
       const FilmOptions& options, const foosball::Characters& characters);
 
@@ -67,7 +67,7 @@ class Film {
 
   FilmOptions options_;
   foosball::Characters characters_;
-  draw::Window window_;  // first: what is drawn with must go before it
+  draw::Window window_;  // first: destroyed after what is drawn with it
   std::unique_ptr<client::Scene> scene_;
   client::UiBatch ui_;
 };

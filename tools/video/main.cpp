@@ -1,4 +1,4 @@
-// space-foosball-video: a recorded match as a video, drawn as the game draws it.
+// space-foosball-video: encodes a recorded match as a video, drawn like the game.
 #include <unistd.h>
 
 #include <csignal>
@@ -21,7 +21,7 @@ int fail(int code, const std::string& sentence) {
   return code;
 }
 
-// How far it is, on one line of a terminal, or each tenth elsewhere.
+// Progress on one line of a terminal, or each tenth elsewhere.
 class Progress {
  public:
   explicit Progress(std::uint64_t frames) : frames_(frames), began_us_(os::monotonic_us()) {}
@@ -49,7 +49,7 @@ std::uint64_t ticks_of(double seconds) {
   return static_cast<std::uint64_t>(seconds / foosball::kTick);
 }
 
-// A recording of its own is played for the sound; without it the video is silent, and that is said.
+// Opens the recording again for the sound. On failure the video is silent, with a message.
 os::FileDescriptor sound_of(const video::Options& options, const video::Span& span) {
   if (options.mute) return {};
   auto scene = server::RecordedScene::open(options.recording);
@@ -85,7 +85,7 @@ int run(const video::Options& options) {
   Progress progress(span.frames());
   const float dt = 1.0f / static_cast<float>(span.frames_per_second);
   scene->advance_to(from);
-  scene->take_events();  // of what is not shown
+  scene->take_events();  // drops events before the first frame
   for (std::uint64_t frame = 0; frame < span.frames(); ++frame) {
     scene->advance_to(span.tick(frame + 1));
     staging.advance(scene->snapshot(), scene->take_events(), dt, nullptr);
@@ -94,7 +94,7 @@ int run(const video::Options& options) {
       return fail(server::kExitFailed, written.error());
     progress.drawn(frame + 1);
   }
-  if (end == scene->total_ticks()) scene->advance_to(end + 1);  // reads what is said of the end
+  if (end == scene->total_ticks()) scene->advance_to(end + 1);  // reads the entry of the end
   if (auto done = encoder->finish(); !done) return fail(server::kExitFailed, done.error());
   std::printf("written  %s: %.1f s of the match\nverdict  %s\n", options.encoder.path.c_str(),
               1e-3 * static_cast<double>(end - from), scene->playback().verdict_sentence().c_str());
@@ -104,7 +104,7 @@ int run(const video::Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::signal(SIGPIPE, SIG_IGN);  // ffmpeg may end before its pictures do: write() says so
+  std::signal(SIGPIPE, SIG_IGN);  // ffmpeg may end early; write() then returns the error
   const auto options = video::parse_options(argc, argv);
   if (!options) {
     const draw::Leave& leave = options.error();

@@ -40,7 +40,7 @@ tl::expected<Options, draw::Leave> parse_options(int argc, const char* const* ar
   if (auto parsed = draw::parse(cli, argc, argv); !parsed) return tl::unexpected(parsed.error());
   const auto pixels = draw::parse_size(size);
   if (!pixels) return tl::unexpected(draw::refuse(pixels.error()));
-  // The codecs keep one colour for each four pixels.
+  // The codecs store one colour for each four pixels.
   if (pixels->x % 2 != 0 || pixels->y % 2 != 0)
     return tl::unexpected(draw::refuse("--size wants an even width and height, not " + size + "."));
   options.encoder.size = *pixels;

@@ -16,7 +16,7 @@ struct Options {
   std::string recording;
   EncoderOptions encoder;
   draw::Quality quality = draw::Quality::high;
-  int team = 0;  // whose side the camera stands on
+  int team = 0;  // side of the camera
   client::View view = client::View::seat;
   double from = 0.0;         // [s] of the recording
   std::optional<double> to;  // [s]; none: to its end

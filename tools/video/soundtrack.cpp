@@ -39,9 +39,9 @@ tl::expected<os::FileDescriptor, std::string> soundtrack(server::RecordedScene& 
   if (!file) return tl::unexpected(std::string("No room for the sound: ") + std::strerror(errno));
   Staging staging(team, scene.characters(), view);
   scene.advance_to(span.from);
-  scene.take_events();  // of what is not shown
+  scene.take_events();  // drops events before the first frame
   const auto fps = static_cast<float>(span.frames_per_second);
-  std::uint64_t moments = 0;  // of sound, so far
+  std::uint64_t moments = 0;  // number of samples so far
   for (std::uint64_t frame = 0; frame < span.frames(); ++frame) {
     scene.advance_to(span.tick(frame + 1));
     staging.advance(scene.snapshot(), scene.take_events(), 1.0f / fps, sounds->get());

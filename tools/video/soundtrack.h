@@ -1,4 +1,4 @@
-// What is heard of a recording, from one moment to another, as samples in a file without a name.
+// The sound of a recording between two moments, as samples in an anonymous file.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -11,8 +11,8 @@
 
 namespace video {
 
-// The ticks of a recording that a video shows, frame by frame. Frame i shows the scene after
-// tick(i + 1).
+// The ticks of a recording that a video shows, frame by frame. Frame i shows the scene after tick(i
+// + 1).
 struct Span {
   std::uint64_t from = 0, end = 0;  // [ticks]
   std::uint64_t frames_per_second = 60;
@@ -21,9 +21,9 @@ struct Span {
   std::uint64_t tick(std::uint64_t frame) const { return from + frame * 1000 / frames_per_second; }
 };
 
-// Plays the recording through once, which takes a hundredth of its time. The samples are 16 bit,
-// stereo, client::kSampleRate a second, and lie in the file from its beginning. The error is a
-// sentence: of a system whose OpenAL cannot do it, or of a lack of room.
+// Plays the recording once, in a hundredth of its duration. The samples are 16-bit stereo,
+// client::kSampleRate per second, from the beginning of the file. The error is a sentence: OpenAL
+// cannot render offline, or the disk is full.
 tl::expected<os::FileDescriptor, std::string> soundtrack(server::RecordedScene& scene,
                                                          const Span& span, int team,
                                                          client::View view, const glm::ivec2& size);

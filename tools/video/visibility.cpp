@@ -1,12 +1,12 @@
-// space-foosball-visibility: how well the ball is seen in a recorded match, in every view that is
-// meant for play.
+// space-foosball-visibility: measures how well the ball is visible in a recorded match, in every
+// view for play.
 //
 //   space-foosball-visibility RECORDING
 //
-// Each 50 ms the picture is drawn with what stands between eye and ball, and the ball's pixels are
-// counted (Scene::ball_visibility). A ball of which less than half is seen is hidden; it may be so
-// for kLongestHidden at a time. Exit codes: 0 it never is for longer, 1 it is, 2 a bad recording, 4
-// no display.
+// Each 50 ms it draws the picture with everything between eye and ball, and counts the ball's
+// pixels (Scene::ball_visibility). A ball of which less than half is visible is hidden; it may be
+// hidden for kLongestHidden at a time. Exit codes: 0 it never is for longer, 1 it is, 2 a bad
+// recording, 4 no display.
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -27,7 +27,7 @@ struct WatchedView {
   int team;
   client::View view;
   client::ViewMotion motion;
-  double hidden = 0.0, longest = 0.0, least = 1.0, sum = 0.0;  // [s], [s], share, shares
+  double hidden = 0.0, longest = 0.0, least = 1.0, sum = 0.0;  // [s], [s], fraction, fractions
   int looks = 0, times_hidden = 0;
 };
 

@@ -1,5 +1,5 @@
-// Work that the window does not wait for: it is asked for its outcome each frame, and left alone if
-// nobody wants that any more. What the work needs, it owns.
+// Work on another thread. The window polls for its result each frame, or drops it if it is no
+// longer needed. The work owns its data.
 #pragma once
 
 #include <atomic>
@@ -25,7 +25,7 @@ class Background {
   }
   bool running() const { return state_ != nullptr; }
   void forget() { state_.reset(); }
-  // Once, when it is there.
+  // Returns the result once, when it is ready.
   std::optional<Outcome> take() {
     if (!state_ || !state_->done.load(std::memory_order_acquire)) return std::nullopt;
     std::optional<Outcome> outcome = std::move(state_->outcome);

@@ -1,4 +1,4 @@
-// What a person asks for while choosing or watching a recording, whatever is in the hand.
+// A person's commands while choosing or watching a recording, from any input device.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -16,9 +16,9 @@ enum class Command : std::uint8_t {
   faster,
   tick_back,
   tick_on,
-  back,  // a second
+  back,  // one second
   on,
-  far_back,  // ten
+  far_back,  // ten seconds
   far_on,
   previous_goal,
   next_goal,
@@ -41,18 +41,18 @@ enum class Command : std::uint8_t {
   confirm,
 };
 
-// A key of the window library (GLFW). choosing: the list is shown, else a recording.
+// A key of the window library (GLFW). choosing: the list is shown, otherwise a recording.
 Command command_of_key(int key, bool shift, bool choosing);
 Command command_of_button(client::ReplayButton button);
-// Of a gamepad's buttons in a frame: each that was pressed, as often. Calls take(Command).
+// From a gamepad's presses in a frame: one command per press. Calls take(Command).
 template <class Take>
 void commands_of_pad(const client::InputEvents& pad, bool choosing, bool paused, Take take);
 
-// What the mouse did.
+// A mouse event.
 struct PointerEvent {
   enum class Kind : std::uint8_t { press, move, release, wheel } kind{};
   glm::vec2 at{0.0f};  // [px] of the framebuffer
-  float steps = 0.0f;  // of the wheel, away from the person positive
+  float steps = 0.0f;  // of the wheel, positive away from the person
 };
 
 // --- implementation -----------------------------------------------------------------------------

@@ -88,7 +88,7 @@ int main(int argc, char** argv) {
   if (list_folder) return list(options.session.folder);
   if (options.session.folder.empty() && options.session.file.empty())
     return leave(draw::refuse("There is no home to keep recordings in: name one with --folder."));
-  // One file by itself: who leaves it has seen what was asked for.
+  // A single file: closing it ends the program.
   if (!options.session.file.empty() && folder->count() == 0) options.session.folder.clear();
   options.size = *pixels;
   if (!quality.empty())

@@ -12,7 +12,7 @@ bool Player::act(Command command) {
   const double total = static_cast<double>(timeline_->findings().total);
   switch (command) {
     case Command::play:
-      if (paused_ && tick_ >= total) go_to(0.0);  // once more
+      if (paused_ && tick_ >= total) go_to(0.0);  // from the beginning again
       paused_ = !paused_;
       return true;
     case Command::slower:
@@ -56,7 +56,7 @@ bool Player::act(Command command) {
   }
 }
 
-// Of single ticks, while all stands.
+// Steps by single ticks; pauses the playback.
 void Player::step(double ticks) {
   paused_ = true;
   go_to(std::floor(tick_) + ticks);
@@ -78,7 +78,7 @@ void Player::go_to(double tick) {
   jumped_ = true;
 }
 
-// Backwards from just after a goal's beginning to the one before it.
+// Goals closer than kNear are skipped, so that a jump back right after another one moves on.
 void Player::go_to_goal(int direction) {
   constexpr double kNear = 500.0;  // ticks
   const Findings findings = timeline_->findings();
@@ -105,7 +105,7 @@ void Player::advance(double dt) {
   const auto total = static_cast<double>(findings.total);
   tick_ = std::min(tick_ + 1e3 * speed() * dt, total);
   timeline_->play_to(static_cast<std::uint64_t>(tick_));
-  // At the end it stands, but for one that is still being made: there it waits for more.
+  // At the end the playback pauses. In a recording that is still written it waits for more.
   if (tick_ >= total && findings.done && !findings.being_made) paused_ = true;
 }
 

@@ -1,4 +1,4 @@
-// One recording that is watched: the moment, the speed, pauses, goals. No window, no drawing.
+// Playback of one recording: the moment, the speed, pauses, goals. No window, no drawing.
 #pragma once
 
 #include <memory>
@@ -12,19 +12,19 @@ namespace watch {
 class Player {
  public:
   static constexpr std::array<double, 6> kSpeeds{0.125, 0.25, 0.5, 1.0, 2.0, 4.0};
-  static constexpr int kNormal = 3;               // of kSpeeds
-  static constexpr double kBeforeGoal = 2'000.0;  // ticks that a jump to a goal leaves to see
+  static constexpr int kNormal = 3;               // index in kSpeeds
+  static constexpr double kBeforeGoal = 2'000.0;  // lead-in before a goal [ticks]
 
   explicit Player(std::unique_ptr<Timeline> timeline) : timeline_(std::move(timeline)) {}
 
-  // Commands of time; false for any other.
+  // Handles commands of playback; false for any other.
   bool act(Command command);
-  // The line is drawn along, to this moment [s]; then let go.
+  // The person drags the position to this moment [s]; drop() ends the drag.
   void drag(double seconds);
   void drop() { dragging_ = false; }
   bool dragging() const { return dragging_; }
   void go_to(double tick);
-  // Time goes on by dt [s] of the clock. What happens gathers in the scene.
+  // Advances by dt [s] of the clock. Events accumulate in the scene.
   void advance(double dt);
 
   double speed() const { return kSpeeds[static_cast<std::size_t>(speed_)]; }
@@ -33,9 +33,9 @@ class Player {
   double tick() const { return tick_; }
   Timeline& timeline() { return *timeline_; }
   const Timeline& timeline() const { return *timeline_; }
-  // Something to read, English, once; empty: nothing.
+  // A message in English, returned once; empty: none.
   std::string take_message() { return std::exchange(message_, {}); }
-  // The moment has changed by a jump since the last call.
+  // A jump has changed the moment since the last call.
   bool take_jump() { return std::exchange(jumped_, false); }
 
  private:

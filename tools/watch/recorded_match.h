@@ -1,4 +1,4 @@
-// For tests: a recording in a folder of its own, of two computer players, with a goal in it.
+// Test fixture: a recording of two computer players with a goal, in a temporary folder.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ class RecordedMatch : public testing::Test {
   struct Recording {
     wire::JournalEncoder encoder;
     std::vector<std::byte> bytes;
-    std::size_t without_end = 0;        // bytes as a server leaves them that is killed
+    std::size_t without_end = 0;        // bytes that a server leaves when it is killed
     std::vector<std::uint64_t> hashes;  // after each tick
     std::vector<std::uint64_t> goals;   // ticks stepped
     void add(const wire::JournalEntry& entry) { encoder.add(entry, bytes); }
@@ -50,7 +50,7 @@ class RecordedMatch : public testing::Test {
       entry.tick = tick;
       for (std::size_t rod = 0; rod < hands.size(); ++rod)
         entry.rods[rod] = server::to_grid(hands[rod]);
-      if (tick < 2) entry.commands = {{0, 0, 0, 0}, {0, 1, 0, 0}};  // to play at once
+      if (tick < 2) entry.commands = {{0, 0, 0, 0}, {0, 1, 0, 0}};  // start the play at once
       server::step_recorded(*match, entry);
       schedule.add(entry, *match);
       made.hashes.push_back(match->state_hash());
@@ -62,7 +62,7 @@ class RecordedMatch : public testing::Test {
     schedule.finish(*match);
     return made;
   }
-  // The first in which a goal falls in the midst, whatever the physics' digits are.
+  // The first seed with a goal in the middle, independent of small changes of the physics.
   static const Recording& recording() {
     static const Recording made = [] {
       for (std::uint64_t seed = 1; seed < 200; ++seed) {

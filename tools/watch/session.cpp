@@ -13,7 +13,7 @@ namespace watch {
 namespace {
 
 constexpr double kMessageSeconds = 10.0;
-constexpr double kStickRate = 8'000.0;  // ticks a second, of a stick that is held
+constexpr double kStickRate = 8'000.0;  // ticks per second, for a held stick
 constexpr double kStickRest = 0.3;
 constexpr std::array<const char*, client::kViews> kViewNames{
     N_("seat"), N_("from above (cabinet)"), N_("follow the ball"), N_("spectator")};
@@ -98,7 +98,7 @@ void Session::tell(const std::string& text, bool warning) {
 void Session::take_list(Listed listed) {
   list_.reading = false;
   if (!listed) return tell(listed.error(), true);
-  // The choice stays with its file.
+  // The selection stays with its file.
   const std::string chosen = recordings_.empty() ? "" : path();
   recordings_ = std::move(*listed);
   list_.rows.clear();
@@ -209,7 +209,7 @@ void Session::choose(int row) {
   list_.first = std::clamp(list_.first, 0, std::max(0, all - shown));
 }
 
-// The choice stays in sight.
+// The selection stays visible.
 void Session::scroll(int rows) {
   const int all = static_cast<int>(list_.rows.size());
   const int shown = client::replay_list_layout(size_).shown;
@@ -318,7 +318,7 @@ void Session::pointer(const PointerEvent& event) {
       if (player_ && player_->dragging()) {
         player_->drag(client::moment_at(client::replay_bar_layout(size_), event.at.x, bar().total));
       } else if (!player_) {
-        // The row under the pointer is the one that keys and buttons mean.
+        // Selects the row under the pointer, to which keys and buttons apply.
         const auto row = client::row_at(client::replay_list_layout(size_), list_, event.at);
         if (row) choose(*row);
       }

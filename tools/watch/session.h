@@ -1,4 +1,4 @@
-// Choosing and watching recordings without a window: events in, what is to be drawn out. Files are
+// Choosing and watching recordings without a window: events in, data to be drawn out. Files are
 // read in the background; the window never waits for one.
 #pragma once
 
@@ -17,7 +17,7 @@ namespace watch {
 
 struct SessionOptions {
   std::string folder = {};    // of the list; empty: one file only
-  std::string file = {};      // watched at once; empty: the list first
+  std::string file = {};      // opened at once; empty: the list first
   std::string share_to = {};  // folder for copies
   double from = 0.0;          // [s] of the file
   client::View view = client::View::seat;
@@ -33,30 +33,30 @@ class Session {
   void pointer(const PointerEvent& event);
   void pad(const client::InputEvents& events);
   void act(Command command);
-  // dt [s] of the clock: what was read in the background arrives, time goes on.
+  // dt [s] of the clock. Takes the results of background work and advances the playback.
   void step(double dt);
 
   bool over() const { return over_; }  // the person has left
   bool reading() const { return listing_.running() || opening_.running(); }
-  void wait() const;  // for what is being read: for tests, and for a picture of the first moment
+  void wait() const;  // for background reading: for tests, and for a picture of the first moment
   Player* player() { return player_.get(); }  // null: the list is shown
   const Player* player() const { return player_.get(); }
-  // The recording that is watched is another one than at the last call.
+  // Another recording was opened since the last call.
   bool take_opened() { return std::exchange(opened_, false); }
-  bool take_picture() { return std::exchange(picture_, false); }  // one was asked for
+  bool take_picture() { return std::exchange(picture_, false); }  // a picture was requested
   client::View view() const { return view_; }
-  int team() const { return team_; }  // the side that the camera stands on
+  int team() const { return team_; }  // side of the camera
   bool hidden() const { return hidden_; }
   const std::string& shared_to() const { return options_.share_to; }
 
-  // What is shown; precondition of bar(): player().
+  // The data to be drawn. Precondition of bar(): player().
   const client::ReplayList& list() const { return list_; }
   client::ReplayBar bar() const;
-  // A line for a log: where the recording is, or which row is chosen.
+  // A line for a log: the position in the recording, or the chosen row.
   std::string state() const;
-  // To be read for a while; text: in the language of the person.
+  // Shows a message for a while; text: in the person's language.
   void tell(const std::string& text, bool warning);
-  // Why the first file could not be opened; empty: it could, or is not read yet.
+  // Why the first file could not be opened; empty: no error so far.
   const std::string& first_problem() const { return first_problem_; }
 
  private:
@@ -74,7 +74,7 @@ class Session {
   void choose(int row);
   void scroll(int rows);
   void press(const glm::vec2& at);
-  std::string path() const;  // that keep and share mean; empty: none
+  std::string path() const;  // that keep and share apply to; empty: none
 
   SessionOptions options_;
   glm::ivec2 size_{1280, 720};

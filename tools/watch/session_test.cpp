@@ -1,4 +1,4 @@
-// Choosing and watching, by the events that a window, a mouse and a gamepad give.
+// Choosing and watching, with the events of a window, a mouse and a gamepad.
 #include "session.h"
 
 #define GLFW_INCLUDE_NONE
@@ -34,7 +34,7 @@ class SessionTest : public RecordedMatch {
     settle(session);
     return session;
   }
-  // Until nothing is read any more.
+  // Waits until all background reading has ended.
   static void settle(Session& session) {
     do {
       session.wait();
@@ -65,7 +65,7 @@ class SessionTest : public RecordedMatch {
     return {line.low.x + static_cast<float>(share) * (line.high.x - line.low.x),
             0.5f * (line.low.y + line.high.y)};
   }
-  // One that is watched, read to its end, and stands.
+  // A session whose recording is open, fully read and paused.
   Session watching() const {
     Session session = start();
     press(session, GLFW_KEY_ENTER);
@@ -342,7 +342,7 @@ TEST_F(SessionTest, AOneFileSessionSaysWhyItCannotBeOpened) {
   EXPECT_TRUE(good.over()) << "there is no list to go back to";
 }
 
-// Of any size of window: all boxes lie within it, none covers another.
+// For any window size: all boxes are inside the window, and none covers another.
 TEST(ReplayLayout, NothingIsOutsideTheWindowOrCoversAnother) {
   for (const glm::ivec2 size :
        {glm::ivec2(320, 240), glm::ivec2(640, 480), glm::ivec2(480, 800), glm::ivec2(1280, 720),

@@ -10,7 +10,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What every file system takes: a team may have any name.
+// Replaces characters that some file system rejects: a team may have any name.
 std::string harmless(std::string name) {
   for (char& c : name) {
     const auto byte = static_cast<unsigned char>(c);
@@ -47,12 +47,13 @@ tl::expected<std::string, std::string> share(const std::string& recording,
     if (fs::exists(fs::symlink_status(to, error))) continue;
     error.clear();
     if (fs::copy_file(recording, to, error)) {
-      // What others have should not vanish here; a folder that cannot be written has no mark.
+      // A shared recording should not be deleted here. In a read-only folder marking fails, which
+      // is ignored.
       (void)server::keep_recording(recording, true);
       return to.string();
     }
     std::error_code ignored;
-    fs::remove(to, ignored);  // a part of it
+    fs::remove(to, ignored);  // removes a partial copy
   }
   return tl::unexpected("The recording cannot be copied to " + folder + " (" +
                         (error ? error.message() : "too many of that name") +

@@ -18,12 +18,12 @@
 namespace watch {
 namespace {
 
-constexpr std::uint64_t kStepTicks = 20;  // how finely the reader follows what a person is told
+constexpr std::uint64_t kStepTicks = 20;  // the granularity at which the reader updates the story
 constexpr std::chrono::milliseconds kLookAgain{500};
-// Of what was read before, read again: a file that was written anew is none that has grown.
+// This many earlier bytes are read again: a file that was replaced has not grown.
 constexpr std::size_t kOverlap = 4'096;
 
-// So many bytes from there on; fewer at the file's end.
+// Reads `size` bytes from an offset; fewer at the file's end.
 std::vector<std::byte> read_part(int file, std::size_t from, std::size_t size) {
   std::vector<std::byte> bytes(size);
   std::size_t got = 0;
@@ -81,7 +81,7 @@ void Timeline::run() {
   news_.notify_all();
 }
 
-// All that is there.
+// Reads all present data.
 void Timeline::read(client::MatchStory& story) {
   bool more = true;
   while (more && !stop_) {
@@ -95,7 +95,7 @@ void Timeline::read(client::MatchStory& story) {
   }
 }
 
-// False: there is nothing to come, or nobody to read it for.
+// False: no more data can come, or the timeline is being destroyed.
 bool Timeline::await_growth() {
   const server::Playback& playback = reader_.playback();
   const bool open_end = playback.verdict() == server::Playback::Verdict::cut_short;
@@ -114,7 +114,7 @@ bool Timeline::await_growth() {
     news_.wait_for(lock, kLookAgain, [&] { return stop_ || look_; });
     look_ = false;
     lock.unlock();
-    // Its end may have come since it was last read.
+    // The end may have been written since the last read.
     const bool still = server::is_being_recorded(path_);
     lock.lock();
     findings_.being_made = still;
@@ -122,7 +122,7 @@ bool Timeline::await_growth() {
   return false;
 }
 
-// True: there is more of the same file.
+// True: the same file has grown.
 bool Timeline::look() {
   {
     const std::lock_guard guard(mutex_);
@@ -164,7 +164,7 @@ bool Timeline::grow() {
   return true;
 }
 
-// Window's thread.
+// On the window's thread.
 void Timeline::take_growth() {
   server::Playback::Bytes longer;
   std::uint64_t total = 0;
@@ -201,7 +201,7 @@ std::shared_ptr<const Timeline::Mark> Timeline::mark_before(std::uint64_t tick) 
   const std::lock_guard guard(mutex_);
   const auto after = std::ranges::upper_bound(
       marks_, tick, {}, [](const auto& mark) { return mark->scene.place.ticks; });
-  return *std::prev(after);  // the first is at 0
+  return *std::prev(after);  // the first mark is at 0
 }
 
 void Timeline::play_to(std::uint64_t tick) {

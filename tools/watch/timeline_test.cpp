@@ -93,7 +93,7 @@ TEST_F(TimelineTest, FollowsAFileThatGrowsToItsEndToTheBit) {
   EXPECT_FALSE(findings.being_made);
 }
 
-// What the process has read so far, as the kernel counts it.
+// Bytes that the process has read so far, as the kernel counts them.
 std::uint64_t bytes_read() {
   std::ifstream file("/proc/self/io");
   std::string name;
@@ -126,7 +126,7 @@ TEST_F(TimelineTest, AnotherFileOfTheSameNameIsNotTakenForMoreOfIt) {
   std::filesystem::rename(path("b.sfr"), path("a.sfr"));
   timeline->look_now();
   EXPECT_EQ(timeline->findings().total, total);
-  // In the very same file, as `cat b.sfr > a.sfr` would write it, it is what was there and more.
+  // Overwritten in place, as `cat b.sfr > a.sfr` does, the file has its earlier data and more.
   write("c.sfr", bytes_.size() / 3);
   const auto growing = open("c.sfr");
   growing->wait_until_read();
@@ -135,7 +135,7 @@ TEST_F(TimelineTest, AnotherFileOfTheSameNameIsNotTakenForMoreOfIt) {
   EXPECT_EQ(growing->findings().total, kTicks);
 }
 
-// Of another match, longer than what was read: the same inode, other bytes.
+// Another match, longer than the data read before: the same inode, other bytes.
 TEST_F(TimelineTest, AFileThatIsWrittenAnewIsNotTakenForMoreOfIt) {
   write("a.sfr", bytes_.size() / 3);
   const auto timeline = open("a.sfr");
@@ -160,7 +160,7 @@ TEST_F(TimelineTest, ALookAtAWholeRecordingReturnsAtOnce) {
   EXPECT_EQ(timeline->findings().total, kTicks);
 }
 
-// Every damage is a sentence or a recording that stops early; never a crash.
+// Any damage gives an error sentence or a recording that stops early; never a crash.
 TEST_F(TimelineTest, ADamagedFileIsASentenceOrStopsEarly) {
   const std::vector<std::byte> whole = bytes_;
   for (std::size_t at = 0; at < whole.size(); at += whole.size() / 23) {

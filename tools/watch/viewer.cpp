@@ -33,14 +33,14 @@ constexpr int kNoDisplay = 4;
 
 volatile std::sig_atomic_t asked_to_leave = 0;
 
-// Beside the program, as built and as installed.
+// Beside the program, both in the build tree and installed.
 std::string catalogue_directory() {
   std::error_code error;
   const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
   return (program.parent_path().parent_path() / "share" / "locale").string();
 }
 
-// What the window was told since the last frame.
+// The window's events since the last frame.
 struct Events {
   struct Key {
     int key;
@@ -48,7 +48,7 @@ struct Events {
   };
   std::deque<Key> keys;
   std::deque<PointerEvent> pointer;
-  glm::vec2 at{-1.0f};  // of the pointer, as of the events so far: where it is now may be elsewhere
+  glm::vec2 at{-1.0f};  // the pointer's position at these events; the present one may differ
 };
 
 Events& events_of(GLFWwindow* window) {
@@ -120,7 +120,7 @@ class Viewer {
   std::string said_;
 };
 
-// The language's catalogue, and the letters that it needs.
+// Loads the language's catalogue, and the letters that it needs.
 std::string Viewer::use_texts() {
   constexpr std::array<const char*, client::kLanguages> kCodes{"", "en", "ko", "de"};
   client::use_language(options_.language.empty()
@@ -180,7 +180,7 @@ void Viewer::take_events() {
   for (const std::string& news : pads_->take_news()) session_.tell(news, true);
 }
 
-// Another recording, another side, or another moment of it.
+// Handles a change of the recording, the side, or the moment.
 void Viewer::follow_recording() {
   Player& player = *session_.player();
   const foosball::Characters& characters = player.timeline().scene().characters();
@@ -206,14 +206,14 @@ void Viewer::advance(float dt) {
   follow_recording();
   Player& player = *session_.player();
   const auto passed = player.stands() ? 0.0f : dt * static_cast<float>(player.speed());
-  // Sounds are of the speed of the match.
+  // Sound only at the match's own speed.
   client::SoundPlayer* const sounds =
       !player.stands() && player.speed() == 1.0 ? sounds_.get() : nullptr;
   staging_->advance(player.timeline().scene().snapshot(), player.timeline().scene().take_events(),
                     passed, sounds);
 }
 
-// Above the bar, so that nothing of the match is covered.
+// The picture ends above the bar, so that the bar covers nothing of the match.
 int Viewer::picture_height() const {
   if (session_.hidden()) return size_.y;
   const float top = client::replay_bar_layout(size_).panel.low.y;
@@ -239,7 +239,7 @@ void Viewer::draw_match() {
   hud.camera = view.camera;
   hud.characters = &player.timeline().scene().characters();
   hud.view = session_.view();
-  // The board's left is the left of the picture; a spectator sees the table from one side only.
+  // Left on the board is left in the picture; a spectator sees the table from one side only.
   const bool turned = session_.team() == 1 && session_.view() != client::View::spectator;
   hud.viewer_team = turned ? 1 : -1;
   hud.text_scale = settings_.text_scale;
@@ -264,7 +264,7 @@ void Viewer::draw() {
   }
 }
 
-// What is on the screen, into the folder of shared recordings.
+// Saves the screen's picture to the folder of shared recordings.
 void Viewer::take_picture() {
   std::error_code error;
   std::filesystem::create_directories(session_.shared_to(), error);
@@ -286,7 +286,7 @@ int Viewer::take_screenshot() {
   return written ? server::kExitOk : server::kExitFailed;
 }
 
-// While a recording plays its tick is no news.
+// The tick of a playing recording alone is not printed.
 void Viewer::say_state() {
   if (!options_.say_state) return;
   std::string state = session_.state();
@@ -336,7 +336,7 @@ int run(const Options& options) {
     if (code == server::kExitOk) code = viewer.loop();
     reading = viewer.reading();
   }
-  // Nobody waits for a disk that is still being read.
+  // Does not wait for a disk read in the background.
   if (reading) std::_Exit(code);
   return code;
 }

@@ -1,6 +1,6 @@
-// What a person can do with keys, and how presses become axes. Keys are followed by their events,
-// never by looking whether they are down at a frame: a tap that begins and ends between two frames
-// counts as well. Knows no window library.
+// The actions of the keyboard, and how presses become axes. Keys are followed by their events and
+// not polled once a frame: a tap that begins and ends between two frames counts too. Independent of
+// the window library.
 #pragma once
 
 #include <array>
@@ -31,7 +31,7 @@ enum class Action : std::uint8_t {
   recordings,
   game,
   controllers,
-  feed,  // training: the next man of the rod in hand has the ball
+  feed,  // training: give the ball to the next man of the active rod
 };
 inline constexpr int kActions = 23;
 
@@ -39,7 +39,7 @@ constexpr std::size_t index_of(Action action) {
   return static_cast<std::size_t>(action);
 }
 
-// Key presses between two frames. Several keys may stand for one action.
+// Key presses between two frames. Several keys may be bound to one action.
 class ActionState {
  public:
   void press(Action action);
@@ -47,14 +47,14 @@ class ActionState {
   void release_all();  // the window lost the focus
 
   bool held(Action action) const { return down_[index_of(action)] > 0; }
-  // Since the last clear(): how often it was pressed, and how many of these presses were over again
-  // before it.
+  // Since the last clear(): the number of presses, and how many of them were also released before
+  // it.
   int presses(Action action) const { return presses_[index_of(action)]; }
   int taps(Action action) const { return taps_[index_of(action)]; }
-  // Of an axis between two actions: -1, 0, 1 as held; taps with their sign.
+  // An axis between two actions: -1, 0 or 1 while held; taps with their sign.
   double axis(Action forward, Action back) const;
   int tapped(Action forward, Action back) const { return taps(forward) - taps(back); }
-  void clear();  // a frame has taken what happened
+  void clear();  // a frame has consumed the events
 
  private:
   using Counts = std::array<int, kActions>;

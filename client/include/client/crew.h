@@ -1,8 +1,8 @@
-// The people at this client: who of them plays which rods with which devices, and what all of their
-// hands want.
+// The people at this client: who plays which rods with which devices, and the targets of all their
+// rods.
 //
-// Devices that have no rods of their own belong to the first person, who plays with any of them all
-// rods that nobody else here has. A device that is given rods becomes a person by itself.
+// Devices without rods of their own belong to the first person. The first person plays, with any of
+// them, all rods that nobody else here has. A device that is given rods becomes a separate person.
 #pragma once
 
 #include <array>
@@ -21,23 +21,23 @@ class Crew {
  public:
   static constexpr int kFirstPerson = -1;
 
-  // granted: of Welcome, by bit; team: of Welcome, 0 or 1: the first person's.
+  // granted: rods of the Welcome, by bit; team: of the Welcome, 0 or 1, the first person's.
   Crew(std::uint64_t session, int team, foosball::Layout layout, std::uint8_t granted);
 
-  // The rods that the server says are this client's, and its team, 0 or 1: other rods are driven no
-  // more.
+  // Sets the rods that the server grants this client, and its team, 0 or 1. Other rods are no
+  // longer driven.
   void grant(int team, std::uint8_t rods);
-  // A device, or the first person, plays this rod from now on; a device plays one team: it leaves
-  // its rods of the other one to the first person. Rods that are not granted can be given too: they
-  // are played once they are.
+  // Assigns this rod to a device or to the first person. A device plays one team: its rods of the
+  // other team go to the first person. A rod that is not granted can be assigned too; it is played
+  // once it is granted.
   void give(int rod, int device);
   int player_of(int rod) const { return owner_[static_cast<std::size_t>(rod)]; }
   DeviceSet devices_of(int device) const;
 
   void set_assists(const foosball::AssistChoice& choice);
-  // That the match has to choose from; the built-in ones until this is called.
+  // Sets the characters that the match offers; the built-in ones until this is called.
   void set_characters(const foosball::Characters& characters);
-  // One frame. take: what was done with these devices.
+  // Processes one frame. take: returns the input events of these devices.
   using Take = std::function<InputEvents(DeviceSet)>;
   void update(const Take& take, const wire::Snapshot* scene, std::int64_t now_us);
 
@@ -49,7 +49,7 @@ class Crew {
   bool automatic() const { return assists_.automatic_rod; }
   std::array<wire::InputRod, 8> rods() const;
   std::vector<wire::MatchRequest> requests() const;
-  std::uint8_t active_rods() const;  // those in somebody's hand, by bit
+  std::uint8_t active_rods() const;  // rods that a person here drives, by bit
   // Each person's device, or kFirstPerson, and rods.
   struct Hands {
     int device;

@@ -1,6 +1,6 @@
-// How the people at this client are called, and what of it the server has to be told. Results and
-// ratings go by names, and who changes the name in a match has left it: names change between
-// matches only.
+// The names of the people at this client, and which of them to send to the server. Results and
+// ratings are stored by name, and a player who changes the name during a match has left it. So
+// names change only between matches.
 #pragma once
 
 #include <array>
@@ -15,18 +15,18 @@ namespace client {
 
 class CrewNames {
  public:
-  // Once a frame. What the server is to be told now; none: it knows.
+  // Call once a frame. Returns the names to send now; none: the server has them.
   std::optional<wire::Names> update(const Crew& crew, const Settings& settings, bool in_match);
-  // The server was joined again: a seat that is taken again may have names of before.
+  // The client has joined again: a seat that is taken again may still have its earlier names.
   void joined() { told_.reset(); }
-  // By rod: of whoever has set a name; empty: of nobody.
+  // By rod: the player's name where a person has set one; else empty.
   const wire::RodPlayers& set_names() const { return set_; }
 
  private:
   void place_people(const Crew& crew, bool in_match);
 
-  std::array<int, kDevices + 1> places_ = none();  // by device + 1: which person; -1: nobody yet
-  Settings named_;                                 // whose names are in use
+  std::array<int, kDevices + 1> places_ = none();  // by device + 1: person's index; -1: none
+  Settings named_;                                 // the settings whose names are in use
   bool named_once_ = false;
   std::optional<wire::Names> told_;
   wire::RodPlayers set_;

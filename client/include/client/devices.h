@@ -1,4 +1,4 @@
-// What people at one client can play with. Each may be one person's, or several together.
+// The input devices of a client. Each belongs to one person; one person may use several.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@ inline constexpr int kPads = 4;
 enum class Device : std::uint8_t {
   mouse,
   keys_1,  // the first key of each action: arrows
-  keys_2,  // the second: WASD
+  keys_2,  // the second key: WASD
   pad_1,
   pad_2,
   pad_3,

@@ -1,5 +1,5 @@
-// The page of controllers: what hangs at the server's machine, for its host. Raw counts, calibrated
-// motion, rates and latency, as they are now and in the last seconds.
+// The page of controllers: for the host, the devices at the server's machine. Raw counts,
+// calibrated motion, rates and latency, current and over the last seconds.
 #pragma once
 
 #include <array>
@@ -16,12 +16,12 @@ namespace client {
 struct DeviceView {
   static constexpr double kTraceSeconds = 10.0;
   struct Point {
-    double seconds;      // of the server's clock
+    double seconds;      // on the server's clock
     double slide, spin;  // [counts]
   };
   wire::DeviceReport now;
-  double frames_per_second = 0.0;  // over the last second, as the next two
-  double latency_ms = -1.0;        // mean, from arrival to tick; negative: not known
+  double frames_per_second = 0.0;  // over the last second, like the next two
+  double latency_ms = -1.0;        // mean, from arrival to tick; negative: unknown
   std::uint64_t lost = 0;          // frames
   std::array<std::deque<Point>, wire::kRods> traces;
 
@@ -35,12 +35,12 @@ struct DeviceView {
 class DevicesMenu {
  public:
   static constexpr std::int64_t kAskEveryUs = 50'000;
-  static constexpr std::int64_t kPatienceUs = 1'000'000;  // for an answer
+  static constexpr std::int64_t kPatienceUs = 1'000'000;  // time limit for an answer
 
-  // Each frame while the page is shown; true: the server is to be asked.
+  // Call each frame while the page is shown. True: send a request to the server.
   bool ask(std::int64_t now_us);
   void hear(const wire::Devices& told);
-  // Of the server that is joined, from now on.
+  // Sets the joined session, and whether this client is its host.
   void follow(std::uint64_t session, bool host);
 
   int rows() const { return static_cast<int>(devices_.size()); }

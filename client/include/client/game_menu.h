@@ -1,8 +1,8 @@
-// The page of the game: what is played, by which rules and against whom, chosen by the host, shown
-// to all others. No drawing here.
+// The page of the game: what is played, its rules and opponents. The host chooses; other clients
+// see it. No drawing here.
 //
-// What is wanted and not yet what the server says is asked for, as a whole, until the server says
-// so or was asked kTries times.
+// While the requested game differs from the server's, the menu requests it as one message, until
+// the server reports it or kTries requests were sent.
 #pragma once
 
 #include <cstdint>
@@ -17,21 +17,21 @@ namespace client {
 
 class GameMenu {
  public:
-  static constexpr std::int64_t kSettleUs = 250'000;   // after a step: others may follow
-  static constexpr std::int64_t kAgainUs = 1'000'000;  // a request without effect is repeated after
+  static constexpr std::int64_t kSettleUs = 250'000;   // after a step: wait for further steps
+  static constexpr std::int64_t kAgainUs = 1'000'000;  // repeat a request without effect
   static constexpr int kTries = 3;
 
-  // What the server has told in this session; none: nothing yet. refused: why it took the last
-  // request not, or empty.
+  // Takes the game that the server sent in this session; none: nothing yet. refused: why the server
+  // rejected the last request, or empty.
   void hear(std::uint64_t session, const std::optional<wire::Game>& told, bool may_change,
             const std::string& refused);
   int rows() const;
   MenuPage page(int chosen) const;
-  // True: the match in hand is to end, for the game that waits.
+  // True: end the current match, because another game is waiting.
   bool step(int row, const MenuSteps& steps);
-  // To be sent now.
+  // The game to request now.
   std::optional<wire::Game> ask(std::int64_t now_us);
-  // As it is asked for: what the mode does not leave to be chosen is 0.
+  // The game as requested: values that the mode does not leave open are 0.
   wire::Game wanted() const;
 
  private:
@@ -45,9 +45,9 @@ class GameMenu {
   std::uint64_t session_ = 0;
   bool may_change_ = false;
   std::optional<wire::Game> told_;
-  wire::Game kept_{};     // as chosen, also what another mode than the one in hand takes of it
-  bool stepped_ = false;  // since ask() was called
-  bool asking_ = false;   // kept_ is not yet what is told
+  wire::Game kept_{};     // as chosen; includes values that the current mode does not use
+  bool stepped_ = false;  // since the last ask()
+  bool asking_ = false;   // kept_ differs from told_
   int tries_ = 0;
   std::int64_t next_us_ = 0;
   std::string refused_;

@@ -1,5 +1,5 @@
-// The menu: pages of settings, seats, tuning, recordings, the game and controllers, worked alike
-// with keys, mouse, gamepad or rods. Its first row chooses the page.
+// The menu: pages of settings, seats, tuning, recordings, the game and controllers. Keys, mouse,
+// gamepad and rods operate it in the same way. Its first row selects the page.
 #pragma once
 
 #include <optional>
@@ -23,7 +23,7 @@ class Menu {
 
   bool open() const { return open_; }
   bool shows(Page page) const { return open_ && page_ == page; }
-  // The page's key was pressed: opens it, or closes the menu that shows it.
+  // The page's key was pressed: opens the page, or closes the menu if it shows this page.
   void toggle(Page page);
   bool waits_for_key() const {
     return open_ && page_ == Page::settings && settings_.waits_for_key();
@@ -39,10 +39,10 @@ class Menu {
   };
   struct Outcome {
     bool settings_changed = false;
-    bool watch_recordings = false;  // the list of them is asked for
+    bool watch_recordings = false;  // open the list of recordings
     SeatsAsked asked;
   };
-  // key: pressed in this frame, 0: none.
+  // key: pressed in this frame; 0: none.
   Outcome step(const MenuSteps& steps, int key, const Context& context);
   MenuPage page(const Context& context) const;  // no rows: closed
 
@@ -52,7 +52,7 @@ class Menu {
 
   bool open_ = false;
   Page page_ = Page::settings;
-  int row_ = 0;  // 0: the row that chooses the page
+  int row_ = 0;  // 0: the row that selects the page
   SettingsMenu settings_;
   SeatsMenu seats_;
   TuningMenu tuning_;

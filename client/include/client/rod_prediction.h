@@ -1,14 +1,13 @@
-// The person's own rods, drawn as the hand has them now and not as the server last said: the
-// simulation of a rod (foosball/rod_motion.h) follows the hand at once, and what the server reports
-// differently is added smoothly.
+// Client-side prediction of the person's own rods. The simulation of a rod (foosball/rod_motion.h)
+// follows the person's input at once. Differences from the server's reports are corrected smoothly.
 //
 // The server reports the effect of an input after a lag (network, tick, interpolation). So its rods
-// are compared with the predicted ones of that long ago. The lag is estimated: the one at which
-// both agreed best while the rods moved. The difference goes into an offset with kCorrectionS: a
-// rod that a ball or a man blocks is drawn where it is blocked within a few frames of the server's
-// report.
+// are compared with the predicted rods of that time ago. The lag is estimated as the one at which
+// both agreed best while the rods moved. The difference goes into an offset with the time constant
+// kCorrectionS: a rod that a ball or a man blocks is drawn where it is blocked within a few frames
+// of the server's report.
 //
-// One thread. No clock: time is handed in.
+// One thread. The time is an argument; there is no clock here.
 #pragma once
 
 #include <array>
@@ -23,26 +22,26 @@ namespace client {
 
 class RodPrediction {
  public:
-  // The offset closes 63% of a difference in so long [s]: 94% in five frames of a 60 Hz display.
-  // Shorter, a lag that is estimated wrong by a few milliseconds shows as trembling.
+  // Time constant [s] in which the offset closes 63% of a difference: 94% in five frames of a 60 Hz
+  // display. With a shorter one, an error of a few milliseconds in the lag shows as jitter.
   static constexpr double kCorrectionS = 0.030;
-  static constexpr int kLongestLagMs = 250;  // later reports are compared with this long ago
-  // Differences that a wrong lag of so much explains are no differences.
+  static constexpr int kLongestLagMs = 250;  // maximum of the estimated lag
+  // Differences that an error of this size in the lag explains are ignored.
   static constexpr int kLagMarginMs = 8;
 
   explicit RodPrediction(foosball::Layout layout);
-  // Those that the match has; the built-in ones until this is called.
+  // Sets the match's characters; the built-in ones until this is called.
   void set_characters(const foosball::Characters& characters) { characters_ = characters; }
 
-  // As the server says that the match is tuned.
+  // Sets the match's tuning, as the server sent it.
   void set_tuning(const foosball::Tuning& tuning) { tuning_ = tuning; }
 
-  // One frame. hand: as it is sent now; server: the scene to be drawn. Rods that the hand does not
-  // drive or the server does not have from a client, and all rods of a match that is paused, are as
-  // the server has them.
+  // Processes one frame. hand: the input as it is sent now; server: the scene to be drawn. A rod is
+  // shown as the server reports it if the input does not drive it or if the server does not receive
+  // it from a client. The same holds for all rods while the match is paused.
   void update(const std::array<wire::InputRod, 8>& hand, const wire::Snapshot& server,
               std::int64_t now_us);
-  // Moves the predicted rods in the scene, with their men, to where they are predicted.
+  // Moves the predicted rods and their men in the scene to their predicted poses.
   void apply(wire::Snapshot& scene) const;
 
   int lag_ms() const { return lag_ms_; }
@@ -56,7 +55,7 @@ class RodPrediction {
     bool predicted = false;
     foosball::RodState state{};
     Pose offset;
-    std::array<Pose, 512> history{};  // by tick of this prediction
+    std::array<Pose, 512> history{};  // by tick of the prediction
   };
   void restart(Rod& rod, const wire::RodSnapshot& server);
   void advance(Rod& rod, const wire::InputRod& hand, const foosball::CharacterBody& body,

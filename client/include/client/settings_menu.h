@@ -1,5 +1,5 @@
-// The settings screen as rows that are chosen and changed by steps: from keys, mouse, gamepad or
-// rods, which MenuSteps makes alike. No drawing here.
+// The settings screen as rows that steps select and change. MenuSteps has one form for keys, mouse,
+// gamepad and rods. No drawing here.
 #pragma once
 
 #include <string>
@@ -12,22 +12,22 @@
 
 namespace client {
 
-// Turns a frame's events into steps: arrows, wheel, mouse motion, a gamepad's cross, and a team's
-// rods: any of them spun by kSpinStep goes to the next row, slid by kSlideStep changes the value.
-// What is held repeats after kHoldUs.
+// Converts a frame's events to steps: arrows, wheel, mouse motion, a gamepad's D-pad and a team's
+// rods. Spinning any rod by kSpinStep goes to the next row; sliding it by kSlideStep changes the
+// value. A held direction repeats after kHoldUs.
 class MenuHand {
  public:
   static constexpr double kMouseStep = 60.0;  // [px]
   static constexpr double kSpinStep = 0.7;    // [rad]
   static constexpr double kSlideStep = 0.04;  // [m]
   static constexpr std::int64_t kHoldUs = 400'000, kRepeatUs = 60'000;
-  // scene: null while there is none; team: -1 for who has no rods.
+  // scene: null if there is none; team: -1 for a person without rods.
   MenuSteps steps(const InputEvents& events, const wire::Snapshot* scene, int team,
                   std::int64_t now_us = 0);
   void restart();
 
  private:
-  // How many steps a direction that is held makes now.
+  // Number of steps that a held direction makes now.
   struct Held {
     int way = 0;
     std::int64_t next_us = 0;
@@ -44,13 +44,12 @@ class SettingsMenu {
   bool open() const { return open_; }
   void toggle();
   int row() const { return row_; }
-  void select(int row) { row_ = row; }                    // one that there is
+  void select(int row) { row_ = row; }                    // precondition: the row exists
   bool at_name() const;                                   // of a person, which is typed
   bool waits_for_key() const { return open_ && waits_; }  // or for letters
   std::vector<MenuRow> rows(const Settings& settings) const;
-  // key: pressed in this frame, 0: none; for a row of the controls that waits for one. A row of a
-  // name waits for letters until Enter.
-  // True if the settings changed.
+  // key: pressed in this frame, 0: none; used by a row of the controls that waits for a key. A row
+  // of a name takes letters until Enter. True if the settings changed.
   bool step(const MenuSteps& steps, int key, Settings& settings);
 
  private:
@@ -60,7 +59,7 @@ class SettingsMenu {
 
   bool open_ = false, waits_ = false;
   int row_ = 0;
-  std::string draft_;  // of a name
+  std::string draft_;  // the name being typed
 };
 
 }  // namespace client

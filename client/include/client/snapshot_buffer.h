@@ -1,10 +1,10 @@
-// Snapshots as they come in, put in order, and the scene to be drawn now: a little behind the
-// newest, as little as the network's unevenness allows.
+// Orders snapshots as they arrive, and gives the scene to be drawn now: behind the newest snapshot
+// by as little as the network's jitter allows.
 //
-// The server's simulated time (tick * tick_us) is laid along this process' clock by the fastest
-// arrivals of the last 256; what the slower ones came later is the jitter. The scene is played
-//   delay = 1.5 ticks + the jitter's 98th percentile, at most kLongestDelay
-// behind the fastest arrival. Changes of the delay are slewed in, so that time never jumps in play.
+// The fastest arrivals of the last 256 map the server's simulated time (tick * tick_us) to this
+// process's clock. The delay of the others behind them is the jitter. The scene is played
+//   delay = 1.5 ticks + 98th percentile of the jitter, at most kLongestDelay
+// behind the fastest arrival. Changes of the delay are slewed, so that time never jumps in play.
 // One thread at a time.
 #pragma once
 
@@ -19,18 +19,18 @@
 namespace client {
 
 struct SnapshotCounters {
-  std::uint64_t received = 0;     // taken in
-  std::uint64_t bad = 0;          // bytes that are no snapshot
+  std::uint64_t received = 0;     // accepted
+  std::uint64_t bad = 0;          // bytes that are no valid snapshot
   std::uint64_t old = 0;          // duplicates, and too late to be of use
   std::uint64_t foreign = 0;      // of another session
-  std::uint64_t lost = 0;         // never came, or came too late
-  std::uint64_t reordered = 0;    // came after a newer one, and in time
-  std::uint64_t implausible = 0;  // jumped in time, and no others after them agreed
+  std::uint64_t lost = 0;         // never arrived, or too late
+  std::uint64_t reordered = 0;    // arrived after a newer one, but in time
+  std::uint64_t implausible = 0;  // jumped in time, and too few later ones agreed
 };
 
 struct SceneSample {
-  bool any = false;       // false: nothing was received in this session
-  bool starving = false;  // the newest snapshot is used up: the scene stands still
+  bool any = false;       // false: no snapshot in this session
+  bool starving = false;  // no newer snapshot: the scene stands still
   wire::Snapshot state;
 };
 
@@ -38,16 +38,17 @@ class SnapshotBuffer {
  public:
   static constexpr std::int64_t kLongestDelayUs = 50'000;
   static constexpr std::int64_t kExtrapolateUs =
-      20'000;  // further ahead a guess looks worse than a stop
+      20'000;  // longer extrapolation looks worse than a stop
 
-  // Snapshots of other sessions are dropped from now on. A session that goes on keeps its scene.
-  // Preconditions, which the decoders see to: tick_us in 1..wire::kMaxTickUs, and no snapshot's
+  // Drops snapshots of other sessions from now on. A session that continues keeps its scene.
+  // Preconditions, which the decoders ensure: tick_us in 1..wire::kMaxTickUs, and no snapshot's
   // tick above wire::kMaxTick.
   void begin_session(std::uint64_t session, std::uint32_t tick_us);
 
-  // A snapshot that jumps in time (ahead by more than kAheadUs beyond what has passed, or back
-  // though it was sent later) is not believed, since nothing that came after it would count any
-  // more, until kAgreeing in a row have said the same: the server itself may have jumped.
+  // A snapshot that jumps in time is rejected: ahead by more than kAheadUs beyond the elapsed time,
+  // or back although it was sent later. Otherwise all later snapshots would be too old. After
+  // kAgreeing consecutive snapshots that agree, the jump is accepted: the server itself may have
+  // jumped.
   static constexpr std::int64_t kAheadUs = 1'000'000;
   static constexpr int kAgreeing = 32;
 
@@ -57,7 +58,7 @@ class SnapshotBuffer {
   void count_old() { ++counters_.old; }
   void count_foreign() { ++counters_.foreign; }
 
-  // Calls must not go back in time.
+  // Precondition: now_us does not decrease between calls.
   SceneSample sample(std::int64_t now_us);
   // Events whose tick the drawn scene has reached, each once, oldest first.
   std::vector<wire::EventSnapshot> take_events();
@@ -90,11 +91,11 @@ class SnapshotBuffer {
   std::int64_t tick_us_ = 1000;
   std::deque<wire::Snapshot> kept_;  // by tick, oldest first
   SnapshotCounters counters_;
-  int doubted_ = 0;  // in a row, agreeing with one another
+  int doubted_ = 0;  // number of consecutive implausible snapshots that agree
   std::uint64_t doubted_tick_ = 0, doubted_sequence_ = 0;
-  // Since the last begin_session(), of which counters() tells the losses.
+  // Since the last begin_session(). counters() derives the losses from them.
   std::uint64_t first_sequence_ = 0, newest_sequence_ = 0, in_session_ = 0, lost_before_ = 0;
-  std::uint64_t last_sequence_ = 0;  // the newest of the session, whenever it came
+  std::uint64_t last_sequence_ = 0;  // the newest of the session, in whatever order it arrived
 
   std::array<std::int64_t, kWindow> offsets_{};  // arrival - simulated time
   std::size_t offset_count_ = 0, offset_next_ = 0;

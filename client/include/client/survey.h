@@ -1,10 +1,11 @@
-// The questionnaire after a match, for each person at this client by itself: consent first, then
-// six statements, each to be agreed to or not. No drawing here.
+// The questionnaire after a match, separate for each person at this client: consent first, then six
+// statements to agree or disagree with. No drawing here.
 //
-// Worked as the selection screen is: spin to choose, push to confirm. A cabinet's rods only spin,
-// and what has stood still for kStandUs is confirmed: to push one begins the next match. Nothing of
-// it is kept unless the person agreed and came to the end; nobody waits for it: whoever does
-// nothing for kIdleUs is asked no more, and a new match ends it.
+// It is operated like the selection screen: spin to choose, push to confirm. On a cabinet a person
+// only spins the rods, and a choice unchanged for kStandUs is confirmed, because a push there
+// begins the next match. Answers are sent only if the person consented and reached the end. Nobody
+// has to wait: a person without input for kIdleUs is no longer asked, and a new match ends the
+// questionnaire.
 #pragma once
 
 #include <array>
@@ -24,10 +25,10 @@ namespace client {
 
 struct SurveyPerson {
   int team = 0;
-  std::uint8_t rods = 0;  // that are asked about, by bit
-  DeviceSet devices = 0;  // in this person's hands; none: rods of the cabinet
-  std::string name;       // of the device, where several are asked: English
-  int number = 0;         // after it; 0: none
+  std::uint8_t rods = 0;  // rods that are asked about, by bit
+  DeviceSet devices = 0;  // this person's devices; none: rods of the cabinet
+  std::string name;       // of the device, if several people are asked: English
+  int number = 0;         // after the name; 0: none
   bool cabinet() const { return devices == 0; }
 };
 
@@ -38,16 +39,16 @@ struct SurveyPanel {
   int team = 0;
   std::string name = {};
   int number = 0;
-  const char* text = "";  // English: what is asked
-  int question = 0;       // statement: which, from 0
+  const char* text = "";  // English: the question
+  int question = 0;       // statement: index from 0
   int chosen = 0;         // consent: 0 no, 1 yes, 2 never; statement: 0 none, 1 .. 5
-  bool cabinet = false;   // how it is confirmed
-  float standing = 0.0f;  // cabinet: share of kStandUs that the choice has stood
+  bool cabinet = false;   // how the choice is confirmed
+  float standing = 0.0f;  // cabinet: fraction of kStandUs that the choice has been unchanged
 };
 
 class Survey {
  public:
-  static constexpr std::int64_t kDeafUs = 700'000;  // the hand is still in the match
+  static constexpr std::int64_t kDeafUs = 700'000;  // no input: person still in the match
   static constexpr std::int64_t kStandUs = 2'500'000;
   static constexpr std::int64_t kIdleUs = 20'000'000;
   static constexpr std::int64_t kThanksUs = 2'000'000;
@@ -55,14 +56,15 @@ class Survey {
   void ask(std::uint32_t match, std::vector<SurveyPerson> people, std::int64_t now_us);
   void close() { people_.clear(); }
   bool open() const { return !people_.empty(); }
-  // Devices whose hands answer, and do nothing else.
+  // Devices whose input goes to the questionnaire only.
   DeviceSet devices(std::int64_t now_us) const;
 
   struct Outcome {
     std::vector<wire::Answers> answers;
-    bool never = false;  // somebody wants to be asked no more
+    bool never = false;  // a person does not want to be asked again
   };
-  // One frame. take: what was done with these devices; scene: null while there is none.
+  // Processes one frame. take: returns the input events of these devices; scene: null if there is
+  // none.
   using Take = std::function<InputEvents(DeviceSet)>;
   Outcome update(const Take& take, const wire::Snapshot* scene, std::int64_t now_us);
 
@@ -72,7 +74,7 @@ class Survey {
   struct Asked {
     SurveyPerson person;
     MenuHand hand;
-    int stage = kConsent;  // or which question, from 0; kThanks
+    int stage = kConsent;  // kConsent, the question's index from 0, or kThanks
     int chosen = 0;
     std::array<std::uint8_t, wire::kQuestionCount> scores{};
     std::int64_t since_us = 0, changed_us = 0;

@@ -1,8 +1,9 @@
-// The tuning panel: all values of the match (foosball/tuning.h), changed live by the host, shown to
-// all others; profiles of them as files (profile/tuning_profile.h). No drawing here.
+// The tuning panel: all values of the match (foosball/tuning.h), and profiles of them as files
+// (profile/tuning_profile.h). The host changes them live; other clients see them. No drawing here.
 //
-// What is wanted and not yet what the server says is asked for, one value at a time and no faster
-// than a server hears requests, until the server says so or was asked kTries times.
+// While a requested value differs from the server's, the panel requests it, one value at a time and
+// no faster than a server accepts requests, until the server reports it or kTries requests were
+// sent.
 #pragma once
 
 #include <array>
@@ -20,22 +21,22 @@ namespace client {
 class TuningMenu {
  public:
   static constexpr std::int64_t kEveryUs = 60'000;     // between two requests
-  static constexpr std::int64_t kAgainUs = 1'000'000;  // a request without effect is repeated after
+  static constexpr std::int64_t kAgainUs = 1'000'000;  // repeat a request without effect
   static constexpr int kTries = 3;
 
-  // directory: of the profiles; empty: none are kept.
+  // directory: of the profiles; empty: no profiles are stored.
   explicit TuningMenu(std::string directory);
 
-  // What the server has told in this session; none: nothing yet. What was wanted of another session
-  // is forgotten: a server that restarts has its own values.
+  // Takes the tuning that the server sent in this session; none: nothing yet. Requests of another
+  // session are dropped: a server that restarts has its own values.
   void hear(std::uint64_t session, const std::optional<foosball::Tuning>& told, bool may_change);
-  void find_profiles();  // anew: files may have come
+  void find_profiles();  // reads the directory again, for new files
   int rows() const;
   MenuPage page(int chosen) const;
   void step(int row, const MenuSteps& steps);
-  // To be sent now.
+  // The requests to send now.
   std::vector<wire::MatchRequest> requests(std::int64_t now_us);
-  // As it will be when all that is wanted is granted.
+  // The tuning when all pending requests are granted.
   foosball::Tuning wanted() const;
 
  private:
@@ -62,7 +63,7 @@ class TuningMenu {
   std::string problem_, done_;
 };
 
-// $XDG_CONFIG_HOME/space-foosball/tuning, or ~/.config/...; empty without either.
+// $XDG_CONFIG_HOME/space-foosball/tuning, or ~/.config/...; empty if neither variable is set.
 std::string tuning_directory();
 
 }  // namespace client

@@ -11,8 +11,8 @@ namespace {
 
 volatile std::sig_atomic_t asked_to_leave = 0;
 
-constexpr double kHiddenFrame = 0.02;                  // [s] while recordings are watched
-constexpr std::int64_t kProblemsShownUs = 12'000'000;  // of the settings file
+constexpr double kHiddenFrame = 0.02;  // [s] between two polls while recordings are watched
+constexpr std::int64_t kProblemsShownUs = 12'000'000;  // for problems of the settings file
 
 bool asks_for_menu(const InputEvents& events) {
   bool asks = events.pad_menu;
@@ -72,7 +72,7 @@ std::string App::use_quality(draw::Quality quality) {
   return {};
 }
 
-// The command line goes before the settings; none: by what the machine can do.
+// The command line takes precedence over the settings; none: chosen by what the machine can draw.
 std::optional<draw::Quality> App::wanted_quality() const {
   if (options_.quality) return options_.quality;
   switch (settings_.quality) {
@@ -102,7 +102,7 @@ void App::follow_connection() {
   joins_seen_ = status_.joins;
   if (awaiting_since_ == 0) awaiting_since_ = os::monotonic_us();
   surveyed_ = report_before_ = 0;
-  // Joined anew: the rods are where the server has them, so a hand begins anew too.
+  // Joined again: the rods are where the server has them, so the crew starts afresh too.
   const wire::Welcome& welcome = status_.welcome;
   const auto layout = static_cast<foosball::Layout>(welcome.layout);
   crew_ = std::make_unique<Crew>(
@@ -124,7 +124,7 @@ void App::use_characters() {
   if (prediction_) prediction_->set_characters(*characters_);
 }
 
-// Rods may be given to others, and the team may change, while the match goes on.
+// During a match rods may be given to others, and the team may change.
 void App::follow_roster() {
   if (!crew_ || status_.link != Link::joined) return;
   roster_ = connection_->roster();
@@ -140,7 +140,7 @@ void App::follow_roster() {
 
 // A name may have letters that no sentence of the language has.
 void App::learn_names() {
-  constexpr std::size_t kMost = 4096;  // bytes: a crowd of strangers does not fill the atlas
+  constexpr std::size_t kMost = 4096;  // bytes: the names of many strangers must not fill the atlas
   std::string names = names_;
   for (const wire::Seat& seat : roster_.seats) names += seat.name;
   for (const std::string& player : roster_.players) names += player;
@@ -150,7 +150,7 @@ void App::learn_names() {
   if (const std::string error = use_texts(); !error.empty()) log_warning(error);
 }
 
-// Who changes the name while a match is played would have left it.
+// During a match the names stay: a player who changes the name would have left it.
 void App::tell_names() {
   const auto screen = static_cast<wire::Screen>(sample_.state.screen);
   const bool in_match = sample_.any && !sample_.state.attract &&
@@ -160,7 +160,7 @@ void App::tell_names() {
     connection_->name(crew_->session(), *names);
 }
 
-// Whose side the picture is seen from; -1: this client only watches.
+// The team whose side the picture is seen from; -1: this client only watches.
 int App::viewer_team() const {
   return crew_ && crew_->plays() ? crew_->team() : -1;
 }
@@ -177,7 +177,7 @@ void App::hear(std::int64_t now) {
   follow_roster();
   follow_phones();
   SceneSample sample = connection_->sample(now);
-  if (sample.any) sample_ = std::move(sample);  // else the last scene stands
+  if (sample.any) sample_ = std::move(sample);  // else the last scene stays
   tell_names();
   const auto events = connection_->take_events();
   events_.insert(events_.end(), events.begin(), events.end());
@@ -230,7 +230,7 @@ void App::follow_phones() {
   phones_code_ = qr_code_of(phones_);
 }
 
-// Each pad that has a rod of its own, or that the first person may have in a hand.
+// Each pad that has a rod of its own, or that belongs to the first person.
 void App::shake_pads() {
   if (!settings_.vibration || !crew_ || !crew_->plays() || !sample_.any || !characters_) return;
   for (const cabinet::HapticPulse& pulse : haptics_.feel(
@@ -241,7 +241,7 @@ void App::shake_pads() {
   }
 }
 
-// Last before drawing, so that what the hand did is in this very frame.
+// Runs last before drawing, so that this frame shows the latest input.
 void App::predict(std::int64_t now) {
   if (!sample_.any) return;
   drawn_ = sample_.state;
@@ -250,17 +250,17 @@ void App::predict(std::int64_t now) {
   prediction_->apply(drawn_);
 }
 
-// What people here hold in their hands; nothing while a goal is shown again.
+// The rods that people here drive; none during the goal's replay.
 std::uint8_t App::active_rods() const {
   return crew_ && crew_->plays() && !replay_ ? crew_->active_rods() : std::uint8_t{0};
 }
 
-// Handles outside the screen have their own places only where the screen lies in the table.
+// The offsets of the handles apply only if the screen lies in the table.
 std::array<float, 8> App::rod_shift() const {
   return settings_.view == View::above ? settings_.handle_offset : std::array<float, 8>{};
 }
 
-// Who plays what, at the handles, where several do.
+// The players' names at the handles, if there are several players.
 std::array<std::string, 8> App::rod_names() const {
   std::array<std::string, 8> names;
   const auto screen = static_cast<wire::Screen>(drawn_.screen);
@@ -369,7 +369,7 @@ void App::judge_quality() {
   }
 }
 
-// A picture is worth a slow frame: it is drawn in high quality, unless another was asked for.
+// A picture is worth a slow frame: it is drawn in high quality, unless another was requested.
 std::string App::take_screenshot() {
   const draw::Quality usual = scene_->quality();
   const bool better = !wanted_quality() && usual != draw::Quality::high;
@@ -397,7 +397,7 @@ bool App::leaving(double seconds) const {
          (!watching_ && (match_is_over() || time_over));
 }
 
-// The first picture may take long to draw, while the driver compiles shaders: it should show the
+// The first frame may take long to draw, because the driver compiles shaders. It should show the
 // match already, if the server answers at once.
 void App::await_first_snapshot() {
   constexpr double kPatience = 0.25;  // [s]; a server on this machine answers within 10 ms
@@ -414,8 +414,8 @@ int App::loop() {
   std::int64_t before = began;
   bool shot = options_.screenshot.empty();
   std::string failure;
-  double drawing = 0.0;         // [s], without the picture for a file:
-  std::int64_t picture_us = 0;  // that is no part of the frame rate
+  double drawing = 0.0;         // [s], without the time for a screenshot
+  std::int64_t picture_us = 0;  // not counted for the frame rate
   for (bool last = false; !last;) {
     const std::int64_t now = os::monotonic_us();
     const float dt = std::min(1e-6f * static_cast<float>(now - before), 0.1f);
@@ -449,7 +449,7 @@ int App::loop() {
     judge_quality();
   }
   say_figures(drawing);
-  connection_.reset();  // says Bye
+  connection_.reset();  // sends Bye
   if (!failure.empty()) std::fprintf(stderr, "%s\n", failure.c_str());
   return failure.empty() ? 0 : 1;
 }
@@ -491,7 +491,8 @@ void App::say_figures(double seconds) const {
 }
 
 int run(const Options& options) {
-  // Before the window and the handlers: a name may take long to look up, and Ctrl-C must end that.
+  // Before the window and the signal handlers: resolving a name may take long, and Ctrl-C must end
+  // it.
   auto connection = Connection::open(options.connection);
   if (!connection) {
     std::fprintf(stderr, "%s\n", connection.error().c_str());

@@ -1,11 +1,11 @@
-// The renderer's main loop: hears, draws, sounds, and sends the person's hands.
+// The renderer's main loop: receives, draws, plays sounds and sends the people's input.
 #pragma once
 
 #include "app/options.h"
 
 namespace client {
 
-// Returns the exit code: 0 done, 1 failed, 4 no display. Says on stderr what went wrong.
+// Returns the exit code: 0 success, 1 failure, 4 no display. Prints errors to stderr.
 int run(const Options& options);
 
 }  // namespace client

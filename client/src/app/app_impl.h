@@ -1,6 +1,6 @@
 // The renderer's session: the window, the connection, the people at it, and what is drawn for them.
-// One thread. Split over app.cpp (the loop, the hands, the picture) and app_menu.cpp (settings and
-// the menu's pages) and app_survey.cpp (the questionnaire).
+// One thread. Implemented in app.cpp (the loop, input, drawing), app_menu.cpp (settings and the
+// menu's pages) and app_survey.cpp (the questionnaire).
 #pragma once
 
 #include <memory>
@@ -32,14 +32,14 @@
 namespace client {
 
 foosball::AssistChoice assists_of(const Settings& settings);
-// What a server says is in no range until it is looked at: what is out of it stays as by default.
+// Validates the server's tuning: a value out of range keeps its default.
 foosball::Tuning tuning_of(const wire::Tuning& told);
 
 class App {
  public:
   App(const Options& options, std::unique_ptr<Connection> connection)
       : options_(options), connection_(std::move(connection)) {}
-  // Empty, or the sentence to say; exit_code is then set.
+  // Returns an empty string, or the error to print; exit_code is then set.
   std::string start(int& exit_code);
   int loop();
 
@@ -88,8 +88,7 @@ class App {
   void judge_quality();
   std::string take_screenshot();
   void say_figures(double seconds) const;
-  // The scene is of the match that is joined, not of one before: a picture, but nothing to act
-  // upon.
+  // The scene is of the joined match. A scene of an earlier match is drawn, but not acted upon.
   bool scene_is_current() const;
   bool match_is_over() const;
   bool leaving(double seconds) const;
@@ -100,44 +99,44 @@ class App {
   std::optional<UiBatch> ui_;
   std::unique_ptr<SoundPlayer> sounds_;
   std::unique_ptr<Connection> connection_;
-  std::unique_ptr<Crew> crew_;  // of the match that is joined
+  std::unique_ptr<Crew> crew_;  // of the joined match
   CrewNames crew_names_;
   std::unique_ptr<RodPrediction> prediction_;
   Particles particles_;
   Effects effects_;
   PadHaptics haptics_;
-  std::string phones_;  // where they join, as the server says
+  std::string phones_;  // where phones join, as the server sent it
   QrCode phones_code_;
   MatchStory story_;
-  std::vector<wire::EventSnapshot> events_;  // reached, not shown yet
+  std::vector<wire::EventSnapshot> events_;  // reached by the drawn scene, not shown yet
   ViewMotion motion_;
   FrameMeter meter_;
   SceneSample sample_;
-  wire::Snapshot drawn_;  // the sample, with the own rods where the hand has them
+  wire::Snapshot drawn_;  // the sample, with this client's rods at their predicted poses
   bool show_help_ = false;
   Settings settings_;
   std::optional<WatchProgram> watching_;  // while it runs, this window is hidden
   Menu menu_{tuning_directory()};
-  SeatsView seats_;  // what the page of seats is made of
+  SeatsView seats_;  // the data of the page of seats
   MenuHand menu_hand_;
   Survey survey_;
-  std::uint32_t surveyed_ = 0;  // the match that was asked about last
+  std::uint32_t surveyed_ = 0;  // the last match that the questionnaire asked about
   std::optional<wire::Report> report_;
-  std::uint32_t report_before_ = 0;    // the last one while the match was played
+  std::uint32_t report_before_ = 0;    // the last report while the match was played
   std::vector<std::string> problems_;  // of the settings file
   std::string language_;               // in use
-  std::string names_;                  // of people, whose letters the font has
+  std::string names_;                  // of people; the font has their letters
   std::vector<std::string> news_;
   double news_until_ = 0.0;  // [s]
   ReplayReel reel_;
   bool replay_ = false;
   ConnectionStatus status_;
   wire::Roster roster_;
-  foosball::Tuning tuning_;                                 // of the match, as far as it is known
+  foosball::Tuning tuning_;                                 // of the match, once known
   std::shared_ptr<const foosball::Characters> characters_;  // in use; null: the built-in ones
   std::uint64_t joins_seen_ = 0;
   Link link_seen_ = Link::connecting;
-  std::int64_t awaiting_since_ = 0;  // asked to join at, without a picture of the match since; or 0
+  std::int64_t awaiting_since_ = 0;  // start of joining without a scene of the match yet; else 0
   glm::ivec2 size_{1, 1};
   double seconds_ = 0.0;
 };

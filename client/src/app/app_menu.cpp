@@ -6,7 +6,7 @@
 namespace client {
 namespace {
 
-// Beside the program, as built and as installed.
+// Beside the program, both in the build tree and installed.
 std::string catalogue_directory() {
   std::error_code error;
   const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
@@ -28,7 +28,7 @@ foosball::Tuning tuning_of(const wire::Tuning& told) {
   return tuning;
 }
 
-// The language's catalogue, and the letters that it needs.
+// Loads the language's catalogue, and the letters that it needs.
 std::string App::use_texts() {
   constexpr std::array<const char*, kLanguages> kCodes{"", "en", "ko", "de"};
   language_ = kCodes[static_cast<std::size_t>(settings_.language)];
@@ -102,7 +102,7 @@ void App::open_menu(const InputEvents& events) {
 
 void App::take_menu_input(const InputEvents& events, std::int64_t now) {
   const bool waits = menu_.waits_for_key();
-  // A key that is waited for is no step, and opens no page.
+  // While the menu waits for a key, keys make no steps and open no page.
   const auto pressed = [&](Action action) {
     return !waits && events.presses[index_of(action)] % 2 != 0;
   };
@@ -125,7 +125,7 @@ void App::take_menu_input(const InputEvents& events, std::int64_t now) {
     connection_->request(crew_->session(), request);
 }
 
-// The match waits, if the person plays in it; a pause that others must agree to is theirs.
+// Pauses the match if the person plays in it; a pause that others must agree to is only requested.
 void App::watch_recordings() {
   if (watching_) return;
   std::vector<std::string> options;
@@ -162,7 +162,7 @@ void App::follow_watching() {
   tell({said});
 }
 
-// For a while.
+// Shows the lines for a while.
 void App::tell(std::vector<std::string> lines) {
   constexpr double kShown = 8.0;  // [s]
   news_ = std::move(lines);

@@ -2,7 +2,7 @@
 
 namespace client {
 
-// Who has played at this client, and with what: a person at a time, and a cabinet's hands by team.
+// The people who played at this client, with their devices; the cabinet's players by team.
 std::vector<SurveyPerson> App::survey_people(std::uint8_t rods) const {
   std::vector<SurveyPerson> people;
   if (!crew_) return people;
@@ -34,20 +34,20 @@ std::vector<SurveyPerson> App::survey_people(std::uint8_t rods) const {
   return people;
 }
 
-// The match that has just ended is the one that was reported since it was played.
+// The report that arrived since the match was played is the report of that match.
 void App::follow_report() {
   report_ = connection_->report();
   if (report_ && drawn_.screen == number(wire::Screen::play)) report_before_ = report_->match;
 }
 
-// Asked once the last goal has been seen again; a new match ends it.
+// Starts the questionnaire after the last goal's replay; a new match ends it.
 void App::follow_survey(std::int64_t now) {
   const auto screen = static_cast<wire::Screen>(drawn_.screen);
   const bool between = screen == wire::Screen::end || screen == wire::Screen::logo;
   if (!sample_.any || status_.link != Link::joined || !(between || drawn_.attract)) survey_.close();
   const auto asked = connection_->questionnaire();
   if (!asked || asked->match == surveyed_) return;
-  // The message may be ahead of the picture; once characters are chosen again, it is too late.
+  // The message may be ahead of the picture. Once characters are selected again, it is too late.
   if (screen == wire::Screen::selection && !drawn_.attract) surveyed_ = asked->match;
   if (!between || replay_ || menu_.open()) return;
   surveyed_ = asked->match;

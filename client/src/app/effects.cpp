@@ -14,8 +14,8 @@ namespace {
 
 using Kind = wire::EventKind;
 
-constexpr float kBright = 0.55f;   // of the strength: from here on a hit sounds like a shot
-constexpr float kCalmingS = 4.0f;  // the crowd, to 1 / e [s]
+constexpr float kBright = 0.55f;   // strength from which a hit sounds like a shot
+constexpr float kCalmingS = 4.0f;  // decay of the crowd's excitement to 1 / e [s]
 constexpr float kShakeS = 0.18f;   // to 1 / e [s]
 constexpr float kCrowdAtRest = 0.06f;
 
@@ -27,12 +27,13 @@ glm::vec3 vec(const std::array<float, 3>& a) {
   return {a[0], a[1], a[2]};
 }
 
-// The crowd of a team stands behind its own goal.
+// A team's crowd stands behind its own goal.
 glm::vec3 crowd_of(int team) {
   return {team == 1 ? 0.9f : -0.9f, 0.0f, 0.4f};
 }
 
-// Kicks sound higher with a higher voice, but not as much: plastic stays plastic.
+// A higher voice raises the pitch of kicks, but less than its own: plastic still sounds like
+// plastic.
 float kick_pitch(const foosball::CharacterVoice& voice) {
   return std::clamp(std::sqrt(static_cast<float>(voice.pitch) / 240.0f), 0.6f, 1.8f);
 }
@@ -49,7 +50,7 @@ const foosball::CharacterVoice& Effects::voice_of(const wire::Snapshot& scene, i
   return foosball::nearest(characters_, scene.character[side(team)]).voice;
 }
 
-// A flute and a reed at once, each as loud as the timbre says.
+// Flute and reed at once, weighted by the timbre.
 void Effects::shout(const foosball::CharacterVoice& voice, float volume, const glm::vec3& at,
                     SoundPlayer& sounds) const {
   const float pitch = static_cast<float>(voice.pitch) / kVoicePitch;
@@ -60,14 +61,14 @@ void Effects::shout(const foosball::CharacterVoice& voice, float volume, const g
 
 void Effects::hit(const wire::EventSnapshot& event, const wire::Snapshot& scene,
                   Particles& particles, SoundPlayer* sounds) {
-  if (event.value < kSoftestImpulse) return;  // rolling, not hitting
+  if (event.value < kSoftestImpulse) return;  // rolling contact, no hit
   const glm::vec3 at = vec(event.point);
   const float strength = strength_of_impulse(event.value), volume = volume_of_impulse(event.value);
-  // What is struck throws its sparks the way the ball goes.
+  // The sparks fly in the direction of the ball.
   const glm::vec3 velocity = vec(scene.ball.linear_velocity);
   const float speed = glm::length(velocity);
   const glm::vec3 towards = speed > 0.5f ? 0.6f * velocity / speed : glm::vec3(0);
-  // Sparks grow faster than loudness does: with the square, so that touches stay small.
+  // Sparks grow faster than loudness, with the square, so that light touches stay small.
   const float sparks = strength * strength;
   const auto sound = [&](Sound which, float pitch = 1.0f) {
     if (sounds != nullptr) sounds->play(which, volume, at, pitch);
@@ -148,7 +149,7 @@ void Effects::follow_ball(const wire::Snapshot& scene, const MatchStory& story,
   sounds->set_loop(Sound::roll, volume, at, pitch);
 }
 
-// The fastest rod is heard in its bearings.
+// The fastest rod is audible in its bearings.
 void Effects::follow_rods(const wire::Snapshot& scene, SoundPlayer* sounds) const {
   if (sounds == nullptr) return;
   const auto& table = foosball::table_spec(static_cast<foosball::Layout>(scene.layout));

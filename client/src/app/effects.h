@@ -1,5 +1,5 @@
-// What a match looks and sounds like beside its picture: sparks, streaks, dust; hits, rolling, the
-// crowd, the shouts of men.
+// Effects of a match: sparks, streaks, dust; sounds of hits, rolling, the crowd and the men's
+// shouts.
 #pragma once
 
 #include <span>
@@ -12,18 +12,18 @@
 
 namespace client {
 
-// How strong a hit looks, 0..1, from its impulse [N s]: by its logarithm over the range of play, as
-// volume_of_impulse has it for the ear.
+// Visual strength of a hit, 0..1, from its impulse [N s]: logarithmic over the range of play, as
+// volume_of_impulse() is for the sound.
 float strength_of_impulse(float impulse);
 
 class Effects {
  public:
-  // sounds: null when there are none. dt [s]; 0 while the match stands.
+  // sounds: null if there is no sound. dt [s]; 0 while the match is stopped.
   void show(std::span<const wire::EventSnapshot> events, const wire::Snapshot& scene,
             const MatchStory& story, Particles& particles, SoundPlayer* sounds, float dt);
-  // Of the characters that the match has; the built-in ones until this is called.
+  // Sets the match's characters; the built-in ones until this is called.
   void set_characters(const foosball::Characters& characters) { characters_ = characters; }
-  // How far a goal or a hard hit still shakes the picture, 0..1.
+  // Camera shake that is left from a goal or a hard hit, 0..1.
   float shake() const { return shake_; }
 
  private:

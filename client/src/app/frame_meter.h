@@ -1,4 +1,4 @@
-// Counts frames, and says when a quality is more than the machine can do.
+// Counts frames, and detects a quality that is too slow for the machine.
 #pragma once
 
 #include <cstdint>
@@ -7,14 +7,15 @@ namespace client {
 
 class FrameMeter {
  public:
-  // Slower than this is not play; a machine that draws high quality slower is better off with low.
+  // Slower than this is not playable; a machine that draws high quality more slowly should use low.
   static constexpr double kTooSlowS = 1.0 / 30.0;
 
   void begin(std::int64_t now_us);  // before a frame is drawn
   void end(std::int64_t now_us);    // after it was shown
   std::uint64_t frames() const { return frames_; }
   double rate() const { return rate_; }  // over about the last half second [1/s]
-  // After each 20 frames: were they too slow on average? The first few, which load, do not count.
+  // After each 20 frames: whether they were too slow on average. The first few frames, in which
+  // resources load, do not count.
   bool too_slow() const { return too_slow_; }
   void restart_judgement();
 

@@ -1,4 +1,4 @@
-// One line a message on stderr.
+// Messages on stderr, one line each.
 #pragma once
 
 #include <string>

@@ -18,16 +18,17 @@ struct Options {
   ConnectionOptions connection;
   glm::ivec2 size{1280, 720};
   bool fullscreen = false;
-  std::optional<View> view;  // none: as the settings say
+  std::optional<View> view;  // none: from the settings
   bool mute = false;
   bool show_fps = false;
-  bool cabinet_gamepads = false;         // a cabinet's, whose server has its rods otherwise
-  bool until_server_ends = false;        // leave when the server says good-bye, else wait for it
-  std::optional<draw::Quality> quality;  // none: picked by what the machine can do
-  std::optional<double> seconds;         // play so long, then leave
+  // Also use the gamepads that a cabinet's controller emulates. Its server has the rods otherwise.
+  bool cabinet_gamepads = false;
+  bool until_server_ends = false;        // exit when the server says Bye; otherwise wait for it
+  std::optional<draw::Quality> quality;  // none: chosen by what the machine can draw
+  std::optional<double> seconds;         // play for this time, then exit
   std::optional<double> screenshot_at;   // none: at the end
   std::string screenshot, stats_file, font_directory;
-  // Of the people at this window; those that are not given are as the settings say.
+  // Names of the people at this window; missing ones come from the settings.
   std::vector<std::string> names;
 };
 

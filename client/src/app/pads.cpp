@@ -14,7 +14,7 @@
 namespace client {
 namespace {
 
-constexpr int kStickMoved = 8000;  // of 32767: more than a stick's rest wanders
+constexpr int kStickMoved = 8000;  // of 32767: above the drift of a stick at rest
 
 std::optional<PadButton> meaning_of(int button) {
   switch (button) {
@@ -81,7 +81,7 @@ int Pads::place_of(std::int32_t instance) const {
   return instance >= 0 && place != places_.end() ? static_cast<int>(place - places_.begin()) : -1;
 }
 
-// The place where one of its model was, else one where none was, else any that is free.
+// Takes the index of an unplugged pad of the same model, else one never used, else any free one.
 void Pads::plug_in(int device, InputCollector& into) {
   if (is_cabinet(device) && !cabinets_) return;
   const std::string guid = guid_of(device);
@@ -93,11 +93,11 @@ void Pads::plug_in(int device, InputCollector& into) {
     if (here > worth) best = &place;
     worth = std::max(worth, here);
   }
-  if (best == nullptr) return;  // more than can play
+  if (best == nullptr) return;  // no free index
   SDL_GameController* pad = SDL_GameControllerOpen(device);
   if (pad == nullptr) return;
   const std::int32_t instance = SDL_JoystickInstanceID(SDL_GameControllerGetJoystick(pad));
-  if (place_of(instance) >= 0) return SDL_GameControllerClose(pad);  // was told twice
+  if (place_of(instance) >= 0) return SDL_GameControllerClose(pad);  // reported twice
   const int number = static_cast<int>(best - places_.data());
   *best = {instance, pad, guid, {}, 0};
   into.connect(number, true);
@@ -120,7 +120,7 @@ void Pads::use(std::int32_t instance) {
     places_[static_cast<std::size_t>(number)].used_us = os::monotonic_us();
 }
 
-// Both motors: the slow one is what a hand feels of a hit, the fast one its edge. SDL ends it by
+// Runs both motors: the slow one gives the body of a hit, the fast one its edge. SDL stops them by
 // itself.
 void Pads::rumble(int pad, float strength, std::uint16_t ms) {
   if (pad < 0 || pad >= kPads || ms == 0 || !(strength > 0.0f)) return;

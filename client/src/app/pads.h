@@ -1,6 +1,6 @@
-// Gamepads, by their events: a press that is over before the next frame is there as well. SDL reads
-// them, knows their layouts, and tells when one comes or goes; GLFW, which has the window, only
-// says how a pad stands now. A pad that comes back has the place that it had.
+// Gamepads, by their events, so that a press that ends before the next frame counts too. SDL reads
+// the pads, knows their layouts and reports when one is plugged in or out; GLFW, which owns the
+// window, only reports a pad's present state. A pad that comes back gets its earlier index.
 #pragma once
 
 #include <array>
@@ -14,29 +14,29 @@ namespace client {
 
 class Pads {
  public:
-  // Without a driver for gamepads there are none. cabinets: those that a cabinet's controller makes
-  // of its rods too; the server beside it has them from the controller itself.
+  // Without a gamepad driver there are no pads. cabinets: also read the gamepads that a cabinet's
+  // controller makes of its rods. The server beside it reads the controller itself.
   explicit Pads(bool cabinets = false);
   ~Pads();
   Pads(const Pads&) = delete;
   Pads& operator=(const Pads&) = delete;
 
   void poll(InputCollector& into);
-  // Shakes this pad, 0 .. kPads - 1, for so long, if it has motors and was used within kInHandUs:
-  // one that lies on the desk does not rattle. strength 0..1.
+  // Rumbles this pad, 0 .. kPads - 1, for `ms`, if it has motors and was used within kInHandUs, so
+  // that a pad that lies on the desk does not rattle. strength 0..1.
   static constexpr std::int64_t kInHandUs = 10'000'000;
   void rumble(int pad, float strength, std::uint16_t ms);
-  std::uint64_t rumbles() const { return rumbles_; }  // that a pad took
-  // Since the last call: what a person should read, such as that one was unplugged.
+  std::uint64_t rumbles() const { return rumbles_; }  // that a pad accepted
+  // Messages for a person since the last call, such as a pad that was unplugged.
   std::vector<std::string> take_news();
 
  private:
   struct Place {
     std::int32_t instance = -1;  // SDL's; -1: nothing is plugged in
     void* pad = nullptr;         // SDL_GameController
-    std::string guid;            // of the model that was here last
+    std::string guid;            // of the last model at this index
     cabinet::PadState sticks;
-    std::int64_t used_us = 0;  // os::monotonic_us() when it was last pressed or moved; 0: never
+    std::int64_t used_us = 0;  // os::monotonic_us() of the last press or motion; 0: never
   };
   int place_of(std::int32_t instance) const;  // -1: none
   void plug_in(int device, InputCollector& into);

@@ -11,8 +11,8 @@ namespace client {
 namespace {
 
 constexpr float kMostShake = 0.006f;  // [m] of the eye
-constexpr float kFollowS = 0.35f;     // [s] to close 63% of the way to the ball
-constexpr float kSettle = 1.1f;  // [s] to close most of the way to where the camera wants to be
+constexpr float kFollowS = 0.35f;     // [s] to close 63% of the distance to the ball
+constexpr float kSettle = 1.1f;       // [s] to close most of the distance to the camera's target
 
 }  // namespace
 

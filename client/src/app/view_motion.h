@@ -1,5 +1,5 @@
-// How the camera moves: leaning a little towards the play, drifting on the logo, coming nearer for
-// a choice. Always gently, so that a hand's aim is never disturbed.
+// Camera motion: leans a little towards the play, drifts on the logo screen, moves closer for the
+// selection. The motion is always slow, so that it never disturbs a person's aim.
 #pragma once
 
 #include "client/settings.h"
@@ -10,16 +10,16 @@ namespace client {
 
 class ViewMotion {
  public:
-  // scene: null while nothing was received. dt [s]. shake 0..1: of a goal or a hard hit.
+  // scene: null before a snapshot is received. dt [s]. shake 0..1: from a goal or a hard hit.
   CameraView step(const wire::Snapshot* scene, int team, float dt, float shake = 0.0f);
-  // Camera of the view, from the last step.
+  // Camera of the view, from the last step().
   Camera camera(View view, const glm::ivec2& screen) const;
 
  private:
   CameraView view_;
-  float drift_ = 0.0f;  // [s] on the logo
+  float drift_ = 0.0f;  // [s] on the logo screen
   float time_ = 0.0f;
-  glm::vec3 ball_{0.0f};  // followed gently
+  glm::vec3 ball_{0.0f};  // the ball's position, low-pass filtered
 };
 
 }  // namespace client

@@ -48,7 +48,7 @@ WatchProgram::WatchProgram(WatchProgram&& other) noexcept
 WatchProgram::~WatchProgram() {
   if (process_ < 0) return;
   constexpr int kPatienceMs = 2000;  // it may have a picture to finish
-  // By number: Debian 12's <sys/pidfd.h> declares it without C linkage.
+  // As a raw system call: Debian 12's <sys/pidfd.h> declares it without C linkage.
   const os::FileDescriptor process(static_cast<int>(::syscall(SYS_pidfd_open, process_, 0)));
   ::kill(process_, SIGTERM);
   pollfd end{process.get(), POLLIN, 0};

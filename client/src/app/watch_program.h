@@ -1,6 +1,6 @@
-// The program that shows recorded matches, space-foosball-watch, which is beside this one. It steps
-// the match again, which a renderer never does, so it is a process of its own; this one waits with
-// its window hidden until it ends.
+// Runs space-foosball-watch, the program that shows recorded matches; it is installed beside this
+// one. It simulates the match again, which a renderer never does, so it runs as a separate process.
+// This program waits with its window hidden until it ends.
 #pragma once
 
 #include <sys/types.h>
@@ -14,13 +14,13 @@ namespace client {
 
 class WatchProgram {
  public:
-  // Starts it; the error is a sentence. options: of its command line.
+  // Starts it with these command-line options; the error is a sentence.
   static tl::expected<WatchProgram, std::string> start(const std::vector<std::string>& options);
   WatchProgram(WatchProgram&& other) noexcept;
   WatchProgram& operator=(WatchProgram&&) = delete;
-  ~WatchProgram();  // asks it to end, and waits for a while
+  ~WatchProgram();  // asks it to end, and waits for a limited time
 
-  // Its exit code, when it has ended, once; -1: by a signal.
+  // Its exit code, returned once after it has ended; -1: ended by a signal.
   std::optional<int> ended();
 
  private:

@@ -73,7 +73,7 @@ tl::expected<Window, draw::WindowError> Window::open(const draw::WindowOptions& 
     if (impl_of(w).captured) {
       impl_of(w).input.click();
     } else {
-      impl_of(w).capture(true);  // the click that takes the pointer does nothing else
+      impl_of(w).capture(true);  // the click that captures the pointer does nothing else
     }
   });
   glfwSetWindowFocusCallback(handle, [](GLFWwindow* w, int focused) {

@@ -1,4 +1,4 @@
-// The window, and what a person does in it as plain events.
+// The window, and a person's input in it as plain events.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -15,7 +15,7 @@ namespace client {
 
 class Window {
  public:
-  // cabinet_gamepads: as Pads has it.
+  // cabinet_gamepads: as in Pads.
   static tl::expected<Window, draw::WindowError> open(const draw::WindowOptions& options,
                                                       bool cabinet_gamepads = false);
   Window(Window&&) noexcept;
@@ -28,15 +28,15 @@ class Window {
   glm::ivec2 size() const;         // of the framebuffer [px]
   void swap();                     // shows the frame; waits for the display's refresh
   void set_keys(const KeyBindings& keys);
-  // Takes what has happened, by events: nothing that is over by now is lost.
+  // Processes the pending events, in order, so that no short press is lost.
   void poll();
   const InputCollector& input() const;                     // since the last forget_input()
-  void forget_input();                                     // a frame has taken it
-  void rumble(int pad, float strength, std::uint16_t ms);  // as Pads has it
-  std::vector<std::string> take_news();  // what a person should read: a gamepad that was unplugged
-  void wait(double seconds);             // until the window has news, at most so long
+  void forget_input();                                     // a frame has consumed it
+  void rumble(int pad, float strength, std::uint16_t ms);  // as in Pads
+  std::vector<std::string> take_news();  // messages for a person: a pad was unplugged
+  void wait(double seconds);             // until the window has events, at most for this time
   bool captured() const;
-  std::string renderer() const;  // name of the driver's, for the log
+  std::string renderer() const;  // name of the driver, for the log
   bool draws_in_software() const;
 
   struct Impl;

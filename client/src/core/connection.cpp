@@ -16,7 +16,7 @@ struct Connection::Impl {
 
 tl::expected<std::unique_ptr<Connection>, std::string> Connection::open(
     const ConnectionOptions& options) {
-  // A server on this machine is heard on this machine only.
+  // For a server on this machine, the socket receives from this machine only.
   const auto server = resolve(options.host, options.port);
   if (!server) return tl::unexpected(server.error());
   auto udp = open_udp(own_address_for(*server));

@@ -16,12 +16,11 @@
 namespace client {
 namespace {
 
-constexpr std::int64_t kAskRefusedAgainUs =
-    2'000'000;  // whoever refused will hardly change its mind at once
-constexpr std::int64_t kListenEveryUs = 50'000;  // how soon a silence is noticed
-constexpr std::size_t kMostNotices = 64;         // a stranger's topics must not fill the memory
+constexpr std::int64_t kAskRefusedAgainUs = 2'000'000;  // a refusal rarely changes at once
+constexpr std::int64_t kListenEveryUs = 50'000;         // how soon a silence is noticed
+constexpr std::size_t kMostNotices = 64;  // a malicious server's topics must not fill the memory
 constexpr std::size_t kMostQueued = 256 * 1024;  // bytes that a server may leave unread
-// How long the end waits for a good-bye to arrive: one that is lost is sent again after 200 ms.
+// Time that the destructor waits until Bye is delivered: a lost one is retransmitted after 200 ms.
 constexpr int kGoodbyeMs = 500;
 
 }  // namespace
@@ -170,8 +169,8 @@ void ControlLink::on_time(std::int64_t now_us) {
   if (stage_ == Stage::joined) watch_silence(now_us);
 }
 
-// Silence alone is no reason to let go of the connection, and with it of the seat: the line may be
-// back at any moment.
+// Silence alone does not drop the connection, and with it the seat: the link may recover at any
+// moment.
 void ControlLink::watch_silence(std::int64_t now_us) {
   const std::int64_t silent = now_us - std::max(joined_at_us_, listener_.last_arrival_us());
   const std::string words =
@@ -218,7 +217,7 @@ void ControlLink::knock() {
   queue(knock);
 }
 
-// False: the connection is no more.
+// False: the connection was dropped.
 bool ControlLink::on_challenge(const wire::Challenge& challenge, std::int64_t now_us) {
   const auto secret = exchange_->secret(challenge.share);
   exchange_.reset();
@@ -241,7 +240,7 @@ void ControlLink::say_hello() {
   hello.udp_port = listener_.port();
   hello.team = options_.team;
   hello.rods = options_.rods;
-  {  // the seat that was held there, if it is the same server
+  {  // the seat held there before, if it is the same server
     const std::lock_guard lock(mutex_);
     hello.name = name_;
     hello.session = status_.welcome.session;
@@ -254,7 +253,7 @@ void ControlLink::on_readable(std::int64_t now_us) {
   std::array<std::byte, 4096> bytes;
   const auto size = ::recv(tcp_.get(), bytes.data(), bytes.size(), 0);
   if (size < 0 && (errno == EAGAIN || errno == EINTR)) return;
-  // A server that cannot open what is sealed with another password says nothing more.
+  // A server that cannot open a message sealed with another password closes without an answer.
   const bool unproven = stage_ == Stage::greeting && sealer_;
   if (size <= 0 && unproven) {
     return drop("the password is not the server's: give --password-file with the right one", now_us,
@@ -264,7 +263,7 @@ void ControlLink::on_readable(std::int64_t now_us) {
   if (take({bytes.data(), static_cast<std::size_t>(size)}, now_us)) flush(now_us);
 }
 
-// False: the connection is no more.
+// False: the connection was dropped.
 bool ControlLink::take(std::span<const std::byte> bytes, std::int64_t now_us) {
   const auto nonsense = [&] {
     drop("it sends what is no message", now_us);
@@ -282,9 +281,10 @@ bool ControlLink::take(std::span<const std::byte> bytes, std::int64_t now_us) {
   }
 }
 
-// False: the connection is no more.
+// False: the connection was dropped.
 bool ControlLink::handle(const wire::ControlMessage& message, std::int64_t now_us) {
-  // Who has not proven to know the password is not listened to.
+  // Before the server has proven that it knows the password, only messages of the proof are
+  // accepted.
   const bool of_a_proof = std::holds_alternative<wire::Challenge>(message) ||
                           std::holds_alternative<wire::Refusal>(message);
   if (stage_ == Stage::proving && !of_a_proof) {
@@ -394,7 +394,7 @@ void ControlLink::drop(const std::string& why, std::int64_t now_us, bool refused
   questionnaire_.reset();
   report_.reset();
   devices_.reset();
-  notices_.clear();  // of a server that may be another when it is back
+  notices_.clear();  // the server may be another one when it is back
   status_.detail = why;
   status_.link = refused ? Link::refused : status_.joins > 0 ? Link::lost : Link::connecting;
 }

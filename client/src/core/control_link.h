@@ -1,4 +1,4 @@
-// The TCP thread: joins the server, keeps an ear on it, and joins again when it was lost.
+// The TCP thread: joins the server, receives its control messages, and joins again after a loss.
 #pragma once
 
 #include <atomic>
@@ -46,8 +46,8 @@ class ControlLink {
   enum class Stage : std::uint8_t {
     idle,
     connecting,
-    proving,   // a Challenge is due
-    greeting,  // a Welcome is due
+    proving,   // waits for a Challenge
+    greeting,  // waits for a Welcome
     joined
   };
 
@@ -78,17 +78,17 @@ class ControlLink {
   Waker waker_;
   std::atomic<bool> stop_{false};
 
-  // The thread's own.
+  // Only the thread uses these.
   Stage stage_ = Stage::idle;
   os::FileDescriptor tcp_;
   wire::ControlReader reader_;
   std::vector<std::byte> out_;
-  std::unique_ptr<wire::PasswordExchange> exchange_;  // proving
+  std::unique_ptr<wire::PasswordExchange> exchange_;  // while proving
   std::optional<wire::StreamSealer> sealer_;
   std::optional<wire::StreamOpener> opener_;
   std::int64_t next_try_us_ = 0, deadline_us_ = 0, joined_at_us_ = 0;
 
-  mutable std::mutex mutex_;  // all below
+  mutable std::mutex mutex_;  // guards all below
   std::string name_;          // to join under
   ConnectionStatus status_;
   std::map<std::uint32_t, wire::Notice> notices_;
@@ -97,8 +97,8 @@ class ControlLink {
   std::optional<wire::Game> game_;
   std::optional<wire::Questionnaire> questionnaire_;
   std::optional<wire::Report> report_;
-  std::string phones_;                       // of the server that is joined; empty: not told
-  std::optional<wire::Devices> devices_;     // answered, and not taken yet
+  std::string phones_;                       // of the joined server; empty: not sent
+  std::optional<wire::Devices> devices_;     // received, not taken yet
   std::vector<wire::ControlMessage> asked_;  // to be sent
 
   std::thread thread_;

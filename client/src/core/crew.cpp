@@ -50,14 +50,14 @@ void Crew::seat_people() {
   }
   for (int device = kFirstPerson; device < kDevices; ++device) {
     const auto person = static_cast<std::size_t>(device + 1);
-    // The first person plays rods of the own team, or of the other one where it has none of that.
+    // The first person plays rods of their own team, or of the other team if there are none.
     int team = team_;
     if (rods[static_cast<std::size_t>(team)][person] == 0) team = 1 - team;
     seat(device, team, rods[static_cast<std::size_t>(team)][person]);
   }
 }
 
-// Whoever has the same rods as before goes on as if nothing had happened.
+// A person whose rods are unchanged keeps their state.
 void Crew::seat(int device, int team, std::uint8_t rods) {
   const auto person = std::ranges::find(people_, device, &Person::device);
   if (person != people_.end()) {

@@ -4,8 +4,8 @@
 
 namespace client {
 
-// Between matches people are counted again, in the order of their devices; in a match whoever comes
-// is the next one.
+// Between matches people are numbered again, in the order of their devices. During a match a new
+// person gets the next number.
 void CrewNames::place_people(const Crew& crew, bool in_match) {
   if (!in_match) places_ = none();
   std::vector<int> devices;

@@ -16,7 +16,7 @@ const char* name_of(std::uint8_t state) {
   return state < kNames.size() ? kNames[state] : "";
 }
 
-// A server that was started again counts from 0.
+// A restarted server counts from 0.
 bool goes_on(const wire::DeviceReport& before, const wire::DeviceReport& now) {
   return before.name == now.name && before.frames <= now.frames && before.lost <= now.lost &&
          before.stamped <= now.stamped && before.latency_sum_us <= now.latency_sum_us;

@@ -60,7 +60,7 @@ foosball::Mode mode_of(const wire::Game& game) {
   return static_cast<foosball::Mode>(game.mode);
 }
 
-// As it is asked for.
+// The game as requested.
 wire::Game asked_for(wire::Game game) {
   const foosball::GameSetup setup = only_chosen(setup_of(game));
   game.rule_set = static_cast<std::uint8_t>(setup.rules);
@@ -74,7 +74,7 @@ wire::Game asked_for(wire::Game game) {
   return game;
 }
 
-// A server tells numbers where it was asked for what the rules have.
+// The server reports the actual numbers where the request left them to the rules.
 bool same_game(const wire::Game& asked, const wire::Game& told) {
   const bool opponent =
       asked.level == 0 || (asked.level == told.level && asked.style == told.style);
@@ -106,7 +106,7 @@ void GameMenu::hear(std::uint64_t session, const std::optional<wire::Game>& told
   if (told && !asking_) take(*told);
 }
 
-// What the mode in hand says nothing of stays as it was chosen for the others.
+// Values that the mode does not define keep the choice made for the other modes.
 void GameMenu::take(const wire::Game& told) {
   const foosball::Mode mode = mode_of(told);
   kept_.mode = told.mode;
@@ -146,7 +146,7 @@ MenuRow GameMenu::row(int row) const {
   const bool no_end = setup.mode == foosball::Mode::training;
   const auto number = [](int n) { return std::to_string(n); };
   const bool day = setup.mode == foosball::Mode::challenge;
-  const bool day_told = day && told_->mode == game.mode;  // whom it is against
+  const bool day_told = day && told_->mode == game.mode;  // the opponent of the day is known
   const int level = day_told ? told_->level : game.level,
             style = day_told ? told_->style : game.style;
   const char* level_by_mode = day ? N_("of the day") : N_("stronger with each match");
@@ -224,7 +224,7 @@ MenuPage GameMenu::page(int chosen) const {
   return page;
 }
 
-// In a set with a time, no number of goals is one too.
+// A set with a time limit may also have no goal limit.
 void GameMenu::change_goals(int way) {
   const int now = rules_of(setup_of(kept_)).goals_to_win;
   const bool timed = kept_.match_ms > 0;
@@ -249,7 +249,7 @@ void GameMenu::change(int row, int way) {
       break;
     case row_rules:
       kept_.rule_set = byte(turned(kept_.rule_set, way, wire::kRuleSetCount));
-      kept_.goals = kept_.sets = 0;  // as these rules have it
+      kept_.goals = kept_.sets = 0;  // as the rules define them
       break;
     case row_goals:
       change_goals(way);
@@ -268,7 +268,7 @@ void GameMenu::change(int row, int way) {
       const int place = std::clamp(way > 0 ? at + way - 1 : at + way, 0, last);
       const bool was_timed = kept_.match_ms > 0;
       kept_.match_ms = kMinutes[static_cast<std::size_t>(place)] * kMinuteMs;
-      // As many goals as the rules have without a time, none with one.
+      // Without a time limit the rules' number of goals, with one no goal limit.
       if (was_timed != (kept_.match_ms > 0)) kept_.goals = 0;
       break;
     }
@@ -295,7 +295,7 @@ bool GameMenu::step(int row, const MenuSteps& steps) {
 std::optional<wire::Game> GameMenu::ask(std::int64_t now_us) {
   if (std::exchange(stepped_, false)) next_us_ = now_us + kSettleUs;
   if (!asking_ || now_us < next_us_) return std::nullopt;
-  if (tries_ == kTries) {  // the server has said why, or the line is bad
+  if (tries_ == kTries) {  // the server has given a reason, or the link is bad
     asking_ = false;
     return std::nullopt;
   }

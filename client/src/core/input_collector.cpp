@@ -6,8 +6,8 @@
 namespace client {
 namespace {
 
-// A stick that was further out than this and is back within a frame was flicked; held further out
-// it steps through a menu.
+// A stick that exceeded this deflection and returned within a frame was flicked. Held beyond it,
+// the stick steps through a menu.
 constexpr float kFlicked = 0.5f;
 
 float further(float a, float b) {
@@ -39,7 +39,7 @@ void InputCollector::key(int key, bool down) {
   }
 }
 
-// As UTF-8.
+// Appends the letter as UTF-8.
 void InputCollector::letter(std::uint32_t codepoint) {
   const auto put = [this](std::uint32_t byte) { text_ += static_cast<char>(byte); };
   const auto tail = [&](int shift) { put(0x80u | (codepoint >> shift & 0x3Fu)); };
@@ -87,7 +87,7 @@ void InputCollector::sticks(int pad, const cabinet::PadState& state) {
   if (pad < 0 || pad >= kPads) return;
   Pad& p = pads_[static_cast<std::size_t>(pad)];
   p.sticks = state;
-  // Along the table a stick strikes to the right: see player_input.cpp.
+  // The stick shoots to the right along the table: see player_input.cpp.
   p.flick = further(p.flick, state.right_x);
 }
 

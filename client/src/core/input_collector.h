@@ -1,6 +1,6 @@
-// Events of keys, mouse and gamepads between two frames, by device, so that several people can play
-// at one window, each with devices of their own. Presses are counted as they happen: one that is
-// over before the frame counts as well. Knows no window library.
+// Collects the events of keys, mouse and gamepads between two frames, by device, so that several
+// people can play at one window, each with separate devices. Presses are counted as they happen:
+// one that ends before the frame counts too. Independent of the window library.
 #pragma once
 
 #include <array>
@@ -41,14 +41,14 @@ class InputCollector {
   void back() { back_ = true; }
 
   // pad: 0 .. kPads - 1; others are ignored.
-  void connect(int pad, bool there);  // gone: its sticks are let go
+  void connect(int pad, bool there);  // unplugged: its sticks return to zero
   bool connected(int pad) const { return pads_[static_cast<std::size_t>(pad)].there; }
   void button(int pad, PadButton button, bool down);
-  void sticks(int pad, const cabinet::PadState& state);  // up positive, shoulders left out
+  void sticks(int pad, const cabinet::PadState& state);  // up positive; no shoulder buttons
 
-  // What was done with these devices since the last clear().
+  // The events of these devices since the last clear().
   InputEvents take(DeviceSet devices) const;
-  void clear();  // a frame has taken what happened
+  void clear();  // a frame has consumed the events
 
  private:
   struct Pad {
@@ -56,7 +56,7 @@ class InputCollector {
     cabinet::PadState sticks;
     std::array<int, kPadButtons> presses{};
     std::array<bool, kPadButtons> down{};
-    float flick = 0.0f;  // the furthest that the right stick was up or down since the last frame
+    float flick = 0.0f;  // largest deflection of the right stick up or down since the last frame
   };
   void take_keys(DeviceSet devices, InputEvents& events) const;
   void take_pad(const Pad& pad, InputEvents& events) const;

@@ -25,8 +25,9 @@ bool jumped(const std::array<float, 3>& a, const std::array<float, 3>& b, double
   return glm::length(vec(b) - vec(a)) > 0.03 + kJumpSpeed * span_s;
 }
 
-// Where a ball bounced within a long gap, the velocities at its ends promise far more way than was
-// made, and the curve would swing out through a wall: then the straight line is nearer the truth.
+// If a ball bounced within a long interval, the velocities at its ends imply a much longer path
+// than the actual one, and the curve would overshoot through a wall. A straight line is then
+// closer.
 bool curve_is_wild(float from, float to, float slope_from, float slope_to) {
   const float room = 3.0f * std::abs(to - from) + 0.004f;
   return std::abs(slope_from) > room || std::abs(slope_to) > room;
@@ -48,7 +49,8 @@ wire::RodSnapshot interpolate(const wire::RodSnapshot& a, const wire::RodSnapsho
                               float span) {
   wire::RodSnapshot rod = a;
   rod.slide = hermite(a.slide, b.slide, a.slide_rate, b.slide_rate, s, span);
-  // The angle is sent modulo a lap of many turns: across its end it goes on, not all the way back.
+  // The angle is sent modulo many turns. It continues across the end of that range without turning
+  // back.
   const auto onward = static_cast<float>(wire::unwrap_angle(b.angle, a.angle));
   rod.angle = s < 1.0f ? a.angle + (onward - a.angle) * s : b.angle;
   rod.slide_rate = a.slide_rate + (b.slide_rate - a.slide_rate) * s;

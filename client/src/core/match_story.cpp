@@ -11,8 +11,8 @@ namespace {
 
 using Kind = wire::EventKind;
 
-constexpr float kTouch = 0.004f;       // [N s]: less is leaning, not touching
-constexpr float kAfterTouch = 0.02f;   // [s]: the ball has left the foot and shows its speed
+constexpr float kTouch = 0.004f;       // [N s]: a smaller impulse is leaning, no touch
+constexpr float kAfterTouch = 0.02f;   // [s]: by then the ball has left the foot at its final speed
 constexpr float kFastestShot = 12.0f;  // [m/s]: full strength
 
 float speed_of(const wire::Snapshot& scene) {
@@ -45,7 +45,7 @@ void MatchStory::touch(const wire::EventSnapshot& event, const foosball::TableSp
   shot_judged_ = false;
 }
 
-// The match itself says whose goal it is.
+// The match itself reports which team the goal counts for.
 void MatchStory::score(const wire::EventSnapshot& event) {
   const int team = event.team == 1 ? 1 : 0;
   const bool touched = touch_.team >= 0;
@@ -57,7 +57,7 @@ void MatchStory::score(const wire::EventSnapshot& event) {
   shooting_team_ = -1;
 }
 
-// The score stands until the next set begins.
+// The score stays until the next set begins.
 void MatchStory::end_set(const wire::EventSnapshot& event, const wire::Snapshot& scene) {
   const auto screen = static_cast<wire::Screen>(scene.screen);
   if (screen != wire::Screen::ceremony && screen != wire::Screen::end) return;
@@ -66,7 +66,7 @@ void MatchStory::end_set(const wire::EventSnapshot& event, const wire::Snapshot&
   sets_.push_back({scene.score[0], scene.score[1]});
 }
 
-// Who lost the set serves (5): if that is now on the winner's side, the sides were changed (13).
+// The loser of the set serves (5). If that is now the winner's index, the sides were changed (13).
 void MatchStory::begin_set(const wire::Snapshot& scene) {
   set_over_ = false;
   if (scene.next_server != set_winner_) return;

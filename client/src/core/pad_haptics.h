@@ -1,5 +1,5 @@
-// What the people at this client feel of the hits of their rods: pulses by the events of the
-// snapshots, as the server has them for phones and cabinets (cabinet/haptics.h).
+// Haptic pulses for the people at this client when their rods hit the ball: derived from the
+// snapshots' events, as the server does for phones and cabinets (cabinet/haptics.h).
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ namespace client {
 
 class PadHaptics {
  public:
-  // Pulses of the rods in this set, by bit. characters: that the match has.
+  // Pulses of the rods in this set, by bit. characters: of the match.
   std::vector<cabinet::HapticPulse> feel(std::span<const wire::EventSnapshot> events,
                                          const wire::Snapshot& scene,
                                          const foosball::Characters& characters,

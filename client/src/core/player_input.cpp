@@ -23,14 +23,15 @@ cabinet::HandOptions hand_options(int team, const foosball::TableSpec& table, st
     options.has[i] = (mine >> options.rods[i] & 1) != 0;
     options.slide_limit[i] = table.rods[static_cast<std::size_t>(options.rods[i])].slide_limit;
   }
-  // Away from the person is the team's push; feet towards the other goal is a turn against the
-  // right-handed one about +y for team 0 (foosball/table.h).
+  // Away from the person is the team's push direction. Feet towards the opponents' goal is a
+  // negative rotation about +y for team 0 (foosball/table.h).
   options.slide_sign = foosball::push_sign(team);
   options.angle_sign = -foosball::attack_sign(team);
   return options;
 }
 
-// The hand knows one axis that slides and one that spins; here the rods run away from the person.
+// cabinet::Hand has one axis that slides and one that spins; here the rods run away from the
+// person.
 cabinet::PadState turned(const cabinet::PadState& pad) {
   cabinet::PadState state = pad;
   state.left_x = 0;
@@ -39,7 +40,7 @@ cabinet::PadState turned(const cabinet::PadState& pad) {
   return state;
 }
 
-// What the person sees, as the assists want it.
+// The person's view of the scene, in the form that the assists take.
 foosball::AssistView seen_in(const wire::Snapshot& scene, const foosball::Characters& characters) {
   foosball::AssistView view;
   view.ball_in_play = scene.ball_in_play;
@@ -55,12 +56,12 @@ foosball::AssistView seen_in(const wire::Snapshot& scene, const foosball::Charac
   return view;
 }
 
-// A goalie that follows the ball for nobody would look as if somebody were there, to the server
-// too.
+// Without a person the assists stop after this time: a goalie that follows the ball would look like
+// a present person, to the server too.
 constexpr std::int64_t kRestsAfterUs = 10'000'000;
 
 bool acts(const InputEvents& events) {
-  constexpr float kStick = 0.25f;  // beyond a worn stick's rest
+  constexpr float kStick = 0.25f;  // beyond the drift of a worn stick
   const cabinet::PadState& pad = events.pad;
   const auto beyond = [](float axis) { return std::fabs(axis) > kStick; };
   const bool by_pad =
@@ -115,7 +116,7 @@ void PlayerInput::update(const InputEvents& events, const wire::Snapshot* scene,
   key_was_held_ = events.key_spin != 0 || events.key_slide != 0;
 }
 
-// A rod that the assist would take anew is taken; one chosen by hand stays until then.
+// Takes a rod when the assist's choice changes; a rod chosen by hand stays until then.
 void PlayerInput::choose_rod(const foosball::AssistView& view) {
   if (!assists_on_.automatic_rod) {
     rod_to_take_ = -1;
@@ -140,7 +141,7 @@ foosball::AssistHand PlayerInput::hand_now() const {
 }
 
 void PlayerInput::assist(const foosball::AssistView& view, std::int64_t now_us) {
-  constexpr std::int64_t kTickUs = 1000, kLongestUs = 110'000;  // a stalled window flings no rod
+  constexpr std::int64_t kTickUs = 1000, kLongestUs = 110'000;  // a stall must not fling rods
   const bool gap = assisted_us_ == 0 || now_us < assisted_us_ || now_us - assisted_us_ > kLongestUs;
   const auto ticks = gap ? 0 : static_cast<int>((now_us - assisted_us_) / kTickUs);
   assisted_us_ = gap ? now_us : assisted_us_ + ticks * kTickUs;
@@ -152,7 +153,7 @@ void PlayerInput::assist(const foosball::AssistView& view, std::int64_t now_us) 
   }
 }
 
-// Between plays rods work the screens: a rod that an assist turned would choose for the person.
+// Between plays rods operate the screens: a rod turned by an assist would make a choice.
 void PlayerInput::rest() {
   if (assisted_us_ != 0) assists_ = foosball::Assists(team_, table_.layout, mine_, assists_on_);
   assisted_us_ = 0;
@@ -160,8 +161,8 @@ void PlayerInput::rest() {
 }
 
 void PlayerInput::move(const InputEvents& events, const wire::Snapshot& scene) {
-  // Taken over where they are until they follow this hand. What a ball, or the computer that stands
-  // in, does to them later is no motion of the hand.
+  // Rods start at their present pose until they follow this hand. Later motion of a rod by the ball
+  // or by a stand-in computer is no motion of the hand.
   for (int rod = 0; rod < foosball::kRods; ++rod) {
     const wire::RodSnapshot& r = scene.rods[static_cast<std::size_t>(rod)];
     const auto bit = static_cast<std::uint8_t>(1u << rod);
@@ -194,7 +195,7 @@ void PlayerInput::collect_requests(const InputEvents& events, const wire::Snapsh
     choose_man(presses, scene, now_us);
 }
 
-// The ball is served to a man of the rod in hand, at each press to the next one.
+// Serves the ball to a man of the active rod; each press selects the next man.
 void PlayerInput::choose_man(int presses, const wire::Snapshot& scene, std::int64_t now_us) {
   constexpr std::int64_t kSeenWithinUs = 500'000;
   const bool known = fed_rod_ < 0 || now_us < fed_us_ || now_us - fed_us_ > kSeenWithinUs;
@@ -212,7 +213,7 @@ void PlayerInput::choose_man(int presses, const wire::Snapshot& scene, std::int6
                        foosball::feed_value(spec.line, fed_man_)});
 }
 
-// By number, by the wheel, or by a tap of an arrow; a spun rod chooses by itself, at the server.
+// By number, by the wheel, or by a tap of an arrow. Selection by a spun rod happens at the server.
 void PlayerInput::choose_character(const InputEvents& events, const wire::Snapshot& scene) {
   const int now = scene.character[static_cast<std::size_t>(team_)];
   int wanted = now;

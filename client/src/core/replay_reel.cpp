@@ -44,7 +44,7 @@ void ReplayReel::clear() {
   goal_ = skipped_ = false;
 }
 
-// In the time of the play that is shown.
+// In the time of the replayed play.
 std::int64_t ReplayReel::shown_us(std::int64_t now_us) const {
   const std::int64_t since = now_us - goal_us_ - kWaitUs;
   return goal_us_ - kBeforeUs + static_cast<std::int64_t>(kSpeed * static_cast<double>(since));

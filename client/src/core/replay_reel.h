@@ -1,4 +1,4 @@
-// The last moments of play before a goal as they were drawn, shown again in slow motion.
+// Replays the last moments of play before a goal, as they were drawn, in slow motion.
 #pragma once
 
 #include <cstdint>
@@ -11,22 +11,22 @@ namespace client {
 class ReplayReel {
  public:
   static constexpr std::int64_t kKeptUs = 2'000'000;
-  static constexpr std::int64_t kWaitUs = 350'000;    // after the goal the replay begins
-  static constexpr std::int64_t kBeforeUs = 750'000;  // shown from so long before the goal
-  static constexpr std::int64_t kAfterUs = 200'000;   // ... to so long after it
-  static constexpr double kSpeed = 0.3;               // of the replay, real time is 1
+  static constexpr std::int64_t kWaitUs = 350'000;    // the replay begins this time after the goal
+  static constexpr std::int64_t kBeforeUs = 750'000;  // it shows from this time before the goal
+  static constexpr std::int64_t kAfterUs = 200'000;   // ... to this time after it
+  static constexpr double kSpeed = 0.3;               // of the replay; 1 is real time
 
-  // The scene that is to be drawn at now: remembered while there is play, and while the ceremony of
-  // a goal lasts made into what is shown again. Whether it was.
+  // drawn: the scene to be drawn at now_us. Records it during play. During the ceremony of a goal,
+  // replaces its bodies by the replay's while the replay runs. Returns whether it did.
   bool follow(wire::Snapshot& drawn, std::int64_t now_us);
-  // A scene of play, drawn at now. Those older than kKeptUs are forgotten.
+  // Records a scene of play, drawn at now_us. Drops scenes older than kKeptUs.
   void record(const wire::Snapshot& scene, std::int64_t now_us);
   void mark_goal(std::int64_t now_us);
   void skip() { skipped_ = true; }
   void clear();
-  // The goal's replay runs: from kWaitUs after the goal, until all was shown or it was skipped.
+  // The goal's replay is running: from kWaitUs after the goal until its end or skip().
   bool showing(std::int64_t now_us) const;
-  // The scene of the replay at now. Precondition: showing(now).
+  // The replay's scene at now_us. Precondition: showing(now_us).
   wire::Snapshot scene(std::int64_t now_us) const;
 
  private:

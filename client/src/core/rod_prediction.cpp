@@ -10,21 +10,21 @@ namespace {
 
 constexpr std::int64_t kTickUs = 1000;
 static_assert(foosball::kTick == 1e-6 * kTickUs);
-constexpr std::int64_t kLongestGapUs = 200'000;  // a window that hung begins anew
+constexpr std::int64_t kLongestGapUs = 200'000;  // after a longer stall the prediction restarts
 
-// What counts as one unit of disagreement; a blocked rod must not decide about the lag alone.
+// Units of disagreement; clamped, because a blocked rod must not determine the lag alone.
 constexpr double kSlideUnit = 0.002;  // [m]
 constexpr double kAngleUnit = 0.05;   // [rad]
 constexpr double kMostDisagreement = 16.0;
-constexpr float kForget = 0.985f;      // of the disagreement, a frame: about a second
-constexpr float kEnoughToTell = 2.0f;  // between best and worst lag, before one is believed
+constexpr float kForget = 0.985f;      // decay of the disagreement per frame: about a second
+constexpr float kEnoughToTell = 2.0f;  // minimum spread of the disagreement over the lags
 
 double squared(double x) {
   return x * x;
 }
 
-// A man this far from his hand is held [rad]; nearer ones follow it the more. A ball that he hits
-// sets a free man back by less than half of it.
+// A man this far from his rod is blocked [rad]; a closer man follows the prediction the more. A hit
+// of the ball sets a free man back by less than half of it.
 constexpr float kHeld = 0.25f;
 float share_of_lead(float apart) {
   constexpr float kTurn = 6.2831853f;
@@ -32,7 +32,7 @@ float share_of_lead(float apart) {
   return std::clamp(2.0f - 2.0f * nearest / kHeld, 0.0f, 1.0f);
 }
 
-// From outside the range [low, high], how far.
+// Signed distance outside the range [low, high].
 double beyond(double value, double low, double high) {
   return value < low ? value - low : value > high ? value - high : 0.0;
 }
@@ -138,9 +138,9 @@ void RodPrediction::apply(wire::Snapshot& scene) const {
     drawn.angle = angle;
     drawn.slide_rate = static_cast<float>(rod.state.slide_rate);
     drawn.angle_rate = static_cast<float>(rod.state.angle_rate);
-    // Each man moves as his rod does: q' = (turn about y) q. One whom something holds (he is
-    // hinged, Layout::paper) stays where the server has him: the hand's lead would turn him through
-    // it.
+    // Each man moves with his rod: q' = (rotation about y) q. A blocked man (he is hinged,
+    // Layout::paper) stays where the server has him: the prediction's lead would rotate him through
+    // the obstacle.
     for (wire::ManState& man : scene.men) {
       if (man.rod != rod.index) continue;
       man.body.position[1] += moved;

@@ -62,7 +62,7 @@ std::uint8_t rods_of(const foosball::TableSpec& table, int team) {
   return rods;
 }
 
-// A vote's topic names what it is about: wire/limits.h.
+// A vote's topic identifies its subject: wire/limits.h.
 std::vector<wire::Notice> votes_of(const SeatsView& view) {
   std::vector<wire::Notice> votes;
   for (const wire::Notice& notice : view.notices) {
@@ -106,8 +106,8 @@ std::string rods_text(std::uint8_t rods) {
   return text;
 }
 
-// Players other than hosts may be put out: by the host, or by a vote of those who play. Who has
-// given up the rods meanwhile may be voted out all the same.
+// Players other than hosts may be removed: by the host, or by a vote of the players. This includes
+// a player who has given up the rods during the vote.
 bool may_kick(const SeatsView& view, const Crew& crew, const wire::Seat& seat) {
   const bool entitled = view.role == number(wire::Role::host) || crew.plays();
   const bool voted_on = std::ranges::any_of(view.notices, [&](const wire::Notice& notice) {
@@ -117,7 +117,7 @@ bool may_kick(const SeatsView& view, const Crew& crew, const wire::Seat& seat) {
          seat.role != number(wire::Role::host);
 }
 
-// All who play at that client: "Ann, Ben".
+// All players at that client: "Ann, Ben".
 std::string people_of(const wire::Seat& seat, const wire::RodPlayers& players) {
   std::vector<std::string> people{seat.name.empty() ? "?" : seat.name};
   for (std::size_t rod = 0; rod < players.size(); ++rod) {
@@ -215,7 +215,7 @@ MenuPage SeatsMenu::page(const SeatsView& view, const Crew& crew, int chosen) co
   return page;
 }
 
-// null: the row is nobody's.
+// null: the row belongs to nobody.
 const wire::Seat* SeatsMenu::person_at(const SeatsView& view, int row) const {
   const int index = row - first_vote - static_cast<int>(votes_of(view).size());
   const auto& seats = view.roster.seats;

@@ -22,7 +22,7 @@ struct NamedKey {
   const char* name;
   int key;
 };
-// Letters, digits and F1 to F12 are named by rule.
+// Letters, digits and F1 to F12 follow a naming rule.
 constexpr NamedKey kNamedKeys[] = {
     {"Space", 32},       {"Apostrophe", 39},   {"Comma", 44},         {"Minus", 45},
     {"Period", 46},      {"Slash", 47},        {"Semicolon", 59},     {"Equal", 61},
@@ -103,7 +103,7 @@ bool read_offsets(std::string_view text, std::array<float, 8>& offsets) {
   return true;
 }
 
-// Empty: read. Else what may be written there.
+// Empty: parsed. Otherwise the valid values.
 std::string read_setting(std::string_view name, std::string_view value, Settings& s) {
   const auto flag = [&](bool& into) { return read_flag(value, into) ? "" : "yes or no"; };
   if (name == "volume") return read_float(value, 0, 1, s.volume) ? "" : "a number from 0 to 1";
@@ -121,7 +121,7 @@ std::string read_setting(std::string_view name, std::string_view value, Settings
   if (name == "view")
     return read_word(value, kViewWords, s.view) ? "" : "seat, above, follow or spectator";
   if (name == "rods") return read_word(value, kRodsWords, s.rods) ? "" : "table, yes or no";
-  if (name == "hide_rods") {  // written before there was a third way
+  if (name == "hide_rods") {  // written by versions with only two choices
     bool hide = false;
     if (!read_flag(value, hide)) return "yes or no";
     s.rods = hide ? RodsShown::off : RodsShown::as_on_the_table;

@@ -1,4 +1,4 @@
-// Where the settings are kept.
+// The file of the settings.
 #include <unistd.h>
 
 #include <cstdio>
@@ -12,7 +12,7 @@
 namespace client {
 namespace {
 
-constexpr std::size_t kLongestFile = 64 * 1024;  // bytes; more is no settings file
+constexpr std::size_t kLongestFile = 64 * 1024;  // bytes; a longer file is no settings file
 
 std::string read_text(const std::string& path) {
   std::ifstream file(path, std::ios::binary);

@@ -244,7 +244,7 @@ bool SettingsMenu::change(int way, Settings& s) {
   return true;
 }
 
-// The key is taken from every other action, so that it does one thing.
+// Removes the key from all other actions, so that it has one meaning.
 bool SettingsMenu::bind(int key, Settings& settings) {
   if (name_of_key(key).empty()) return false;
   for (auto& keys : settings.keys) {
@@ -259,7 +259,7 @@ bool SettingsMenu::at_name() const {
   return row_ >= first_name && row_ < first_offset;
 }
 
-// Letters, until Enter or Esc.
+// Adds letters, until Enter or Esc.
 bool SettingsMenu::write(const MenuSteps& steps, Settings& settings) {
   if (steps.back) waits_ = false;
   for (const char letter : steps.text) {
@@ -275,7 +275,7 @@ bool SettingsMenu::write(const MenuSteps& steps, Settings& settings) {
       draft_ += letter;
       continue;
     }
-    // What follows the first byte of a letter is 10xxxxxx.
+    // The continuation bytes of a UTF-8 character are 10xxxxxx.
     while (!draft_.empty() && (static_cast<unsigned char>(draft_.back()) & 0xC0u) == 0x80u)
       draft_.pop_back();
     if (!draft_.empty()) draft_.pop_back();

@@ -8,9 +8,9 @@
 namespace client {
 namespace {
 
-// Beyond this the server stood still or skipped: the clocks are laid together anew.
+// Beyond this the server stood still or skipped: the clocks are aligned again.
 constexpr std::int64_t kResyncUs = 100'000;
-// The drawn time runs at most so much faster or slower while it is corrected: nobody sees it.
+// The drawn time runs at most this much faster or slower during a correction, which is invisible.
 constexpr std::int64_t kSlewShare = 12;  // one part in 12
 
 }  // namespace
@@ -46,8 +46,8 @@ void SnapshotBuffer::count_sequence(std::uint64_t sequence, bool newest) {
   if (!newest) ++counters_.reordered;
 }
 
-// False for a tick that is here already or too old. While the match stands still (a pause that does
-// not count ticks) the newer of two snapshots of one tick replaces the other.
+// False for a tick that is already here or too old. While the match stands still (a pause that does
+// not count ticks), the newer of two snapshots of a tick replaces the older.
 bool SnapshotBuffer::insert(wire::Snapshot snapshot) {
   auto place = kept_.end();
   while (place != kept_.begin() && std::prev(place)->tick > snapshot.tick) --place;
@@ -85,7 +85,7 @@ bool SnapshotBuffer::plausible(const wire::Snapshot& snapshot, std::int64_t arri
   doubted_tick_ = snapshot.tick;
   doubted_sequence_ = snapshot.sequence;
   if (doubted_ < kAgreeing) return false;
-  // The server jumped: what was kept is of another time.
+  // The server jumped: the stored snapshots belong to another time.
   begin_session(session_ ^ 1, static_cast<std::uint32_t>(tick_us_));
   session_ ^= 1;
   return true;
@@ -122,7 +122,7 @@ void SnapshotBuffer::note_arrival(std::int64_t offset_us) {
   offsets_[offset_next_] = offset_us;
   offset_next_ = (offset_next_ + 1) % kWindow;
   offset_count_ = std::min(offset_count_ + 1, kWindow);
-  // The percentile is dear; a thirty-second of the window is often enough.
+  // The percentile is expensive; computing it once in a thirty-second of the window is enough.
   if (offset_count_ > 8 && offset_next_ % 8 != 0) {
     fastest_us_ = std::min(fastest_us_, offset_us);
     return;
@@ -135,7 +135,7 @@ void SnapshotBuffer::note_arrival(std::int64_t offset_us) {
   delay_us_ = std::min(tick_us_ * 3 / 2 + (*late - fastest_us_), kLongestDelayUs);
 }
 
-// An event is repeated in several snapshots: its id, which counts up, tells the new ones.
+// An event is repeated in several snapshots; its increasing id identifies new ones.
 void SnapshotBuffer::note_events(const wire::Snapshot& snapshot) {
   for (const wire::EventSnapshot& event : snapshot.events) {
     if (any_event_ && static_cast<std::int32_t>(event.id - last_event_) <= 0) continue;

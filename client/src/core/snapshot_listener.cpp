@@ -11,16 +11,15 @@
 namespace client {
 namespace {
 
-// Datagrams taken before the person's input has its turn again. Twice as many would let a flood
-// keep the hand waiting for 2 ms (3.4 us are measured for a good snapshot); a quarter of a second's
-// stall at 1 kHz is made up in one go.
+// Maximum number of datagrams received before the person's input is sent again. With twice as many,
+// a flood could delay the input by 2 ms (measured: 3.4 us for a good snapshot). This number makes
+// up for a stall of a quarter of a second at 1 kHz in one call.
 constexpr std::size_t kMostAtOnce = 256;
 static_assert(kLongestDatagram >
-              wire::kMaxDatagram + wire::kSealBytes);  // a longer one shows as too long
+              wire::kMaxDatagram + wire::kSealBytes);  // a longer datagram shows as too long
 constexpr std::int64_t kSendEveryUs = 1'000;
-constexpr std::int64_t kRepeatUs = 45'000;  // 20 a second are promised: a little sooner
-constexpr std::int64_t kForgetUs =
-    1'000'000;  // a window that hangs must not hold the rods for ever
+constexpr std::int64_t kRepeatUs = 45'000;     // 20 a second are promised: slightly more often
+constexpr std::int64_t kForgetUs = 1'000'000;  // a stalled window must not hold the rods for ever
 constexpr int kIdleMs = 1000;
 
 bool same(const wire::InputRod& a, const wire::InputRod& b) {
@@ -56,14 +55,14 @@ tl::expected<void, std::string> SnapshotListener::join(const wire::Welcome& welc
     return tl::unexpected("There is no way to the server's UDP port " + os::to_text(inputs) +
                           ": check this machine's network.");
   }
-  // A group's key is the same after a lost connection.
+  // A group's key stays the same after a lost connection.
   opener_.use(welcome.snapshot_key, welcome.multicast.empty() ? welcome.client : 0);
   input_key_ = welcome.input_key;
   client_ = welcome.client;
   sealed_ = 0;
   buffer_.begin_session(welcome.session, welcome.tick_us);
   input_ = {.session = welcome.session, .token = welcome.token, .sequence = input_.sequence};
-  input_known_ = input_changed_ = false;  // what was driven before was meant for another match
+  input_known_ = input_changed_ = false;  // earlier input was for another match
   joined_ = true;
   waker_.wake();
   return {};
@@ -73,7 +72,7 @@ void SnapshotListener::leave() {
   const std::lock_guard lock(mutex_);
   joined_ = false;
   multicast_.reset();
-  waker_.wake();  // the thread holds the group until it looks again
+  waker_.wake();  // the thread holds the group until it wakes
 }
 
 SceneSample SnapshotListener::sample(std::int64_t now_us) {
@@ -107,7 +106,7 @@ void SnapshotListener::drive(std::uint64_t session, const std::array<wire::Input
   waker_.wake();
 }
 
-// Called with the lock held. A repeated input says where the rods are, no longer how fast.
+// Precondition: the lock is held. A repeated input has positions, but zero rates.
 void SnapshotListener::send_input(std::int64_t now_us) {
   if (!input_changed_) {
     for (wire::InputRod& rod : input_.rods) rod.slide_rate = rod.angle_rate = 0;
@@ -123,7 +122,7 @@ void SnapshotListener::send_input(std::int64_t now_us) {
   sent_at_us_ = now_us;
 }
 
-// Sends what is due; how long until the next is, in milliseconds.
+// Sends the due input; returns the time until the next one [ms].
 int SnapshotListener::send_due(std::int64_t now_us) {
   const std::lock_guard lock(mutex_);
   if (!joined_ || !input_known_ || now_us - driven_at_us_ > kForgetUs) return kIdleMs;
@@ -135,14 +134,14 @@ int SnapshotListener::send_due(std::int64_t now_us) {
   return static_cast<int>((due - now_us + 999) / 1000);
 }
 
-// With the lock, for join() connects the same socket to another server meanwhile.
+// Takes the lock, because join() may connect the same socket to another server meanwhile.
 void SnapshotListener::receive(int socket) {
   const std::lock_guard lock(mutex_);
   take_datagrams(socket, kMostAtOnce,
                  [&](std::span<const std::byte> bytes) { take(bytes, os::monotonic_us()); });
 }
 
-// Called with the lock held.
+// Precondition: the lock is held.
 void SnapshotListener::take(std::span<const std::byte> sealed, std::int64_t arrival) {
   std::array<std::byte, wire::kMaxDatagram> plain;
   std::size_t size = 0;
@@ -166,7 +165,7 @@ void SnapshotListener::take(std::span<const std::byte> sealed, std::int64_t arri
 void SnapshotListener::run() {
   while (!stop_) {
     const int wait_ms = send_due(os::monotonic_us());
-    std::shared_ptr<const UdpSocket> group;  // held here, so that leave() closes none in use
+    std::shared_ptr<const UdpSocket> group;  // a reference, so that leave() closes no socket in use
     {
       const std::lock_guard lock(mutex_);
       group = multicast_;

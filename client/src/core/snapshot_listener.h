@@ -1,4 +1,4 @@
-// The UDP thread: hears snapshots as they come, and sends the person's inputs.
+// The UDP thread: receives snapshots, and sends the person's input.
 #pragma once
 
 #include <array>
@@ -23,8 +23,8 @@ class SnapshotListener {
   std::uint16_t port() const { return unicast_.port; }
   bool small_buffer() const { return unicast_.small_buffer; }
 
-  // Joined: from now on snapshots of this session count, sealed as the Welcome says, that come from
-  // that server's address and port; and inputs go there, the first when drive() is called anew.
+  // From now on accepts snapshots of this session, sealed as the Welcome says, that come from that
+  // server's address and port. Inputs are sent there, beginning with the next call of drive().
   // here: the address by which this machine reaches the server. The error is a sentence (the
   // multicast group cannot be joined).
   tl::expected<void, std::string> join(const wire::Welcome& welcome,
@@ -55,7 +55,7 @@ class SnapshotListener {
   std::atomic<std::int64_t> last_arrival_us_{0};
   std::atomic<std::uint64_t> inputs_sent_{0};
 
-  mutable std::mutex mutex_;  // all below
+  mutable std::mutex mutex_;  // guards all below
   SnapshotBuffer buffer_;
   wire::Snapshot received_;
   std::shared_ptr<const UdpSocket> multicast_;
@@ -63,12 +63,12 @@ class SnapshotListener {
   wire::DatagramOpener opener_;
   wire::SealKey input_key_{};
   std::uint32_t client_ = 0;
-  std::uint64_t sealed_ = 0;  // inputs under this key
+  std::uint64_t sealed_ = 0;  // inputs sealed with this key
   wire::InputDatagram input_;
   bool input_changed_ = false, input_known_ = false;
   std::int64_t driven_at_us_ = 0, sent_at_us_ = 0;
 
-  std::thread thread_;  // last: starts when all else is there
+  std::thread thread_;  // last: starts after all else is constructed
 };
 
 }  // namespace client

@@ -16,8 +16,8 @@ std::string reason() {
   return std::strerror(errno);
 }
 
-// SO_RCVBUFFORCE goes past net.core.rmem_max where the process may; the kernel doubles what it
-// grants.
+// SO_RCVBUFFORCE may exceed net.core.rmem_max if the process has the privilege. The kernel doubles
+// the granted size.
 bool enlarge_receive_buffer(int fd) {
   const int wanted = kReceiveBufferBytes;
   if (setsockopt(fd, SOL_SOCKET, SO_RCVBUFFORCE, &wanted, sizeof wanted) != 0) {
@@ -34,7 +34,7 @@ bool enlarge_receive_buffer(int fd) {
 Waker::Waker() : event_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {}
 
 void Waker::wake() const {
-  ::eventfd_write(event_.get(), 1);  // full: it is awake
+  ::eventfd_write(event_.get(), 1);  // full: the thread is already awake
 }
 
 void Waker::drain() const {
@@ -49,7 +49,7 @@ tl::expected<os::SocketAddress, std::string> resolve(const std::string& host, st
   hints.ai_socktype = SOCK_STREAM;
   hints.ai_flags = AI_ADDRCONFIG;
   int failed = getaddrinfo(host.c_str(), nullptr, &hints, &found);
-  if (failed != 0) {  // a machine with nothing but its loopback has no address configured
+  if (failed != 0) {  // a machine with only its loopback has no configured address
     hints.ai_flags = 0;
     failed = getaddrinfo(host.c_str(), nullptr, &hints, &found);
   }
@@ -59,7 +59,7 @@ tl::expected<os::SocketAddress, std::string> resolve(const std::string& host, st
                           "): give --server HOST:PORT with a name or an address that this machine "
                           "can look up.");
   }
-  // IPv4 first: a server listens there unless it was told otherwise.
+  // IPv4 first: a server listens there by default.
   os::SocketAddress address;
   for (const addrinfo* entry = found; entry != nullptr; entry = entry->ai_next) {
     const auto candidate = os::SocketAddress::from(entry->ai_addr, entry->ai_addrlen);

@@ -1,4 +1,4 @@
-// The sockets of the client: non-blocking, closed with their owner.
+// The client's sockets: non-blocking, closed by their owner's destructor.
 #pragma once
 
 #include <cstddef>
@@ -26,31 +26,33 @@ class Waker {
 };
 
 inline constexpr int kReceiveBufferBytes =
-    4 * 1024 * 1024;  // half a second's stall at 1 kHz loses nothing
+    4 * 1024 * 1024;  // a stall of half a second at 1 kHz loses nothing
 
 struct UdpSocket {
   os::FileDescriptor fd;
   std::uint16_t port = 0;
-  bool small_buffer = false;  // less than kReceiveBufferBytes was granted
+  bool small_buffer = false;  // the system granted less than kReceiveBufferBytes
 };
 
-// A name is looked up by the system, which may take long; an address is not.
+// The system resolves a name, which may take long; an address needs no resolver.
 tl::expected<os::SocketAddress, std::string> resolve(const std::string& host, std::uint16_t port);
-// Where to hear that server: of one at this machine, at this machine only.
+// The local address on which to receive from that server: for a server on this machine, the
+// loopback address.
 os::SocketAddress own_address_for(const os::SocketAddress& server);
-// address: where to listen; its port 0: any free one.
+// address: to receive on; port 0: any free port.
 tl::expected<UdpSocket, std::string> open_udp(const os::SocketAddress& address);
-// From now on the kernel lets in what comes from that address and port alone. May be called again.
+// Connects the socket: from now on the kernel drops datagrams from other addresses and ports. May
+// be called again.
 bool hear_only(const UdpSocket& udp, const os::SocketAddress& from);
-// A socket that hears the group, on the interface that has the address `here`.
+// A socket that receives the multicast group, on the interface with the address `here`.
 tl::expected<UdpSocket, std::string> open_multicast(const std::string& group, std::uint16_t port,
                                                     const os::SocketAddress& here);
-// Takes the datagrams that have come, at most so many, cut to kLongestDatagram bytes; how many it
-// were. The bytes are the taker's until it returns.
+// Receives up to `most` pending datagrams, truncated to kLongestDatagram bytes, and returns their
+// number. The bytes are valid until `take` returns.
 inline constexpr std::size_t kLongestDatagram = 2048;
 std::size_t take_datagrams(int socket, std::size_t most,
                            const std::function<void(std::span<const std::byte>)>& take);
-// Begins to connect; finished (or failed) when the socket turns writable.
+// Starts to connect; the socket becomes writable when the connection succeeds or fails.
 tl::expected<os::FileDescriptor, std::string> begin_connect(const os::SocketAddress& server);
 // 0: connected; else the errno.
 int connect_result(int socket);

@@ -7,7 +7,7 @@
 namespace client {
 namespace {
 
-// By question: docs/questionnaire.md. The same as results::kQuestionnaire, which a test compares.
+// By question: docs/questionnaire.md. The same as results::kQuestionnaire; a test compares them.
 constexpr std::array<const char*, wire::kQuestionCount> kStatements{
     N_("Playing was fun."),
     N_("I knew at once how to move the figures."),
@@ -18,7 +18,7 @@ constexpr std::array<const char*, wire::kQuestionCount> kStatements{
 
 enum Consent : int { consent_no, consent_yes, consent_never };
 
-// A score by its key; 0: none was pressed.
+// The score of a key; 0: no score key.
 int score_of_key(int key) {
   return key >= '1' && key <= '0' + wire::kMaxScore ? key - '0' : 0;
 }
@@ -36,7 +36,7 @@ void Survey::ask(std::uint32_t match, std::vector<SurveyPerson> people, std::int
   }
 }
 
-// While it does not listen yet, hands do what they did before.
+// While a panel ignores input, its devices keep their previous function.
 DeviceSet Survey::devices(std::int64_t now_us) const {
   DeviceSet devices = 0;
   for (const Asked& asked : people_) {
@@ -68,7 +68,7 @@ Survey::Outcome Survey::update(const Take& take, const wire::Snapshot* scene, st
     MenuSteps steps = asked.hand.steps(events, person.cabinet() ? scene : nullptr,
                                        person.cabinet() ? person.team : -1, now_us);
     steps.right += wheel;
-    if (person.cabinet()) steps = {.right = steps.down};  // spun; slid, it goes on to the match
+    if (person.cabinet()) steps = {.right = steps.down};  // slides go on to the match
     if (!deaf(asked, now_us)) step(asked, steps, key, now_us, outcome);
   }
   std::erase_if(people_, [](const Asked& asked) { return asked.over; });

@@ -17,7 +17,7 @@ namespace client {
 namespace {
 
 enum Row : int { row_profile, row_load, row_save, row_defaults, first_value };
-constexpr int kSlots = 5;  // names for profiles that are not there yet
+constexpr int kSlots = 5;  // names for profiles that do not exist yet
 
 // 1, 2 or 5 times a power of ten, about a hundredth of the range.
 double step_of(const foosball::TuningField& field) {
@@ -29,13 +29,13 @@ double step_of(const foosball::TuningField& field) {
 
 double stepped(const foosball::TuningField& field, double value, int way) {
   const double step = step_of(field);
-  // Whole steps, and as near to them as decimals can be written: no 0.30000000000000004.
+  // Integer multiples of the step, rounded to short decimals: no 0.30000000000000004.
   char text[32];
   std::snprintf(text, sizeof text, "%.6g", step * std::round(value / step + way));
   return std::clamp(std::strtod(text, nullptr), field.least, field.most);
 }
 
-// As people write it: in units of which the values are no small fractions.
+// In units that give values of a readable size.
 struct ShownUnit {
   std::string_view unit;
   const char* shown;

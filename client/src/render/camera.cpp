@@ -13,30 +13,31 @@
 namespace client {
 namespace {
 
-// From where the whole table is seen. Lower, the men of one rod would hide each other and the ball;
-// higher, the way of the goalies' handles, which is longer than the field, would make it small.
+// View of the whole table. From lower, the men of one rod would hide each other and the ball. From
+// higher, the travel of the goalies' handles, which is longer than the field, would make it small.
 constexpr float kElevation = 0.74f;       // [rad] above the field
 constexpr float kFieldOfView = 0.50f;     // [rad], vertical
-constexpr float kShareOfPicture = 0.97f;  // of the picture's half that the table may take
+constexpr float kShareOfPicture = 0.97f;  // fraction of the picture's half that the table may take
 
-// From where the men are seen, for a choice between them.
+// View of the men, for the selection.
 constexpr float kNearElevation = 0.80f;  // [rad]
-constexpr float kNearDistance = 1.07f;   // [m] at the aspect below; narrower windows step back
-constexpr float kNearGaze = 0.06f;       // [m] before the middle
+constexpr float kNearDistance = 1.07f;   // [m] at the aspect below; larger in narrower windows
+constexpr float kNearGaze = 0.06f;       // [m] in front of the centre
 constexpr float kNearAspect = 16.0f / 9.0f;
 
-// Nearer to the play than the seat; and from the stand, lower than a player sees it.
+// Closer to the play than the seat; and from the stand, lower than a player's view.
 constexpr float kFollowElevation = 0.95f;     // [rad]
 constexpr float kFollowDistance = 1.7f;       // [m]
 constexpr float kSpectatorElevation = 0.55f;  // [rad]
 constexpr float kSpectatorDistance = 2.5f;    // [m]
 
 struct Stand {
-  float distance;  // of the eye from where it looks at the field [m]
-  float gaze;      // how far before the middle that is [m]
+  float distance;  // from the eye to the look-at point on the field [m]
+  float gaze;      // distance of that point in front of the centre [m]
 };
 
-// What has to be in the picture, as team 0 sees it; the table looks the same from the other side.
+// The points that must be in the picture, seen by team 0; the table looks the same from the other
+// side.
 std::vector<glm::vec3> outermost_points(const foosball::TableSpec& table) {
   std::vector<glm::vec3> points;
   const Extent body = table_extent(table);
@@ -56,10 +57,10 @@ std::vector<glm::vec3> outermost_points(const foosball::TableSpec& table) {
   return points;
 }
 
-// The nearest stand from which all points are in view. With the eye at (0, forward, up) along the
-// view's own axes, a point at (x, f, u) is in view if |x| <= (f - forward) tan_x and
-// |u - up| <= (f - forward) tan_y: linear in the eye, so that the outermost points of each of the
-// four sides decide.
+// The closest stand from which all points are in view. With the eye at (0, forward, up) along the
+// view's axes, a point at (x, f, u) is in view if |x| <= (f - forward) tan_x and |u - up| <= (f -
+// forward) tan_y. These are linear in the eye, so the outermost points of the four sides determine
+// it.
 Stand whole_table(const foosball::TableSpec& table, float aspect) {
   const glm::vec2 forward{std::cos(kElevation), -std::sin(kElevation)};  // in the plane of y and z
   const glm::vec2 up{-forward.y, forward.x};
@@ -132,7 +133,7 @@ Camera above_camera(const foosball::TableSpec& table, int team, const glm::ivec2
 
 Camera follow_camera(const CameraView& view, const glm::vec3& ball, const glm::ivec2& screen) {
   const float aspect = aspect_of(screen), toward = view.team == 1 ? 1.0f : -1.0f;
-  // Never so far to the side that the own rods leave the picture.
+  // Limits the motion to the side, so that the own rods stay in the picture.
   const glm::vec3 target{0.72f * ball.x, 0.35f * ball.y, 0.0f};
   const float distance = kFollowDistance * std::max(1.0f, kNearAspect / aspect);
   const glm::vec3 eye = target + distance * glm::vec3(0.0f, toward * std::cos(kFollowElevation),

@@ -9,7 +9,7 @@ namespace {
 
 constexpr float kFar = 1e10f;
 
-// One line of the transform: in place, f becomes min over q of (p - q)^2 + f(q).
+// One line of the transform, in place: f(p) becomes min over q of (p - q)^2 + f(q).
 class LineTransform {
  public:
   explicit LineTransform(int longest)
@@ -42,7 +42,7 @@ class LineTransform {
   }
 
  private:
-  // Where the parabolas over q and p meet.
+  // Abscissa of the intersection of the parabolas over q and p.
   float meeting(int q, int p) const {
     const float height = value_[static_cast<std::size_t>(q)] - value_[static_cast<std::size_t>(p)];
     return (height + static_cast<float>(q * q - p * p)) / static_cast<float>(2 * (q - p));
@@ -65,8 +65,7 @@ void transform(std::vector<float>& grid, int width, int height) {
 std::vector<std::uint8_t> distance_field(std::span<const std::uint8_t> coverage, int width,
                                          int height, int step, float reach) {
   std::vector<float> to_inside(coverage.size()), to_outside(coverage.size());
-  // A pixel that the outline crosses tells by its coverage how far from its middle the outline
-  // runs.
+  // The coverage of a pixel on the outline gives the distance from its centre to the outline.
   const auto squared = [](float d) { return d > 0.0f ? d * d : 0.0f; };
   for (std::size_t i = 0; i < coverage.size(); ++i) {
     const float covered = static_cast<float>(coverage[i]) / 255.0f;

@@ -14,7 +14,7 @@ using Part = foosball::ManBox::Part;
 const Paint kSuit{glm::vec3(1.0f), 1.0f, 0.48f, 0.0f, 0.0f};
 const Paint kSuitDark{glm::vec3(0.42f), 1.0f, 0.55f, 0.0f, 0.0f};
 const Paint kShell{glm::vec3(0.80f, 0.82f, 0.85f), 0.0f, 0.30f, 0.0f, 0.0f};
-// In the team's colour: it is most of what the view from above has of an upright man.
+// In the team's colour: from above, the helmet is most of what is visible of an upright man.
 const Paint kHelmet{glm::vec3(1.0f), 0.92f, 0.36f, 0.0f, 0.0f};
 const Paint kPack{glm::vec3(0.42f, 0.45f, 0.50f), 0.0f, 0.45f, 0.2f, 0.0f};
 const Paint kVisor{glm::vec3(0.10f, 0.075f, 0.04f), 0.0f, 0.12f, 0.85f, 0.0f};
@@ -39,7 +39,7 @@ PartExtent extent_of(std::span<const foosball::ManBox> boxes, Part part) {
   return e;
 }
 
-// Hips, waist, chest, shoulders. Slimmer than its box by the arms' thickness.
+// Hips, waist, chest, shoulders. Narrower than its box by the arms' thickness.
 void add_torso(MeshBuilder& b, const PartExtent& t) {
   const float w = t.half.y, d = t.half.x, h = 2.0f * t.half.z, z = t.bottom();
   const auto ring = [&](float share, float width, float depth, float shift) {
@@ -90,7 +90,7 @@ glm::vec3 helmet_radii(const PartExtent& head) {
   return {head.half.x + 0.0042f, head.half.y + 0.0042f, head.half.z + 0.0010f};
 }
 
-// Light on the helmet, which is of the team's colour.
+// A light crest on the helmet, which has the team's colour.
 void add_crest(MeshBuilder& b, const glm::vec3& at, const glm::vec3& r, int crest) {
   const glm::vec2 along =
       crest == 0 ? glm::vec2(0.72f * r.x, 0.22f * r.y) : glm::vec2(0.22f * r.x, 0.85f * r.y);
@@ -129,11 +129,12 @@ void add_headgear(MeshBuilder& b, const glm::vec3& at, const glm::vec3& r, const
                8);
       }
       break;
-    case foosball::Headgear::hood:  // falls down the back; the helmet's top is seen
+    case foosball::Headgear::hood:  // hangs down the back; the helmet's top stays visible
       b.ellipsoid({at.x - 0.35f * r.x, at.y, at.z - 0.20f * r.z},
                   {0.95f * r.x, 1.08f * wide, 0.86f * r.z}, 14, 10);
       break;
-    case foosball::Headgear::bubble:  // a ring around the glass, and a pompon for who looks down
+    case foosball::Headgear::bubble:  // a ring around the glass, and a pompon that is visible from
+                                      // above
       b.torus({at.x, at.y, at.z - 0.55f * r.z}, 1.15f * r.x, 0.0020f, 14, 6);
       b.ellipsoid({at.x - 0.50f * r.x, at.y, at.z + 0.98f * r.z}, glm::vec3(0.0044f), 10, 8);
       break;
@@ -187,8 +188,8 @@ void add_head(MeshBuilder& b, const PartExtent& head, const PartExtent& torso,
   b.torus({torso.centre.x, torso.centre.y, torso.top() + 0.0005f}, 0.0078f, 0.0017f, 16, 6);
 }
 
-// Hoops of white around head, chest and thighs, wide enough for a man of 50 px: a pattern that
-// needs no colour.
+// White hoops around head, chest and thighs, wide enough for a man of 50 px: a pattern that needs
+// no colour.
 void add_stripes(MeshBuilder& b, const PartExtent& head, const PartExtent& torso,
                  const PartExtent& leg) {
   b.paint({glm::vec3(0.92f), 0.0f, 0.5f, 0.0f, 0.0f});
@@ -205,7 +206,7 @@ void add_stripes(MeshBuilder& b, const PartExtent& head, const PartExtent& torso
   }
   hoop({leg.centre.x, leg.centre.y, leg.centre.z + 0.1f * leg.half.z},
        {1.02f * leg.half.x, 1.02f * leg.half.y}, kWide);
-  // Above the eyes; the helmet's top stays of the team's colour.
+  // Above the eyes; the helmet's top keeps the team's colour.
   const glm::vec3 r = helmet_radii(head);
   const auto ring = [&](float up, float out) {
     return LoftRing{
@@ -276,7 +277,7 @@ MeshData figure_mesh(std::span<const foosball::ManBox> boxes, float rod_radius,
   if (look.stripes) add_stripes(b, head, torso, leg);
   add_legs(b, leg, torso, foot);
   add_foot(b, foot);
-  // The clamp on the rod, as wide as the man, so that no box of the physics is left unseen.
+  // The clamp on the rod, as wide as the man, so that every collision box is visible.
   b.paint(kSteel);
   b.transform(axis_along_y());
   const float r = rod_radius + 0.0022f, w = torso.half.y;

@@ -12,9 +12,9 @@
 namespace client {
 namespace {
 
-constexpr float kGlyphSize = 40.0f;  // [px] an em in the atlas: sharp up to about four times that
-constexpr int kPadding = 6;          // [px] of distance around a glyph
-constexpr int kOversize = 3;         // glyphs are drawn larger by this before distances are taken
+constexpr float kGlyphSize = 40.0f;  // [px] per em in the atlas: sharp up to about four times that
+constexpr int kPadding = 6;          // [px] of distance field around a glyph
+constexpr int kOversize = 3;  // scale at which glyphs are rasterised before the distance transform
 
 constexpr std::array<const char*, 2> kFiles{"DejaVuSans.ttf", "DejaVuSans-Bold.ttf"};
 
@@ -23,7 +23,7 @@ std::vector<unsigned char> read_all(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-// What the game's own sentences and people's names need: Latin-1 and a few signs.
+// The characters of the game's sentences and of people's names: Latin-1 and a few symbols.
 std::vector<std::uint32_t> wanted_characters() {
   std::vector<std::uint32_t> codes;
   for (std::uint32_t c = 0x20; c < 0x7F; ++c) codes.push_back(c);

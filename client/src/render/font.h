@@ -1,4 +1,4 @@
-// Two faces of one typeface as a distance field, and the places of a line's glyphs. No OpenGL here.
+// Two faces of one typeface as a distance field, and the layout of a line's glyphs. No OpenGL here.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ enum class Align : std::uint8_t { left, centre, right };
 
 struct Glyph {
   glm::vec2 uv_low{0.0f}, uv_high{0.0f};  // in the atlas [px]
-  glm::vec2 offset{0.0f}, size{0.0f};     // of the quad from the pen on the base line, y down [em]
+  glm::vec2 offset{0.0f}, size{0.0f};     // of the quad from the pen on the baseline, y down [em]
   float advance = 0.0f;                   // [em]
 };
 
@@ -30,32 +30,32 @@ struct PlacedGlyph {
 
 struct TextStyle {
   Face face = Face::regular;
-  float size = 16.0f;    // [px] an em
+  float size = 16.0f;    // [px] per em
   float spacing = 0.0f;  // added between glyphs [em]
   Align align = Align::left;
 };
 
 class Font {
  public:
-  // Looks for DejaVu Sans where Debian, other systems and the page keep it; directory, if not
-  // empty, is looked into first. The error says which package to install. catalogue: a
-  // translation's file; its Hangul, and that of the names, is taken from Nanum Gothic, and shows as
-  // '?' where that is not installed.
+  // Searches for DejaVu Sans in `directory`, if not empty, then in the directories of Debian, of
+  // other systems and of the page. The error says which package to install. catalogue: file of a
+  // translation. Its Hangul and that of the names come from Nanum Gothic, and show as '?' if that
+  // is not installed.
   static tl::expected<Font, std::string> load(const std::string& directory = {},
                                               const std::string& catalogue = {},
                                               const std::string& names = {});
-  // The same, in these places only.
+  // The same, in these directories only.
   static tl::expected<Font, std::string> load_from(const std::vector<std::string>& directories);
 
   float width(std::string_view utf8, const TextStyle& style) const;
-  // A line with its base line at `at`. Bytes that are not UTF-8, and characters that the face
-  // lacks, show as '?'.
+  // A line with its baseline at `at`. Bytes that are not UTF-8, and characters that the face lacks,
+  // show as '?'.
   std::vector<PlacedGlyph> place(std::string_view utf8, const TextStyle& style,
                                  const glm::vec2& at) const;
 
   const std::vector<std::uint8_t>& atlas() const { return atlas_; }
   const glm::ivec2& atlas_size() const { return atlas_size_; }
-  // Share of the distance field's range that one screen pixel covers at that text size.
+  // Fraction of the distance field's range that one screen pixel covers at that text size.
   float softness(float size) const;
 
  private:
@@ -73,11 +73,11 @@ class Font {
   int row_height_ = 0;
 };
 
-// The Hangul of a text, each syllable once, in order.
+// The Hangul syllables of a text, each once, sorted.
 std::vector<std::uint32_t> hangul_of(std::string_view utf8);
 
-// The next character of UTF-8 text, which must not be empty; takes it off the front. 0xFFFD for a
-// byte that begins none.
+// Removes and returns the first character of UTF-8 text. Returns 0xFFFD for an invalid byte.
+// Precondition: the text is not empty.
 std::uint32_t next_character(std::string_view& utf8);
 
 }  // namespace client

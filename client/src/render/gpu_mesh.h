@@ -1,4 +1,4 @@
-// A mesh on the GPU, drawn once or as many instances.
+// A mesh on the GPU, drawn once or instanced.
 #pragma once
 
 #include <glm/mat4x4.hpp>
@@ -24,7 +24,7 @@ class GpuMesh {
   explicit GpuMesh(const MeshData& mesh);
 
   void set_instances(std::span<const Instance> instances);
-  void draw() const;  // all instances set; once, without instance attributes, if none ever were
+  void draw() const;  // all instances; if never set, once without instance attributes
 
  private:
   draw::GlVertexArray array_;

@@ -17,16 +17,16 @@
 namespace client {
 namespace {
 
-// In place of a team's character, so that the field stays as free as without it.
+// In the place of a team's character, so that the board covers no more of the field.
 void draw_possession(const HudPen& pen, const PossessionClock& clock, const glm::vec2& at) {
   pen.text(std::to_string(clock.seconds) + " s", {Face::bold, 23.0f, 0.0f, Align::centre}, at,
            clock.hurries ? kWarning : kInk, 0.55f, 108.0f);
 }
 
-// From the lower edge up, where the board stands there.
+// Height of the board at the lower edge.
 constexpr float kBoardRoom = 74.0f;
 
-// Half of the board's width, and how far it reaches from its edge of the picture.
+// Half width of the board, and its height from its edge of the picture.
 glm::vec2 board_size(const HudPen& whole) {
   return glm::vec2(204.0f, 76.0f) * (whole.fitting(204.0f, 90.0f).scale / whole.scale);
 }
@@ -40,7 +40,7 @@ void draw_score(const HudPen& whole, const HudState& hud, bool at_the_bottom) {
   const auto possession = possession_clock(state);
   pen.panel({-half, y}, {half, y + height}, 14.0f, kPanel);
   for (int team = 0; team < 2; ++team) {
-    // The left of the board is the left of the picture: a viewer of team 1 sees the table turned.
+    // Left on the board is left in the picture: a viewer of team 1 sees the table rotated.
     const float side = (team == 0) == pen.left_is_team_0 ? -1.0f : 1.0f;
     const auto t = static_cast<std::size_t>(team);
     const std::string score = std::to_string(state.score[t]);
@@ -49,7 +49,7 @@ void draw_score(const HudPen& whole, const HudState& hud, bool at_the_bottom) {
     const bool counted = possession && possession->team == team;
     const TextStyle small{Face::regular, std::max(11.5f, kLeastRead / pen.scale), 0.01f,
                           Align::centre};
-    const bool crew = small.size <= 13.0f;  // larger ones have no room
+    const bool crew = small.size <= 13.0f;  // a larger font leaves no space
     const float name_at = counted ? 23.0f : crew ? 31.0f : 37.0f;
     pen.text(team_with_mark(team), {Face::bold, counted ? 15.0f : 18.0f, 0.06f, Align::centre},
              {side * 137.0f, y + name_at}, kTeamInk[t], 0.55f, 108.0f);
@@ -60,7 +60,7 @@ void draw_score(const HudPen& whole, const HudState& hud, bool at_the_bottom) {
     const std::string& name = foosball::nearest(*hud.characters, state.character[t]).name;
     if (crew) pen.text(tr(name.c_str()), small, {side * 137.0f, y + 49.0f}, kFaint, 0.55f, 108.0f);
   }
-  // At the end of a match of one set there is nothing to count.
+  // At the end of a match of one set there are no sets to count.
   const int least_sets = state.screen == number(wire::Screen::end) ? 2 : 1;
   if (state.sets[0] + state.sets[1] >= least_sets) {
     const std::size_t left = pen.left_is_team_0 ? 0 : 1;
@@ -70,14 +70,14 @@ void draw_score(const HudPen& whole, const HudState& hud, bool at_the_bottom) {
              70.0f);
   }
   char clock[32];
-  // Of a timed set what is left, else what was played.
+  // For a timed set the time left, otherwise the time played.
   const float shown = state.timed ? state.seconds_left : state.play_seconds;
   const int seconds = std::max(0, static_cast<int>(std::min(shown, 35999.0f)));
   std::snprintf(clock, sizeof clock, "%d:%02d", seconds / 60, seconds % 60);
   pen.text(clock, {Face::regular, 14.0f, 0.04f, Align::centre}, {0.0f, y + 38.0f}, kInk);
 }
 
-constexpr float kSmallWindow = 0.75f;  // pixels a unit: below, news of the match are written larger
+constexpr float kSmallWindow = 0.75f;  // pixels per unit: below, match messages are larger
 
 // Beside the board.
 void draw_rules_line(const HudPen& whole, const HudState& hud, bool at_the_bottom) {
@@ -99,14 +99,14 @@ bool shows_score(const HudState& hud) {
                                   hud.state->screen == number(wire::Screen::end));
 }
 
-// What the board and the rules' line take of the lower edge, where they stand there.
+// Height of the board and the rules line at the lower edge, if they are there.
 float lower_room(const HudState& hud) {
   if (!shows_score(hud) || hud.view != View::above) return 0.0f;
   const bool play = hud.state->screen == number(wire::Screen::play);
   return kBoardRoom + (play && !rules_line(hud).empty() ? 30.0f : 0.0f);
 }
 
-// Where a held rod's handle is on the screen; a handle outside the picture is marked at its edge.
+// Marks the handle of a rod that nobody drives; a handle outside the picture is marked at its edge.
 void draw_held_rods(const HudPen& whole, const HudState& hud, const glm::ivec2& screen) {
   const HudPen pen = whole.readable(0.85f, 200.0f);
   const TextStyle style{Face::bold, 13.0f, 0.06f, Align::centre};
@@ -128,7 +128,7 @@ void draw_held_rods(const HudPen& whole, const HudState& hud, const glm::ivec2& 
   }
 }
 
-// Beside the board, where there is one below, else below what else is told in the corner.
+// Beside the board if it is at the bottom, otherwise below the other lines in the corner.
 void draw_mode(const HudPen& whole, const HudState& hud) {
   const auto lines = mode_lines(*hud.state, whole.left_is_team_0 ? 0 : 1);
   if (lines[0].empty()) return;
@@ -137,7 +137,7 @@ void draw_mode(const HudPen& whole, const HudState& hud) {
   const TextStyle bold{Face::bold, 15.0f, 0.0f, Align::left};
   const TextStyle regular{Face::regular, 14.0f, 0.0f, Align::left};
   const float beside = pen.half_width - 16.0f - 212.0f;
-  const bool narrow = beside < 100.0f;  // above the board and the line of the rules
+  const bool narrow = beside < 100.0f;  // above the board and the rules line
   const float x = -pen.half_width + 16.0f;
   const float y = !above ? 70.0f : pen.bottom - (narrow ? 134.0f : 36.0f);
   const float room = above && !narrow ? beside : pen.half_width;
@@ -148,8 +148,8 @@ void draw_mode(const HudPen& whole, const HudState& hud) {
   pen.text(lines[1], regular, {x, y + 19.0f}, kFaint, 0.55f, room);
 }
 
-// What the keys do: all of it on the logo and when asked for, a line where a choice is to be made.
-// How much room it takes at the bottom.
+// The keys and their actions: all of them on the logo screen and on request, one line during a
+// selection. Returns the height at the bottom.
 float draw_help(const HudPen& pen, const HudState& hud) {
   if (hud.recorded) return 0.0f;
   const auto screen =
@@ -164,7 +164,8 @@ float draw_help(const HudPen& pen, const HudState& hud) {
   return 0.0f;
 }
 
-// On the logo who plays best, below its title; where there is no room beside the keys, by turns.
+// On the logo screen, the ranking below its title; if there is no space beside the keys, both
+// alternate.
 float draw_logo_panels(const HudPen& pen, const HudState& hud) {
   constexpr float kBelowTitle = 262.0f, kTurn = 7.0f;  // units, [s]
   const bool logo = hud.state != nullptr && hud.state->screen == number(wire::Screen::logo);
@@ -190,7 +191,7 @@ float draw_logo_panels(const HudPen& pen, const HudState& hud) {
 void draw_notices(const HudPen& pen, const HudState& hud, float room_below) {
   constexpr float kHighest = 22.0f;  // its panel is then at the upper edge
   float y = std::max(pen.bottom - 22.0f - room_below, kHighest);
-  // From above they lie over the field: the newest alone.
+  // In the view from above they cover the field: only the newest is shown.
   const std::size_t most = hud.view == View::above ? 1 : 3;
   const std::size_t shown = std::min(hud.notices.size(), most);
   for (std::size_t i = 0; i < shown && y >= kHighest; ++i) {
@@ -217,7 +218,7 @@ void draw_connection(const HudPen& whole, const HudState& hud) {
   pen.text(detail, small, {0.0f, y + 30.0f}, kInk);
 }
 
-// A short line in a corner, or by the board that stands between the corners.
+// A short line in a corner, or by the board that is between the corners.
 struct SideLine {
   std::string text;
   Colour ink;
@@ -234,7 +235,7 @@ std::vector<SideLine> side_lines(const HudState& hud) {
   }
   if (hud.starving && hud.connection_message.empty())
     lines.push_back({tr("no news from the physics server"), kWarning, Align::right, 1});
-  // Who has not joined yet, or is refused, is no watcher.
+  // A client that has not joined yet, or is rejected, is no watcher.
   if (hud.viewer_team < 0 && hud.connection_message.empty() && !hud.recorded)
     lines.push_back({tr("watching"), kFaint, Align::left, 0});
   if (hud.automatic_rod) lines.push_back({tr("automatic rod (Tab)"), kFaint, Align::left, 0});
@@ -254,8 +255,8 @@ void draw_in_corner(const HudPen& pen, const SideLine& line, float first_row) {
   pen.text(line.text, kSideStyle, {left, y}, line.ink);
 }
 
-// Lines that are too long for the corners, one below the other from y on, or up to it. How high
-// they stand.
+// Stacks lines that are too long for the corners, downwards from y or upwards to y. Returns their
+// height.
 float draw_side_stack(const HudPen& whole, std::span<const SideLine> lines, float y, bool up_to) {
   if (lines.empty()) return 0.0f;
   float half = 0.0f;
@@ -274,8 +275,8 @@ float draw_side_stack(const HudPen& whole, std::span<const SideLine> lines, floa
   return height * units;
 }
 
-// From above, the upper edge is the middle of the table: there they stand by the board, or above
-// `room_below`. How high from the lower edge all reaches then.
+// In the view from above, the upper edge is the centre of the table: the lines go beside the board,
+// or above `room_below`. Returns the total height from the lower edge.
 float draw_side_lines(const HudPen& pen, const HudState& hud, float room_below) {
   const bool board = shows_score(hud), by_the_board = lower_room(hud) > 0.0f;
   const bool choosing =
@@ -292,14 +293,14 @@ float draw_side_lines(const HudPen& pen, const HudState& hud, float room_below) 
   }
   if (by_the_board)
     return room_below + draw_side_stack(pen, stacked, pen.bottom - room_below, true);
-  // The bands of a goal and of the end leave no room for them, and are soon over.
+  // The bands of a goal and of the end leave no space for them, and are short.
   const bool play = board && hud.state->screen == number(wire::Screen::play);
   const float said = play && !rules_line(hud).empty() ? 38.0f : choosing ? 2.0f : 6.0f;
   if (!board || play) draw_side_stack(pen, stacked, block.y + said, false);
   return room_below;
 }
 
-// room: of the height, what the questionnaire leaves.
+// room: the height that the questionnaire leaves.
 void draw_match(const HudPen& pen, const HudState& hud, const glm::ivec2& screen, float room) {
   const wire::Snapshot& state = *hud.state;
   const bool above = hud.view == View::above;
@@ -320,7 +321,7 @@ void draw_match(const HudPen& pen, const HudState& hud, const glm::ivec2& screen
                room);
       break;
   }
-  // A menu would stand half over the board; at the end the panel has the score.
+  // A menu would cover half of the board; at the end the panel shows the score.
   const bool board = static_cast<ScreenKind>(state.screen) != ScreenKind::end;
   if (board && hud.menu.rows.empty()) draw_score(pen, hud, above);
   if (static_cast<ScreenKind>(state.screen) == ScreenKind::play) {
@@ -331,9 +332,9 @@ void draw_match(const HudPen& pen, const HudState& hud, const glm::ivec2& screen
   if (state.paused) draw_paused(pen);
 }
 
-// All that one side of the table reads.
+// Everything that one side of the table reads.
 void draw_for_reader(const HudPen& pen, const HudState& hud, const glm::ivec2& screen) {
-  // From above each side reads its own.
+  // In the view from above each side reads a separate copy.
   const int reader = hud.view != View::above ? -1 : pen.left_is_team_0 ? 0 : 1;
   const float asked = survey_height(pen, hud.survey, reader);
   if (hud.state != nullptr) draw_match(pen, hud, screen, pen.bottom - asked);
@@ -366,7 +367,8 @@ void draw_hud(UiBatch& ui, const HudState& hud, const glm::ivec2& screen) {
   if (hud.view != View::above) {
     draw_for_reader(whole, hud, screen);
   } else {
-    // The lower half for this side, the upper for the other, whose left is our right.
+    // The lower half for this side, the upper half for the opposite side, which has left and right
+    // exchanged.
     const HudRegion lower{{0.0f, 0.5f * size.y}, {size.x, 0.5f * size.y}};
     draw_for_reader(HudPen(ui, lower, left, 1.35f * hud.text_scale), hud, screen);
     ui.turn(size);

@@ -1,4 +1,4 @@
-// What a controller does now: below its row of the menu.
+// The present state of a controller: below its row of the menu.
 #include <algorithm>
 #include <cstdio>
 
@@ -34,7 +34,7 @@ bool shown(const wire::DeviceRod& rod) {
   return rod.status != number(wire::RodStatus::absent);
 }
 
-// The last seconds of a count, in a range of its own.
+// The last seconds of a count, scaled to its range.
 void draw_trace(const HudPen& pen, const std::deque<DeviceView::Point>& trace,
                 double DeviceView::Point::*value, const glm::vec2& low, const glm::vec2& high,
                 const Colour& ink) {
@@ -79,7 +79,7 @@ void draw_rod(const HudPen& pen, const DeviceView& view, std::size_t rod, float 
   draw_trace(pen, view.traces[rod], &DeviceView::Point::spin, low + inset, high - inset, kSpinInk);
 }
 
-// What it sends, and what went wrong on the way since the server's start.
+// Rates, and errors since the server's start.
 std::array<std::string, 2> totals(const DeviceView& view) {
   const wire::DeviceReport& now = view.now;
   std::string rates = line(N_("%1 frames a second"), fixed(view.frames_per_second, 0));

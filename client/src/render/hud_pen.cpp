@@ -5,8 +5,8 @@
 
 namespace client {
 
-// As tall as 720 units, at least 720 wide, so that narrow windows write smaller; never below what
-// can be read.
+// 720 units tall and at least 900 wide, so that narrow windows have smaller text, with a minimum
+// scale for legibility.
 HudPen::HudPen(UiBatch& ui, const HudRegion& region, bool team_0_on_the_left, float text_scale)
     : left_is_team_0(team_0_on_the_left), ui_(ui), region_(region) {
   rescale(text_scale * std::max(0.30f, std::min(region.size.y / 720.0f, region.size.x / 900.0f)));

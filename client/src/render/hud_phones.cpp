@@ -1,4 +1,4 @@
-// The QR code by which phones join.
+// The QR code with which phones join.
 #include <cmath>
 
 #include "render/hud.h"
@@ -10,11 +10,11 @@ namespace client {
 void draw_phone_code(const HudPen& pen, const HudState& hud, const glm::ivec2& screen) {
   constexpr float kSide = 176.0f, kFromRight = 22.0f, kTop = 250.0f;  // units: below the title
   constexpr float kMenuHalf = 340.0f;
-  constexpr int kQuiet = 4;  // light modules around, as the standard wants them
+  constexpr int kQuiet = 4;  // width of the quiet zone in modules, as the standard requires
   if (hud.phones == nullptr || hud.phones->size == 0) return;
   const QrCode& code = *hud.phones;
   const int modules = code.size + 2 * kQuiet;
-  // Whole pixels: a camera sees edges, not blends.
+  // Integer pixels: a camera needs sharp edges.
   const float module = std::floor(kSide * pen.scale / static_cast<float>(modules));
   const bool beside_menu = hud.menu.rows.empty() || pen.half_width - kSide - kFromRight > kMenuHalf;
   if (module < 2.0f || !beside_menu) return;

@@ -15,7 +15,7 @@ namespace {
 
 const Colour kFace{0.10f, 0.14f, 0.20f, 0.95f}, kChosen{0.16f, 0.26f, 0.38f, 0.95f};
 
-// Writes at pixels of the window, in a size of its own.
+// Draws text at pixels of the window, with a separate scale.
 struct Pen {
   UiBatch& ui;
   float scale;
@@ -26,7 +26,7 @@ struct Pen {
   float width(const std::string& text, float size, Face face = Face::regular) const {
     return ui.font().width(text, style(size, Align::left, face));
   }
-  // Smaller where the line is wider than room [px].
+  // Scales the line down if it is wider than room [px].
   void text(const std::string& text, float size, Align align, const glm::vec2& at,
             const Colour& colour, float room, Face face = Face::regular) const {
     TextStyle written = style(size, align, face);
@@ -34,13 +34,13 @@ struct Pen {
     if (wide > room) written.size *= std::max(room, 1.0f) / wide;
     ui.text(text, written, at, colour);
   }
-  // A name: smaller only as far as it can be read, then cut.
+  // A name: scaled down to the smallest legible size, then cut.
   void name(std::string text, float size, Align align, const glm::vec2& at, const Colour& colour,
             float room, Face face = Face::regular) const {
     constexpr float kLeastName = 11.0f;  // [px] of a letter's size
     const float wide = width(text, size, face);
     if (wide > room) size = std::min(size, std::max(size * room / wide, kLeastName / scale));
-    if (width(text, size, face) > 1.01f * room) {  // not for a rounding
+    if (width(text, size, face) > 1.01f * room) {  // tolerance for rounding
       const auto shortened = [&] { return text + "\u2026"; };
       while (!text.empty() && width(shortened(), size, face) > room) {
         while (text.size() > 1 && (text.back() & 0xC0) == 0x80) text.pop_back();  // UTF-8
@@ -88,7 +88,7 @@ std::string speed_text(double speed) {
   return text;
 }
 
-// Words into lines that fit; a word that is too long, as a path is, is cut into several.
+// Breaks text into lines that fit; a word that is too long, such as a path, is split.
 std::vector<std::string> wrapped(const Pen& pen, const std::string& text, float size, float room) {
   std::vector<std::string> lines;
   std::string line;
@@ -114,7 +114,7 @@ std::vector<std::string> wrapped(const Pen& pen, const std::string& text, float 
   return lines;
 }
 
-// Lines whose last stands at `bottom`.
+// Lines of which the last is at `bottom`.
 void draw_message(const Pen& pen, const std::string& message, bool warning, float bottom,
                   const glm::ivec2& screen) {
   if (message.empty()) return;
@@ -161,7 +161,7 @@ constexpr std::array<KeyLine, 6> kListKeys{
      {N_("Gamepad"), N_("cross chooses, A watches, B leaves, X shares, Y keeps")},
      {"Esc", N_("leave")}}};
 
-// In the middle above `bottom`, as large as there is room.
+// Centred above `bottom`, as large as fits.
 void draw_keys(const Pen& usual, std::span<const KeyLine> keys, float bottom,
                const glm::ivec2& screen) {
   float left = 0.0f, right = 0.0f;
@@ -354,7 +354,7 @@ std::string player_text(const ReplayList::Row& row, std::size_t team) {
   return text;
 }
 
-// Where what is of a row, in shares of its width.
+// Positions of a row's fields, as fractions of its width.
 struct RowPlaces {
   float when, kept, middle, beside_score, side, seconds, state;
 };
@@ -404,7 +404,7 @@ void draw_rows(const Pen& pen, const ReplayList& list, const ReplayListLayout& l
              i == list.chosen, layout.two_lines);
   }
   if (all <= layout.shown) return;
-  // How far down the list this is.
+  // The scroll bar.
   const float high = layout.rows.high.y - layout.rows.low.y, count = static_cast<float>(all);
   const float x = layout.rows.high.x + 2.0f * pen.scale;
   const auto at = [&](int row) {

@@ -18,7 +18,7 @@ namespace client {
 
 namespace {
 
-const Colour kVeil{0.01f, 0.015f, 0.03f, 0.42f};  // lets a screen's words stand out from the table
+const Colour kVeil{0.01f, 0.015f, 0.03f, 0.42f};  // darkens the table behind a screen's text
 
 struct KeyHelp {
   const char* keys;
@@ -69,7 +69,7 @@ float key_line_height(const HudPen& whole, std::span<const KeyHelp> line) {
   return kKeyLineHeight * whole.fitting(key_line_half(whole, line), 60.0f).scale / whole.scale;
 }
 
-// One line at the bottom of the screen, above what is there; how high it stands.
+// One line at the bottom of the screen, above `below`; returns its height.
 float draw_key_line(const HudPen& whole, std::span<const KeyHelp> line, float below = 0.0f) {
   const float half = key_line_half(whole, line);
   const HudPen pen = whole.fitting(half, 60.0f);
@@ -91,7 +91,7 @@ std::string capitalised(std::string text) {
   return text;
 }
 
-// How a character's figures compare with the others': 0 least .. 1 most.
+// A character's values relative to the other characters: 0 lowest .. 1 highest.
 struct Traits {
   float attack, guard, agility;
 };
@@ -107,7 +107,7 @@ Traits traits_of(const foosball::Characters& characters, const foosball::Charact
     return span > 1e-9 * most ? static_cast<float>((value(one.body) - least) / span) : 0.5f;
   };
   using Body = foosball::CharacterBody;
-  static constexpr foosball::Tuning kHand;  // beyond it no limit of a character counts
+  static constexpr foosball::Tuning kHand;  // beyond it no limit of a character matters
   constexpr double kRod = 1.5;              // with the hand [kg]
   return {
       among([](const Body& b) {
@@ -127,12 +127,12 @@ void draw_trait(const HudPen& pen, const char* name, float share, const glm::vec
   pen.panel(low, low + glm::vec2(width * (0.25f + 0.75f * share), high), 0.5f * high, colour);
 }
 
-// Of a row of that height, whose lines do not touch one another.
+// For a row of that height, such that its lines do not touch.
 float trait_text_size(float height) {
   return std::min(14.0f, 0.175f * height);
 }
 
-// The portrait, the name, and what the character is good at, where that can be read.
+// The portrait, the name, and the strengths if they are legible.
 void draw_character(const HudPen& pen, const foosball::Characters& characters, int character,
                     int team, const glm::vec2& low, const glm::vec2& size, bool chosen) {
   const foosball::Character& shown = foosball::nearest(characters, character);
@@ -166,7 +166,7 @@ void draw_character(const HudPen& pen, const foosball::Characters& characters, i
   trait(tr("agility"), traits.agility, 0.91f);
 }
 
-// The chosen one, large enough to see whose face it is: beside the list, where there is room.
+// The chosen one, large enough to recognise its face: beside the list, if there is space.
 void draw_chosen(const HudPen& pen, int character, int team, const glm::vec2& low, float width) {
   const glm::vec2 size(width, 1.25f * width);
   pen.panel(low, low + size, 14.0f, {0.03f, 0.045f, 0.07f, 0.80f});
@@ -178,12 +178,12 @@ void draw_chosen(const HudPen& pen, int character, int team, const glm::vec2& lo
 
 namespace {
 
-// All keys, as they fit: in so many columns, with how much room they take.
+// Layout of all keys: number of columns, and size.
 struct KeysLayout {
   HudPen pen;
   std::size_t columns, rows;
   float half, height;
-  bool readable;  // else a line says less
+  bool readable;  // else one line says less
   float taken() const { return height + 18.0f; }
 };
 
@@ -213,11 +213,11 @@ KeysLayout keys_in(std::size_t columns, const HudPen& whole, float room) {
   const HudPen pen =
       large.fitting(half + 4.0f, (fits < 0.999f ? height + 18.0f : height + 40.0f) / fits);
   const HudPen alone = whole.fitting(half + 4.0f, height + 40.0f);
-  constexpr float kSmallest = 0.85f;  // of its size without such a bound; below, it is hard to read
+  constexpr float kSmallest = 0.85f;  // of its unbounded size; smaller is hard to read
   return {pen, columns, rows, half, height, pen.scale >= kSmallest * alone.scale};
 }
 
-// In two columns where there is room, else in one, as where one can be clearly larger.
+// In two columns if there is space, else in one; also in one if that is clearly larger.
 KeysLayout keys_layout(const HudPen& whole, float room) {
   const KeysLayout one = keys_in(1, whole, room);
   if (whole.half_width <= key_column(whole).width() + 0.5f * kBetweenColumns + 26.0f) return one;
@@ -288,7 +288,7 @@ struct RowHeights {
   float chosen, other;
 };
 
-// The chosen row is the higher one where not all have the room to be read in full.
+// The chosen row is taller if the rows are too low to read all text.
 RowHeights row_heights(float room, int rows, float scale) {
   const float even = std::min(124.0f, room / static_cast<float>(rows));
   const float least = kLeastRead / (0.175f * scale) + kBetweenRows;
@@ -297,7 +297,7 @@ RowHeights row_heights(float room, int rows, float scale) {
   return {chosen, (room - chosen) / static_cast<float>(rows - 1)};
 }
 
-// In two lines at most, below the list.
+// In at most two lines, below the list.
 void draw_specialty(const HudPen& pen, const foosball::Character& one, float middle, float y,
                     float room) {
   const TextStyle style{Face::regular, 13.5f, 0.0f, Align::centre};
@@ -319,14 +319,14 @@ glm::vec2 selection_title_size(const HudPen& whole) {
   return glm::vec2(208.0f, 98.0f) * (selection_pen(whole).scale / whole.scale);
 }
 
-// Each team's characters on its side, as many as fit below one another.
+// Each team's characters on the team's side, as many as fit vertically.
 void draw_selection(const HudPen& whole, const wire::Snapshot& state,
                     const foosball::Characters& characters, int viewer_team) {
   constexpr int kAtOnce = 6;
   const int count = static_cast<int>(characters.size()), shown = std::min(count, kAtOnce);
   const HudPen pen = selection_pen(whole);
   const auto mode = mode_lines(state, pen.left_is_team_0 ? 0 : 1);
-  const float up = mode[0].empty() ? 0.0f : 10.0f;  // room for it
+  const float up = mode[0].empty() ? 0.0f : 10.0f;  // space for it
   pen.panel({-200.0f, 16.0f - up}, {200.0f, 88.0f + up}, 14.0f, kPanel);
   pen.text(tr("CHOOSE YOUR CREW"), {Face::bold, 28.0f, 0.08f, Align::centre}, {0.0f, 50.0f - up},
            kInk, 0.8f, 370.0f);
@@ -411,12 +411,12 @@ std::string fixed(float number, const char* unit) {
   return text;
 }
 
-// 0: nobody shot, or it is not known.
+// 0: no shot, or unknown.
 std::string shot_text(float speed) {
   return speed > 0.0f ? fixed(speed, "m/s") : "-";
 }
 
-// Two by two, of the teams.
+// The two teams' values.
 template <class Team, class Value>
 std::array<std::string, 2> both(const std::array<Team, 2>& teams, Value value) {
   return {value(teams[0]), value(teams[1])};
@@ -435,7 +435,7 @@ std::vector<EndRow> end_rows(const std::array<TeamStatistics, 2>& s) {
           {tr("own goals"), both(s, [](const auto& t) { return std::to_string(t.own_goals); })}};
 }
 
-// The same by the referee's own count, and what that does not see from here.
+// Replaces values by the referee's count, and adds values that are not observed here.
 void take_report(std::vector<EndRow>& rows, const wire::Report& report) {
   const auto& r = report.teams;
   const float played = std::max(r[0].possession + r[1].possession, 1e-3f);
@@ -472,7 +472,7 @@ void draw_fame(const HudPen& whole, std::span<const wire::Fame> fame, float y) {
             {kPanel.r, kPanel.g, kPanel.b, 0.88f});
   pen.text(tr("HALL OF FAME"), {Face::bold, 17.0f, 0.10f, Align::centre}, {0.0f, top + 27.0f},
            {0.62f, 0.84f, 1.0f, 1.0f}, 0.55f, 2.0f * half - 30.0f);
-  // Right edges of the columns, and their room.
+  // Right edges of the columns, and their width.
   constexpr float kRating = 24.0f, kWon = 104.0f, kSaves = 184.0f, kFastest = 262.0f, kRoom = 72.0f;
   float line = top + 54.0f;
   const auto heading = [&](const char* name, float at, float room) {
@@ -497,7 +497,7 @@ void draw_fame(const HudPen& whole, std::span<const wire::Fame> fame, float y) {
     };
     column(won, kWon);
     column(shot_text(fame[i].fastest_shot), kFastest);
-    // Of the shots on target that the player's teams faced.
+    // As a fraction of the shots on target that the player's teams faced.
     const float faced = static_cast<float>(fame[i].shots_faced);
     const float saved = std::min(1.0f, static_cast<float>(fame[i].saves) / std::max(faced, 1.0f));
     column(faced > 0.0f ? std::to_string(std::lround(100.0f * saved)) + " %" : "-", kSaves);

@@ -1,4 +1,4 @@
-// The menu, and the marks of the rods in a hand.
+// The menu, and the marks of the active rods.
 #include <algorithm>
 
 #include "foosball/table.h"
@@ -15,7 +15,7 @@ namespace {
 constexpr float kHalf = 330.0f, kLine = 27.0f;  // of the menu, in units
 constexpr TextStyle kNoteStyle{Face::regular, 13.5f, 0.0f, Align::left};
 
-// A bar from the least to the most value, with a tick at the default.
+// A bar from the minimum to the maximum value, with a tick at the default.
 void draw_range(const HudPen& pen, const MenuRow& row, float y, const Colour& ink) {
   constexpr float kLeft = 20.0f, kWide = 120.0f;
   pen.panel({kLeft, y - 7.0f}, {kLeft + kWide, y - 3.0f}, 2.0f, {0.30f, 0.36f, 0.44f, 0.9f});
@@ -69,7 +69,7 @@ void draw_menu(const HudPen& whole, const MenuPage& page) {
     for (std::string& line : pen.wrapped(page.problem, kNoteStyle, 2.0f * kHalf - 50.0f))
       notes.push_back(std::move(line));
   }
-  // Room for three lines is kept, so that the rows stand while one goes through them.
+  // Reserves three lines, so that the rows do not move while one goes through them.
   const std::size_t kept =
       page.note.empty() && page.problem.empty() && page.detail.empty() &&
               std::ranges::none_of(page.rows, [](const MenuRow& row) { return row.share >= 0.0f; })
@@ -92,7 +92,7 @@ void draw_menu(const HudPen& whole, const MenuPage& page) {
     draw_menu_row(pen, page.rows[static_cast<std::size_t>(first + i)],
                   top + 72.0f + kLine * static_cast<float>(i), first + i == page.chosen);
   }
-  // How far down the list this is.
+  // The scroll bar.
   const auto all = static_cast<float>(count);
   const float bar = kLine * static_cast<float>(drawn), at = top + 54.0f;
   pen.panel({kHalf - 7.0f, at + bar * static_cast<float>(first) / all},
@@ -110,7 +110,7 @@ void draw_menu(const HudPen& whole, const MenuPage& page) {
 
 namespace {
 
-// A sign above each man and at both ends of the rod: plain to see without colours.
+// A sign above each man and at both ends of the rod: visible without colours.
 void draw_active_rod(const HudPen& pen, const HudState& hud, int active, const glm::ivec2& screen) {
   const wire::Snapshot& state = *hud.state;
   const auto& table = foosball::table_spec(static_cast<foosball::Layout>(state.layout));
@@ -125,7 +125,7 @@ void draw_active_rod(const HudPen& pen, const HudState& hud, int active, const g
     const glm::vec2 inside = glm::clamp(glm::vec2(p), glm::vec2(edge),
                                         glm::max(glm::vec2(screen) - edge, glm::vec2(edge)));
     const glm::vec2 place = pen.from_pixels(inside);
-    // Dark around light: plain before any background and any team's colour.
+    // Dark around light: visible before any background and any team's colour.
     const float wider = 1.45f * size;
     pen.text(sign, {Face::bold, wider, 0.0f, Align::centre}, place + glm::vec2(0, 0.365f * wider),
              {0.0f, 0.0f, 0.0f, 0.9f}, 0.0f);
@@ -136,7 +136,7 @@ void draw_active_rod(const HudPen& pen, const HudState& hud, int active, const g
   for (const wire::ManState& man : state.men) {
     if (man.rod != active) continue;
     const auto& at = man.body.position;
-    // From above beside him, on the rod: his head stays free.
+    // From above beside him, on the rod: his head stays visible.
     const glm::vec3 place =
         above ? glm::vec3(at[0], at[1] + kBeside, at[2]) : glm::vec3(at[0], at[1], at[2] + 0.085f);
     mark("\u25BC", place, above ? 17.0f : 19.0f, kSignal);
@@ -159,7 +159,7 @@ void draw_active_rods(const HudPen& pen, const HudState& hud, const glm::ivec2& 
   }
 }
 
-// At the handles; where several stand close, smaller, so that none covers another.
+// At the handles; scaled down where several are close, so that none covers another.
 void draw_rod_names(const HudPen& pen, const HudState& hud, const glm::ivec2& screen) {
   const auto& table = foosball::table_spec(static_cast<foosball::Layout>(hud.state->layout));
   const TextStyle style{Face::bold, 13.0f, 0.0f, Align::centre};

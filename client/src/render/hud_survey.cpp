@@ -1,4 +1,4 @@
-// The questionnaire: a panel for each person who is asked, at the lower edge.
+// The questionnaire: one panel per person who is asked, at the lower edge.
 #include <algorithm>
 
 #include "render/hud.h"
@@ -42,7 +42,7 @@ void draw_consent(const HudPen& pen, const SurveyPanel& panel, float x, float y,
   }
 }
 
-// What is not said stands apart from the scale.
+// The choice "no answer" is set apart from the scale.
 void draw_scale(const HudPen& pen, const SurveyPanel& panel, float x, float y, const Colour& ink) {
   constexpr float kStep = 58.0f, kBox = 24.0f, kApart = 62.0f;
   const auto middle = [&](int score) {
@@ -62,7 +62,7 @@ void draw_scale(const HudPen& pen, const SurveyPanel& panel, float x, float y, c
            {middle(wire::kMaxScore) + kBox, below}, kFaint, 0.55f, 2.4f * kStep);
 }
 
-// x: its middle; y: its upper edge.
+// x: its centre; y: its upper edge.
 void draw_panel(const HudPen& pen, const SurveyPanel& panel, float x, float y) {
   const Colour& ink = kTeamInk[panel.team == 1 ? 1 : 0];
   const glm::vec2 low{x - kPanelHalf, y}, high{x + kPanelHalf, y + kPanelHeight};
@@ -104,14 +104,14 @@ struct SurveyLayout {
   float taken() const { return high + 4.0f; }
 };
 
-// Beside one another where there is room, two in a row, smaller where there is not.
+// Two in a row if there is space; scaled down if there is not.
 SurveyLayout layout_of(const HudPen& whole, std::span<const SurveyPanel> panels, int team) {
   std::vector<const SurveyPanel*> shown;
   for (const SurveyPanel& panel : panels) {
     if (team < 0 || panel.team == team) shown.push_back(&panel);
   }
   if (shown.empty()) return {whole, shown};
-  // One below another where two beside one another would be too small to read.
+  // In one column if two columns would be too small to read.
   const bool narrow = whole.half_width < 1.6f * kPanelHalf;
   const std::size_t columns = narrow ? 1 : std::min<std::size_t>(shown.size(), 2);
   const std::size_t rows = (shown.size() + columns - 1) / columns;

@@ -77,14 +77,14 @@ std::string rung_text(int rung) {
                 {std::to_string(rung + 1), std::to_string(foosball::kLadderRungs)});
 }
 
-// Whoever climbs has won the match at this rung.
+// The climber has won the match at this rung.
 bool has_climbed(const wire::Snapshot& state) {
   if (!shows(state, wire::Mode::ladder)) return false;
   const std::size_t person = state.computer[0] && !state.computer[1] ? 1 : 0;
   return state.sets[person] > state.sets[1 - person];
 }
 
-// To whom the ball is served in training.
+// The man who is served the ball in training.
 std::string feed_text(const wire::Snapshot& state) {
   const auto& table = foosball::table_spec(static_cast<foosball::Layout>(state.layout));
   const std::size_t rod = std::min<std::size_t>(state.feed_rod, foosball::kRods - 1);
@@ -107,8 +107,8 @@ std::string line_name(int layout, int rod) {
   return tr(kLines[static_cast<std::size_t>(spec.line)]);
 }
 
-// Whose rod has the ball is told, which rod is seen: the nearest one of that side. Halfway to the
-// next rod nobody's clock runs.
+// The server reports the side in possession. The rod is the nearest one of that side. Halfway to
+// the next rod no clock runs.
 std::optional<PossessionClock> possession_clock(const wire::Snapshot& state) {
   const bool runs = state.screen == number(wire::Screen::play) && state.ball_in_play &&
                     state.time_out_seconds <= 0.0f && !shows(state, wire::Mode::training);
@@ -150,7 +150,7 @@ std::string rules_line(const HudState& hud) {
   return joined(parts, "  -  ");
 }
 
-// A set that ends is told by its winner; where the ball lies in no goal, the time has ended it.
+// The end of a set names its winner; if the ball is in no goal, the time has ended it.
 CeremonyWords ceremony_words(const HudState& hud) {
   const wire::Snapshot& state = *hud.state;
   const std::size_t winner = state.last_scorer == 1 ? 1 : 0;
@@ -184,7 +184,7 @@ CeremonyWords ceremony_words(const HudState& hud) {
 
 EndWords end_words(const HudState& hud, std::size_t left) {
   const wire::Snapshot& state = *hud.state;
-  const bool drawn = state.score[0] == state.score[1];  // only where the time was over
+  const bool drawn = state.score[0] == state.score[1];  // only if the time was over
   EndWords words;
   words.title = drawn ? tr("A DRAW") : team_with_mark(state.last_scorer) + " " + tr("WINS");
   words.call = tr("push a rod to play again");
@@ -194,7 +194,7 @@ EndWords end_words(const HudState& hud, std::size_t left) {
   if (in_sets) {
     std::vector<std::string> sets;
     for (const std::array<int, 2>& set : hud.sets) sets.push_back(pair_text(set, left, ":"));
-    // Who came later has not seen all of them.
+    // A client that joined late has not observed all of them.
     const bool all = sets.size() == static_cast<std::size_t>(state.sets[0] + state.sets[1]);
     words.details.push_back(all ? std::string(tr("sets")) + "  " + joined(sets, "   ")
                                 : std::string(tr("last set")) + " " +

@@ -45,7 +45,7 @@ std::uint32_t MeshBuilder::vertex(const glm::vec3& position, const glm::vec3& no
   return static_cast<std::uint32_t>(mesh_.vertices.size() - 1);
 }
 
-// A triangle that has shrunk to a line (at a pole, where a profile meets its axis) is left out.
+// Omits a degenerate triangle (at a pole, where a profile meets its axis).
 void MeshBuilder::triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
   const auto& v = mesh_.vertices;
   const glm::vec3 normal = glm::cross(v[b].position - v[a].position, v[c].position - v[a].position);
@@ -67,12 +67,12 @@ void MeshBuilder::cap(std::span<const glm::vec3> ring, const glm::vec3& normal) 
 
 void MeshBuilder::rounded_box(const glm::vec3& centre, const glm::vec3& half, float bevel,
                               int steps) {
-  // Coarse boxes have no bevel: four corners a side, each with that side's normal.
+  // Coarse boxes have no bevel: four corners per side, each with that side's normal.
   steps = fine() ? steps : 0;
   const float b = std::min({bevel, half.x * 0.98f, half.y * 0.98f, half.z * 0.98f});
   const glm::vec3 core = half - b;
-  // Along each edge of the cube: the bevel's steps, the flat, the bevel again. The tangent spaces
-  // the steps evenly over the quarter circle.
+  // Along each edge of the cube: the bevel's steps, the flat part, the bevel again. The tangent
+  // spaces the steps uniformly over the quarter circle.
   const auto lines = [&](float h) {
     if (steps == 0) return std::vector<float>{-h, h};
     std::vector<float> t;

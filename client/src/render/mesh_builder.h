@@ -1,5 +1,5 @@
-// Builds closed solids out of rounded boxes, lofts and turned profiles. Every solid is closed by
-// itself, with outward normals; solids may overlap.
+// Builds closed solids from rounded boxes, lofts and solids of revolution. Every solid is closed
+// separately, with outward normals; solids may overlap.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ struct LoftRing {
   float exponent = 2.0f;  // 2 ellipse, 4 nearly a box
 };
 
-// Point of a turned profile, from the axis.
+// Point of a profile of revolution, from the axis.
 struct ProfilePoint {
   float radius;
   float z;
@@ -26,10 +26,10 @@ struct ProfilePoint {
 
 class MeshBuilder {
  public:
-  // detail: 1 for a close look, 0.5 where vertices are dear.
+  // detail: 1 for close views, 0.5 where vertices are expensive.
   explicit MeshBuilder(float detail = 1.0f) : detail_(detail) {}
 
-  // Trimmings that few pixels show are left out of a coarse mesh.
+  // A coarse mesh omits trimmings that cover few pixels.
   bool fine() const { return detail_ > 0.5f; }
 
   void paint(const Paint& paint) { paint_ = paint; }
@@ -39,10 +39,10 @@ class MeshBuilder {
   void ellipsoid(const glm::vec3& centre, const glm::vec3& radii, int slices = 20, int stacks = 12);
   // Rings from bottom to top, closed by flat caps. Precondition: at least two rings, z increasing.
   void loft(std::span<const LoftRing> rings, int slices = 20);
-  // A profile turned about z, from bottom to top; ends off the axis are closed by flat caps.
-  // A corner of the profile keeps its edge where sharp.
+  // A profile revolved about z, from bottom to top; ends off the axis are closed by flat caps.
+  // sharp: corners of the profile keep hard edges.
   void turned(std::span<const ProfilePoint> profile, int slices = 20, bool sharp = false);
-  // A ring of round section about z.
+  // A torus about z with circular section.
   void torus(const glm::vec3& centre, float radius, float section, int slices = 24, int sides = 8);
   void tetrahedron(std::array<glm::vec3, 4> corners);
 
@@ -62,7 +62,7 @@ class MeshBuilder {
   MeshData mesh_;
 };
 
-// Turns z (the axis of a loft or a turned solid) towards y or x.
+// Rotates z (the axis of a loft or a solid of revolution) to y or x.
 glm::mat4 axis_along_y();
 glm::mat4 axis_along_x();
 

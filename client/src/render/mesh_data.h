@@ -1,4 +1,4 @@
-// Triangles in memory, before they go to the GPU.
+// Triangles in memory, before upload to the GPU.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@ namespace client {
 // 32 bytes, as solid.vert reads it.
 struct MeshVertex {
   glm::vec3 position;        // [m]
-  glm::vec3 normal;          // unit, outwards
-  std::uint8_t albedo[4];    // square root of linear rgb; a: share of the instance's tint
+  glm::vec3 normal;          // unit, outward
+  std::uint8_t albedo[4];    // square root of linear rgb; a: fraction of the instance's tint
   std::uint8_t material[4];  // roughness, metal, emission / 4, occlusion
 };
 static_assert(sizeof(MeshVertex) == 32);
@@ -22,7 +22,7 @@ struct MeshData {
 };
 
 struct Paint {
-  glm::vec3 albedo{0.8f};  // linear
+  glm::vec3 albedo{0.8f};  // linear rgb
   float tint = 0.0f;       // 0: as given; 1: times the instance's tint
   float roughness = 0.5f;
   float metal = 0.0f;

@@ -8,7 +8,7 @@
 namespace client {
 namespace {
 
-constexpr std::size_t kMost = 900;  // more are not seen apart; drawing stays cheap in software
+constexpr std::size_t kMost = 900;  // more are indistinguishable; software drawing stays cheap
 
 const glm::vec3 kHot{1.5f, 1.25f, 0.85f};
 const glm::vec3 kWood{1.1f, 0.75f, 0.35f};
@@ -39,7 +39,8 @@ void Particles::spark(Material material, const glm::vec3& at, const glm::vec3& t
   for (int i = 0; i < count; ++i) {
     const glm::vec3 scatter{uniform(), uniform(), 0.45f + 0.55f * uniform()};
     const float speed = (0.20f + 1.7f * power) * (0.55f + 0.45f * uniform());
-    // The strongest hits have a hot core; the rest is of the team's or the material's colour.
+    // The strongest hits have a hot core; the other sparks have the team's or the material's
+    // colour.
     const bool hot = !reduced_ && power > 0.35f && i % 6 == 0;
     const float hue = 0.5f + 0.5f * uniform();
     const glm::vec3 light =
@@ -61,8 +62,8 @@ void Particles::celebrate(const glm::vec3& at, const glm::vec3& colour, float st
   }
 }
 
-// Beads of light left where the ball was during the frame, of the colour of the team that shot it;
-// nearer to white the faster.
+// Beads of light along the ball's path during the frame, in the colour of the team that shot;
+// whiter with speed.
 void Particles::streak(const glm::vec3& ball, const glm::vec3& velocity, float radius,
                        const glm::vec3& colour, float dt) {
   const float speed = glm::length(velocity);
@@ -70,7 +71,7 @@ void Particles::streak(const glm::vec3& ball, const glm::vec3& velocity, float r
   const float fade = std::clamp((speed - 1.2f) / 6.0f, 0.0f, 1.0f);
   const glm::vec3 light = (reduced_ ? 0.15f : 0.50f) * fade *
                           glm::mix(0.9f * colour, 0.5f * (colour + kHot), fade * fade);
-  // No fewer at 30 frames a second: a trail, not dots.
+  // As many at 30 frames a second, so that the trail has no gaps.
   constexpr int kMostBeads = 48;
   const int beads = std::clamp(static_cast<int>(speed * dt / (0.5f * radius)), 1, kMostBeads);
   for (int i = 0; i < beads; ++i) {

@@ -1,5 +1,5 @@
-// Sparks of hits, confetti of goals, and the streak behind a fast ball. For the eye only: nothing
-// here feeds back into play.
+// Sparks of hits, confetti of goals, and the streak behind a fast ball. Only visual: nothing here
+// affects play.
 #pragma once
 
 #include <cstdint>
@@ -16,27 +16,27 @@ struct ParticleVertex {
   glm::vec4 light_opacity;
 };
 
-// What is struck gives the sparks their look.
+// The material that was hit; it sets the look of the sparks.
 enum class Material : std::uint8_t { man, wall, field, goal };
 
 class Particles {
  public:
-  // Fewer and dimmer, without white flashes.
+  // Fewer and dimmer particles, without white flashes.
   void set_reduced(bool reduced) { reduced_ = reduced; }
-  // strength 0..1; towards: where the sparks prefer to fly, or zero; colour: of the team that
-  // struck.
+  // strength 0..1; towards: preferred direction of the sparks, or zero; colour: of the team that
+  // hit the ball.
   void spark(Material material, const glm::vec3& at, const glm::vec3& towards,
              const glm::vec3& colour, float strength);
   void celebrate(const glm::vec3& at, const glm::vec3& colour, float strength);
   // Behind a fast ball; colour: of the team that touched it last.
   void streak(const glm::vec3& ball, const glm::vec3& velocity, float radius,
               const glm::vec3& colour, float dt);
-  // What a ball whirls up that runs on the field.
+  // Dust that the ball raises as it rolls on the field.
   void dust(const glm::vec3& ball, const glm::vec3& velocity, float radius, float dt);
   void step(float dt);  // [s]
   void clear() { alive_.clear(); }
   std::size_t count() const { return alive_.size(); }
-  const std::vector<ParticleVertex>& vertices();  // of those alive
+  const std::vector<ParticleVertex>& vertices();  // of the live particles
 
  private:
   struct Particle {
@@ -45,7 +45,7 @@ class Particles {
     float drag = 0.0f;  // [1/s]
   };
   void add(const Particle& particle);
-  float uniform();  // -1..1, from a small generator of its own
+  float uniform();  // -1..1, from a private generator
 
   std::vector<Particle> alive_;
   std::vector<ParticleVertex> vertices_;

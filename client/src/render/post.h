@@ -1,5 +1,5 @@
-// From light to the screen: bloom over five halvings and the tone curve (high quality), or a plain
-// enlargement (low).
+// Post-processing: bloom over five half-size levels and the tone curve (high quality), or a plain
+// upscale (low).
 #pragma once
 
 #include <array>

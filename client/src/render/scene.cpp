@@ -19,7 +19,7 @@ namespace {
 const glm::vec3 kKeyDirection = glm::normalize(glm::vec3(-0.42f, -0.04f, 0.90f));
 const glm::vec3 kKeyColour{3.5f, 3.35f, 3.1f};
 const glm::vec3 kHeldColour{0.95f, 0.62f, 0.08f};
-// Of light with height in the mirror [1/m]: the turf is no glass, only what stands near is clear.
+// Decay of reflected light with height [1/m]: the turf is not glass, so only low objects are clear.
 constexpr float kMirrorFade = 13.0f;
 constexpr float kLightReach = 1.0f;  // [m]: the table fits into the light's box
 
@@ -36,7 +36,7 @@ glm::mat4 pose(const wire::PoseVelocity& body) {
   return m;
 }
 
-// As if seen from under the field: what a mirror in its place would show.
+// Mirrored at the field plane, for the field's reflections.
 Camera mirrored(const Camera& camera) {
   const glm::mat4 flip = glm::scale(glm::mat4(1.0f), glm::vec3(1, 1, -1));
   Camera below = camera;
@@ -78,7 +78,8 @@ void shift_scene(wire::Snapshot& state, const std::array<float, 8>& rod_shift) {
   const auto& table = foosball::table_spec(static_cast<foosball::Layout>(state.layout));
   for (wire::ManState& man : state.men)
     man.body.position[0] += rod_shift[std::min<std::size_t>(man.rod, 7)];
-  // Between two rods by both, beyond the outermost by less and less up to the goal line.
+  // Between two rods interpolates their shifts; beyond the outermost rod decays to zero at the goal
+  // line.
   const auto line = static_cast<float>(0.5 * table.length);
   float from = -line, shift_from = 0.0f;
   const float x = std::clamp(state.ball.position[0], -line, line);
@@ -192,7 +193,7 @@ void Scene::use_layout(foosball::Layout layout) {
   }
 }
 
-// A band of light on the field under each rod in a hand, as the shader has room for.
+// A band of light on the field under each active rod, as many as the shader supports.
 void Scene::set_active_lanes(const SceneView& view) const {
   constexpr std::array<const char*, 4> kLanes{"u_active_rods[0]", "u_active_rods[1]",
                                               "u_active_rods[2]", "u_active_rods[3]"};
@@ -238,7 +239,7 @@ void Scene::place_instances(const wire::Snapshot& state, const SceneView& view) 
   for (std::size_t kind = 0; kind < kinds(); ++kind) figure_meshes_[kind].set_instances(men_[kind]);
 }
 
-// All that stands on the field or around it.
+// Everything on the field or around it.
 void Scene::draw_standing() const {
   rim_mesh_.draw();
   if (rods_drawn_) {
@@ -282,15 +283,15 @@ void Scene::draw_field(const wire::Snapshot& state, const SceneView& view) const
   const auto radius = static_cast<float>(table_->ball_radius);
   field_.set("u_ball", glm::vec4(vec(state.ball.position), ball_is_seen(state) ? radius : 0.0f));
   set_active_lanes(view);
-  // Over the reflections that are there already; its alpha is their share.
+  // Blended over the reflections already drawn; alpha is their fraction.
   glEnable(GL_BLEND);
   glBlendFunc(GL_ONE, GL_SRC_ALPHA);
   field_mesh_.draw();
   glDisable(GL_BLEND);
 }
 
-// Drawn upside down before all else and then forgotten by the depth buffer: the field is laid over
-// it, and what lies outside the field is covered by the table and the sky.
+// Drawn mirrored before all else, without its depth: the field is drawn over it, and the table and
+// the sky cover what lies outside the field.
 void Scene::draw_reflections(const wire::Snapshot& state, const SceneView& view) {
   const Camera below = mirrored(view.camera);
   glFrontFace(GL_CW);
@@ -310,8 +311,9 @@ void Scene::draw_ball(const wire::Snapshot& state) const {
   ball_mesh_.draw();
 }
 
-// Men and rods that stand between the eye and the ball let it be seen: of their pixels before the
-// ball two in three are left out (solid.frag). A drawn ball is found by its place on the target.
+// Makes men and rods between the eye and the ball transparent: two of three of their pixels in
+// front of the ball are discarded (solid.frag). A drawn ball is located by its position on the
+// target.
 void Scene::see_through(const wire::Snapshot& state, const Camera& camera, const glm::ivec2& size) {
   solid_.use();
   glm::vec4 disc(0.0f);
@@ -333,7 +335,7 @@ GLuint Scene::portraits() {
   constexpr glm::ivec2 kCell{200, 250};  // [px]
   auto program = draw::Program::build(shader_source, {"lighting.glsl", "solid.glsl", "solid.vert"},
                                       {"common.glsl", "lighting.glsl", "solid.glsl", "solid.frag"},
-                                      draw::Quality::low);  // writes what the screen shows
+                                      draw::Quality::low);  // writes display colours directly
   if (!program) return 0;
   shadow_.bind();
   glClear(GL_DEPTH_BUFFER_BIT);
@@ -346,8 +348,8 @@ GLuint Scene::portraits() {
   glEnable(GL_CULL_FACE);
   draw::bind_texture(1, GL_TEXTURE_2D, shadow_.texture());
   draw::bind_texture(2, GL_TEXTURE_CUBE_MAP, sky_.cube());
-  // Head and shoulders, 53 mm of him, a little from the side: faces, headgear and build tell the
-  // characters apart at the size of a thumb.
+  // Head and shoulders, 53 mm of the man, a little from the side: faces, headgear and build
+  // distinguish the characters at the size of a thumb.
   Camera camera;
   camera.eye = {0.30f, -0.12f, 0.06f};
   camera.view = glm::lookAt(camera.eye, glm::vec3(0.0f, 0.0f, 0.029f), glm::vec3(0, 0, 1));

@@ -1,4 +1,4 @@
-// Draws the table in play as a snapshot has it: men, rods, ball, light, shadow, sky, sparks.
+// Draws a snapshot's table in play: men, rods, ball, light, shadow, sky, sparks.
 #pragma once
 
 #include <array>
@@ -21,29 +21,29 @@ namespace client {
 
 struct SceneView {
   Camera camera;
-  std::uint8_t active_rods = 0;  // lit up, by bit
+  std::uint8_t active_rods = 0;  // highlighted, by bit
   float time = 0.0f;             // [s], for twinkling and pulses
   RodsShown rods = RodsShown::as_on_the_table;
   bool reduced_flashes = false;      // nothing pulses
   bool distinct_teams = false;       // team 1 wears stripes
   std::array<float, 8> rod_shift{};  // along x, of what is drawn [m]: see shift_scene()
-  int room_below = 0;                // [px] of the window that the picture leaves free
+  int room_below = 0;                // [px] of the window below the picture that stay free
 };
 
-// The ball is drawn larger with height (paper, section 5: "a sense of height cues"), by the height
-// that the snapshot has: a hop of 30 mm by a quarter, never to more than 1 + kMostBallGrowth.
+// The ball is drawn larger with its height in the snapshot (paper, section 5: "a sense of height
+// cues"): by a quarter for a hop of 30 mm, never to more than 1 + kMostBallGrowth.
 inline constexpr float kMostBallGrowth = 0.9f;
 inline constexpr float kBallGrowthHeight = 0.090f;  // [m] at which 63% of the growth is reached
 
-// Moves rods, men and ball along x, so that each rod meets its handle outside the screen; the ball
-// goes with the rods next to it, so that what touches still touches.
+// Moves rods, men and ball along x, so that each rod lines up with its handle outside the screen.
+// The ball moves with the rods next to it, so that touching bodies still touch.
 void shift_scene(wire::Snapshot& state, const std::array<float, 8>& rod_shift);
 
-// A scored ball lies in the goal until the next serve, a ball out of play is nowhere.
+// A scored ball lies in the goal until the next serve; a ball out of play is not drawn.
 bool ball_is_seen(const wire::Snapshot& state);
 
-// Its hand is gone: a warning for those who play. A recording does not have who drives a rod, and
-// a computer's two hands let go of the others all the time.
+// Nobody drives the rod: a warning for those who play. False in a recording, which does not store
+// who drives a rod: a computer player's two hands leave its other rods all the time.
 bool rod_is_held(const wire::RodSnapshot& rod);
 
 class Scene {
@@ -56,23 +56,22 @@ class Scene {
   void draw(const wire::Snapshot& state, const SceneView& view, Particles& particles,
             const glm::ivec2& screen);
 
-  // Those that the match has, at least one; the built-in ones until this is called. The portraits
-  // are then others.
+  // Sets the match's characters, at least one; the built-in ones until this is called. Replaces the
+  // portraits.
   void set_characters(const foosball::Characters& characters);
-  // Each character in either team's colours: columns by character, rows by team, with transparency
-  // around. Drawn once; the texture lives as long as the scene, or until
-  // set_characters().
+  // Each character in both teams' colours: columns by character, rows by team, with a transparent
+  // background. Drawn once; the texture is valid until set_characters() or the end of the scene.
   GLuint portraits();
   glm::ivec2 portrait_cells() const {
     return {static_cast<int>(characters_.size()), foosball::kTeams};
   }
 
-  // How much of the ball is seen between men and rods, 0..1; draws over the target. 1 if there is
-  // no ball.
+  // Fraction of the ball that is visible between men and rods, 0..1; overwrites the target. 1 if
+  // there is no ball.
   float ball_visibility(const wire::Snapshot& state, const SceneView& view,
                         const glm::ivec2& screen);
 
-  // The radius the ball is drawn with at that height of its centre [m].
+  // The drawn radius of the ball at that height of its centre [m].
   static float drawn_ball_radius(const foosball::TableSpec& table, float height);
 
  private:
@@ -95,7 +94,8 @@ class Scene {
   void light(const draw::Program& program, const Camera& camera, float fade) const;
 
   static constexpr std::size_t kFigures = foosball::kTeams;
-  // Team 1 wears another crest, and stripes if asked for: a mesh for each team's each character.
+  // Team 1 has another crest, and stripes if requested: one mesh for each pair of team and
+  // character.
   std::size_t kinds() const { return foosball::kTeams * characters_.size(); }
 
   draw::Quality quality_;
@@ -111,7 +111,7 @@ class Scene {
   foosball::Characters characters_ = foosball::built_in_characters();
   std::vector<GpuMesh> figure_meshes_;  // by team, then character
   bool stripes_ = false, rods_drawn_ = true;
-  std::vector<std::vector<Instance>> men_;  // by the same
+  std::vector<std::vector<Instance>> men_;  // in the same order
   draw::GlVertexArray particle_array_;
   draw::GlBuffer particle_buffer_;
   GLsizei particle_count_ = 0;

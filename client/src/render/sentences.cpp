@@ -11,10 +11,10 @@
 namespace client {
 namespace {
 
-// What the client itself and recordings say, as forms with %1 .. %9 in their order, as
-// wire/sentence.h has the server's.
+// Sentences of the client and of recordings, as patterns with %1 .. %9 in order; wire/sentence.h
+// has the server's.
 constexpr std::array kOwn{
-    // why the server is not there
+    // reasons for a missing server
     N_("no snapshot for %1 ms"),
     N_("it does not answer"),
     N_("it closed the connection"),
@@ -33,7 +33,7 @@ constexpr std::array kOwn{
 
 using Words = std::vector<std::string_view>;
 
-// What stands at %1, %2 ... if the sentence is of this form. The shortest that fit.
+// The words at %1, %2 ... if the sentence matches this pattern. The shortest match.
 std::optional<Words> words_in(std::string_view sentence, std::string_view form) {
   Words words;
   std::size_t at = form.find('%');
@@ -56,7 +56,7 @@ std::optional<Words> words_in(std::string_view sentence, std::string_view form) 
   return words;
 }
 
-// "1, 2 and 4" has a word in it; other words are somebody's own.
+// Replaces the English "and" of "1, 2 and 4" by a comma; other text stays unchanged.
 std::string plain_list(std::string_view word) {
   std::string text(word);
   const std::size_t at = text.find(" and ");
@@ -65,7 +65,7 @@ std::string plain_list(std::string_view word) {
   return text;
 }
 
-// The form that says most of the sentence in its own words: a stranger's may look like another.
+// The pattern with most text of its own that matches: text of other people may match a shorter one.
 struct Known {
   const char* form = nullptr;
   Words words;
@@ -85,7 +85,7 @@ Known known(std::string_view sentence) {
   return best;
 }
 
-// A word may be a sentence of its own, or several with "; " between them. None is deeper than this.
+// A word may be a sentence, or several joined by "; ". Sentences nest no deeper than this.
 constexpr int kDeepest = 3;
 std::optional<std::string> translated(std::string_view sentence, int depth);
 
@@ -94,7 +94,7 @@ std::string translated_word(std::string_view word, int depth) {
   for (std::string_view rest = word; !rest.empty();) {
     const std::size_t end = rest.find("; ");
     const auto part = translated(rest.substr(0, end), depth + 1);
-    // One whose own text has a "; ", or no sentence.
+    // Its own text contains "; ", or it is no sentence.
     if (!part) return translated(word, depth + 1).value_or(plain_list(word));
     text += (text.empty() ? "" : "; ") + *part;
     rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 2);

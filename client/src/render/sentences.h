@@ -1,6 +1,5 @@
-// Sentences that other programs and libraries say in English (the server's notices and refusals,
-// what is wrong with a recording), in the person's language where they are known. Logs stay
-// English.
+// Translates sentences that other programs and libraries produce in English (the server's notices
+// and refusals, errors of a recording), where they are known. Logs stay English.
 #pragma once
 
 #include <string>
@@ -9,14 +8,14 @@
 
 namespace client {
 
-// The sentence in the language in use; one that is not known as it is. A stranger's words may be
-// part of it: they are kept as they are.
+// The sentence in the language in use; an unknown one is returned unchanged. It may contain text of
+// other people, which stays unchanged.
 std::string tr_sentence(const std::string& english);
 
-// The form with the words at its places %1 .. %9.
+// The pattern with the words at its placeholders %1 .. %9.
 std::string filled(std::string_view form, const std::vector<std::string>& words);
-// Who played, as results have it: a person's name as it is, "computer 4:gambler" and the like in
-// the language in use.
+// A player's name from the results: a person's name is unchanged, "computer 4:gambler" and the like
+// are translated.
 std::string tr_player(const std::string& name);
 
 }  // namespace client

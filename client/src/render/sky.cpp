@@ -20,7 +20,7 @@ struct Star {
   glm::vec3 colour;
 };
 
-// Columns right, up, outwards of each face, in the order and with the orientation of OpenGL.
+// Columns right, up, outward of each face, in the order and with the orientation of OpenGL.
 const glm::mat3 kFaces[6] = {
     {{0, 0, -1}, {0, -1, 0}, {1, 0, 0}}, {{0, 0, 1}, {0, -1, 0}, {-1, 0, 0}},
     {{1, 0, 0}, {0, 0, 1}, {0, 1, 0}},   {{1, 0, 0}, {0, 0, -1}, {0, -1, 0}},
@@ -52,7 +52,8 @@ void Sky::bake(const draw::Program& bake, draw::Quality quality) {
   const int face_size = quality == draw::Quality::high ? 768 : 384;
   cube_ = draw::GlTexture::make();
   draw::bind_texture(0, GL_TEXTURE_CUBE_MAP, cube_.get());
-  // Only high quality has mirrors of every roughness; mixing two levels costs software dear.
+  // Only high quality has reflections at every roughness; trilinear filtering is expensive in
+  // software.
   const bool mirrored = quality == draw::Quality::high;
   const int levels = mirrored ? 1 + static_cast<int>(std::log2(face_size)) : 1;
   glTexStorage2D(GL_TEXTURE_CUBE_MAP, levels, GL_RGBA8, face_size, face_size);
@@ -116,7 +117,7 @@ void Sky::draw(const Camera& camera, float pixel_scale, float time) const {
   glBindVertexArray(empty_.get());
   glDrawArrays(GL_TRIANGLES, 0, 3);
 
-  const bool perspective = camera.projection[3][3] == 0.0f;  // stars have no place without
+  const bool perspective = camera.projection[3][3] == 0.0f;  // without perspective, no stars
   if (!perspective) {
     glDepthMask(GL_TRUE);
     glDepthFunc(GL_LESS);

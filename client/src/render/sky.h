@@ -1,4 +1,4 @@
-// The sky: nebula and planet baked once into a cube map, stars as points over it.
+// The sky: nebula and planet rendered once into a cube map, stars drawn over it as points.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -15,7 +15,7 @@ class Sky {
   static tl::expected<Sky, std::string> create(draw::Quality quality);
 
   GLuint cube() const { return cube_.get(); }
-  // Behind all that is drawn already. pixel_scale: pixels of this target for one of a 720-line
+  // Behind all that is drawn already. pixel_scale: pixels of this target per pixel of a 720-line
   // screen.
   void draw(const Camera& camera, float pixel_scale, float time) const;
 

@@ -26,7 +26,7 @@ const Paint kMark{{0.75f, 0.77f, 0.80f}, 0.0f, 0.4f, 0.0f, 0.0f};
 
 constexpr float kHandleLength = 0.105f;
 constexpr float kHandleInset = 0.004f;  // of the rod's end in its handle
-constexpr float kReach = 0.010f;        // of a rod beyond the wall when pushed in all the way
+constexpr float kReach = 0.010f;        // of a rod beyond the wall when fully pushed in
 
 constexpr float kPlinthBottom = -0.235f;
 
@@ -93,7 +93,7 @@ void add_bearings(MeshBuilder& b, const Sizes& s, const TableSpec& table) {
   }
 }
 
-// An end of the table with a goal in it: the pocket is open above, so that a ball in it is seen.
+// An end of the table with a goal in it: the pocket is open above, so that a ball in it is visible.
 void add_end(MeshBuilder& b, const Sizes& s, const TableSpec& table, int team) {
   const float side = team == 0 ? -1.0f : 1.0f;
   const float goal = f(0.5 * table.goal_width), depth = f(table.goal_depth),
@@ -107,7 +107,7 @@ void add_end(MeshBuilder& b, const Sizes& s, const TableSpec& table, int team) {
   box(0.0f, s.end, -s.outer_y, -goal, -0.006f, s.wall, 0.005f);
   box(depth, s.end, -goal - 0.005f, goal + 0.005f, -0.006f, s.wall, 0.005f);
   box(0.0f, 0.016f, -goal - 0.005f, goal + 0.005f, bar, s.wall, 0.004f);
-  // Inlaid plates with bolts, so that the deck is no bare slab.
+  // Inlaid plates with bolts decorate the deck.
   for (const float half : {-1.0f, 1.0f}) {
     const float y0 = half < 0 ? -s.outer_y + 0.028f : goal + 0.022f,
                 y1 = half < 0 ? -goal - 0.022f : s.outer_y - 0.028f;
@@ -122,7 +122,7 @@ void add_end(MeshBuilder& b, const Sizes& s, const TableSpec& table, int team) {
   }
   b.paint(kPocket);
   box(-0.0005f, depth + 0.002f, -goal - 0.001f, goal + 0.001f, -0.02f, -0.002f, 0.001f);
-  // The frame of the mouth and an inlay on the deck say whose goal it is.
+  // The frame of the mouth and an inlay on the deck show whose goal it is.
   b.paint({kTeamLamp[static_cast<std::size_t>(team)], 0.0f, 0.4f, 0.0f, 3.2f});
   const float w = 0.0045f;
   box(-0.002f, 0.004f, goal - 0.001f, goal + 2.0f * w, 0.0f, bar + w, 0.0014f);
@@ -215,7 +215,7 @@ MeshData rod_mesh(const TableSpec& table, int rod, float detail) {
                       ProfilePoint{cap, half + 0.012f}, ProfilePoint{cap - 0.004f, half + 0.017f},
                       ProfilePoint{0, half + 0.018f}},
            14, true);
-  // Rings that meet the wall when the rod is at its limit.
+  // Bumper rings that touch the wall when the rod is at its limit.
   const float contact = f(0.5 * table.width - spec.slide_limit), bumper = r + 0.0055f;
   for (const float side : {-1.0f, 1.0f}) {
     const float z = side * (contact - 0.007f);
@@ -232,7 +232,7 @@ MeshData rod_mesh(const TableSpec& table, int rod, float detail) {
                  ProfilePoint{g, near - 0.010f}, ProfilePoint{g * 0.6f, near},
                  ProfilePoint{0, near}},
       static_cast<int>(std::lround(8.0f / detail)), true);
-  b.paint(kMark);  // one flat of the grip, on top at angle 0, so that a turn is seen
+  b.paint(kMark);  // one flat of the grip, on top at angle 0, makes rotation visible
   b.rounded_box({0, (spec.team == 0 ? -0.93f : 0.93f) * g, far + 0.5f * kHandleLength},
                 {0.0028f, 0.0022f, 0.36f * kHandleLength}, 0.001f, 1);
   return b.take();

@@ -6,7 +6,7 @@
 
 #include <filesystem>
 
-// glibc's own counter: told that the language was changed (gettext manual, 11.2.8).
+// glibc's counter: incremented to report a change of the language (gettext manual, 11.2.8).
 extern "C" int _nl_msg_cat_cntr;
 
 namespace client {
@@ -30,7 +30,7 @@ void use_language(const std::string& code, const std::string& directory) {
   static const std::string of_system = system_language();
   language = code.empty() ? of_system : code;
   catalogues = directory;
-  // Any locale but "C" will do: LANGUAGE then names the catalogue.
+  // Any locale but "C" works: LANGUAGE then selects the catalogue.
   ::setlocale(LC_MESSAGES, "C.UTF-8");
   ::setenv("LANGUAGE", language.c_str(), 1);
   ::bindtextdomain(kDomain, directory.c_str());

@@ -5,15 +5,15 @@
 
 namespace client {
 
-// "" as the system says, else "en", "ko", "de". directory: where the catalogues are. Takes effect
-// for every tr() from now on. Main thread, before or between frames.
+// "" as the system's, else "en", "ko", "de". directory: of the catalogues. Takes effect for every
+// tr() from now on. Call on the main thread, before or between frames.
 void use_language(const std::string& code, const std::string& directory);
-// The sentence in that language, or as it is. The pointer stays good until the language changes.
+// The sentence in that language, or unchanged. The pointer is valid until the language changes.
 const char* tr(const char* english);
-// Of the language in use: its catalogue's file, or empty for English.
+// The catalogue file of the language in use, or empty for English.
 std::string catalogue_file();
 
-// For xgettext alone: a sentence that tr() is called on elsewhere.
+// For xgettext only: marks a sentence that tr() translates elsewhere.
 #define N_(english) english
 
 }  // namespace client

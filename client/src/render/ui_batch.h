@@ -1,4 +1,4 @@
-// Text and panels of a frame, gathered and drawn with one call over the scene.
+// Text and panels of a frame, collected and drawn over the scene with one call.
 #pragma once
 
 #include <string_view>
@@ -14,14 +14,14 @@
 
 namespace client {
 
-using Colour = glm::vec4;  // as the screen shows it (sRGB), with opacity
+using Colour = glm::vec4;  // sRGB, as on the screen, with opacity
 
 class UiBatch {
  public:
   static tl::expected<UiBatch, std::string> create(Font font);
 
   const Font& font() const { return font_; }
-  // glow 0..1: a dark halo that lifts the text off what lies behind it.
+  // glow 0..1: a dark halo that separates the text from its background.
   void text(std::string_view utf8, const TextStyle& style, const glm::vec2& at,
             const Colour& colour, float glow = 0.55f);
   void panel(const glm::vec2& low, const glm::vec2& high, float corner, const Colour& colour,
@@ -29,15 +29,15 @@ class UiBatch {
   // Portraits, in cells: column by character, row by team. None until set.
   void set_pictures(GLuint texture, const glm::ivec2& cells);
   void picture(int column, int row, const glm::vec2& low, const glm::vec2& high);
-  // From now on everything is turned by half a turn about the middle of a screen of this size, for
-  // whoever sits opposite; zero: no longer.
+  // From now on rotates everything by 180 degrees about the centre of a screen of this size, for a
+  // person who sits opposite; zero: no rotation.
   void turn(const glm::vec2& screen) { turned_about_ = screen; }
-  // What the last flush() wrote reached from low to high [px].
+  // Bounding rectangle of what the last flush() drew [px].
   struct Bounds {
     glm::vec2 low{0.0f}, high{0.0f};
   };
   const Bounds& bounds() const { return bounds_; }
-  // Draws to the bound framebuffer and forgets.
+  // Draws to the bound framebuffer and clears the batch.
   void flush(const glm::ivec2& screen);
 
  private:

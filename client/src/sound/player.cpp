@@ -18,10 +18,11 @@ namespace {
 
 constexpr int kFirstLoop = static_cast<int>(Sound::roll);
 constexpr std::size_t kLoops = kSounds - kFirstLoop;
-constexpr std::size_t kVoices = 24;  // more at once are not told apart; the oldest is taken over
+constexpr std::size_t kVoices = 24;  // more at once are indistinguishable; the oldest is replaced
 
-// Without a device the libraries below OpenAL write a dozen lines of their own and cannot be asked
-// not to: the game says it in one sentence. Nothing else runs while a device is opened.
+// Silences stderr while a device is opened. Without a device the libraries below OpenAL print a
+// dozen lines, which cannot be disabled; the game reports it in one sentence. No other thread runs
+// then.
 class QuietStderr {
  public:
   QuietStderr() : kept_(::dup(STDERR_FILENO)) {
@@ -48,7 +49,7 @@ struct SoundPlayer::Impl {
   std::array<ALuint, kLoops> loops{};
   std::size_t next = 0;
   bool made = false;
-  LPALCRENDERSAMPLESSOFT render = nullptr;  // of a player that is offline
+  LPALCRENDERSAMPLESSOFT render = nullptr;  // of an offline player
 
   ~Impl() {
     if (made) {
@@ -148,7 +149,7 @@ void SoundPlayer::play(Sound sound, float volume, const glm::vec3& at, float pit
   alSourceStop(voice);
   alSourcei(voice, AL_BUFFER, static_cast<ALint>(impl_->buffers[static_cast<std::size_t>(sound)]));
   alSourcef(voice, AL_GAIN, std::clamp(volume, 0.0f, 1.0f));
-  // A quarter of a semitone either way, so that a rally does not sound like a machine.
+  // Varies the pitch by up to about half a semitone, so that a rally does not sound mechanical.
   alSourcef(voice, AL_PITCH, pitch * (0.97f + 0.02f * static_cast<float>(impl_->next % 4)));
   alSource3f(voice, AL_POSITION, at.x, at.y, at.z);
   alSourcePlay(voice);

@@ -18,10 +18,10 @@ struct Mode {
 struct Recipe {
   double length;  // [s]
   std::span<const Mode> modes;
-  double noise, noise_decay;  // level, to 1 / e [s]
+  double noise, noise_decay;  // level, decay time to 1 / e [s]
   double noise_smoothing;     // 0 white .. 1 dull
-  double swell = 0.0;         // the noise rises over so long [s]
-  double murmur = 0.0;        // depth of the noise's uneven loudness, as of many voices
+  double swell = 0.0;         // rise time of the noise [s]
+  double murmur = 0.0;        // depth of the noise's random amplitude modulation, as of many voices
 };
 
 // A hollow plastic man, a wooden board, a felted field, a chord of bells, a soft ping, a referee.
@@ -35,13 +35,13 @@ constexpr Mode kGoal[] = {{392.0, 0.55, 0.8},         {493.9, 0.55, 0.7, 0.09},
                           {1568.0, 0.40, 0.25, 0.27}, {98.0, 0.30, 0.9}};
 constexpr Mode kShot[] = {{255, 0.055, 1.0},  {610, 0.040, 0.8},   {1240, 0.030, 0.6},
                           {2450, 0.016, 0.5}, {3900, 0.010, 0.35}, {82, 0.060, 0.9}};
-// Vowels of a crowd: bands of a voice, many of them a little apart.
+// Vowels of a crowd: frequency bands of a voice, many of them, slightly detuned.
 constexpr Mode kCheer[] = {{392, 0.9, 0.22, 0.02}, {440, 0.8, 0.22, 0.05}, {523, 0.9, 0.2, 0.09},
                            {587, 0.8, 0.18, 0.04}, {659, 0.7, 0.16, 0.12}, {784, 0.6, 0.12, 0.15}};
 constexpr Mode kGroan[] = {
     {196, 0.7, 0.3}, {185, 0.8, 0.3, 0.06}, {165, 0.9, 0.3, 0.14}, {147, 0.9, 0.25, 0.22}};
 constexpr Mode kGasp[] = {{330, 0.12, 0.2}, {349, 0.12, 0.2, 0.02}, {415, 0.10, 0.15, 0.03}};
-// One vowel: nearly a pure tone, and one with all its overtones.
+// One vowel: nearly a pure tone (flute), and one with all its overtones (reed).
 constexpr Mode kFlute[] = {{220, 0.18, 1.0}, {440, 0.10, 0.22}, {660, 0.07, 0.06}};
 constexpr Mode kReed[] = {{220, 0.15, 0.8},  {440, 0.14, 0.8},  {660, 0.12, 1.0},
                           {880, 0.10, 0.7},  {1100, 0.10, 0.7}, {1540, 0.08, 0.5},
@@ -86,8 +86,8 @@ Recipe recipe_of(Sound sound) {
   return {};
 }
 
-// Noise between low and high frequencies, uneven as many voices are. A loop's end is faded into its
-// beginning.
+// Noise between low and high frequencies, with random amplitude as of many voices. close_loop()
+// fades the end of a loop into its beginning.
 class Noise {
  public:
   explicit Noise(const Recipe& recipe) : recipe_(recipe) {}
@@ -95,7 +95,7 @@ class Noise {
     random_ = random_ * 1664525u + 1013904223u;
     const double white = static_cast<double>(random_ >> 8) / 8388608.0 - 1.0;
     smooth_ += (1.0 - recipe_.noise_smoothing) * (white - smooth_);
-    rumble_ += 0.004 * (smooth_ - rumble_);  // without what no loudspeaker gives
+    rumble_ += 0.004 * (smooth_ - rumble_);  // removes frequencies below a loudspeaker's range
     uneven_ += 0.0006 * (white - uneven_);
     const double swell = recipe_.swell > 0 ? std::min(t / recipe_.swell, 1.0) : 1.0;
     const double decay = recipe_.noise_decay > 0
@@ -128,7 +128,7 @@ std::vector<double> wave_of(const Recipe& recipe, std::size_t count) {
   return wave;
 }
 
-// The last quarter of a second goes over into what came before the first sample.
+// Crossfades the last quarter of a second with the beginning.
 void close_loop(std::vector<double>& wave) {
   const auto overlap = static_cast<std::size_t>(0.25 * kSampleRate);
   const std::size_t count = wave.size() - overlap;

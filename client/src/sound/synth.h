@@ -1,4 +1,4 @@
-// The game's sounds, made from decaying modes and shaped noise. No device here.
+// Synthesises the game's sounds from decaying modes and filtered noise. No audio device here.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@ namespace client {
 
 enum class Sound : std::uint8_t {
   kick,  // a man of hollow plastic
-  shot,  // the same, struck hard: brighter and longer
+  shot,  // the same, hit hard: brighter and longer
   wall,
   field,
   goal,
@@ -17,10 +17,10 @@ enum class Sound : std::uint8_t {
   cheer,  // many voices, rising
   groan,  // many voices, falling: an own goal
   gasp,   // a shot, a save
-  // A character's shout is a mixture of both, at its own pitch.
+  // A character's shout mixes both, at the character's pitch.
   flute,
   reed,
-  // Loops: without a beginning and an end, of constant loudness.
+  // Loops: seamless, of constant loudness.
   roll,
   slide,
   crowd,
@@ -29,11 +29,11 @@ inline constexpr int kSounds = 15;
 constexpr bool is_loop(Sound sound) {
   return sound >= Sound::roll;
 }
-// Of flute and reed as they are made [Hz].
+// Pitch of flute and reed as synthesised [Hz].
 inline constexpr float kVoicePitch = 220.0f;
 inline constexpr int kSampleRate = 44100;  // [Hz]
 
-// Mono, full scale; those that are no loops end in silence. The same for every call.
+// Mono, full scale; sounds that are no loops end in silence. Deterministic: equal for every call.
 std::vector<std::int16_t> synthesise(Sound sound);
 
 }  // namespace client

@@ -1,4 +1,4 @@
-// Where DejaVu Sans lies.
+// Where to find DejaVu Sans.
 #pragma once
 
 #include <string>
@@ -6,9 +6,9 @@
 
 namespace draw {
 
-// Where Debian, other systems and the page keep it; first, if not empty, is looked into first.
+// The directories of Debian, of other systems and of the page; before them `first`, if not empty.
 std::vector<std::string> font_directories(const std::string& first);
-// The sentence that says which package to install.
+// The error message that says which package to install.
 std::string no_font();
 
 }  // namespace draw

@@ -1,4 +1,5 @@
-// Owners of OpenGL names: move-only, deleted with their scope. The context must outlive them.
+// Owners of OpenGL object names: move-only, deleted by the destructor. The context must outlive
+// them.
 #pragma once
 
 #include <GLES3/gl3.h>

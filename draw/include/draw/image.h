@@ -1,4 +1,4 @@
-// Pixels of the window, and PNG files of them.
+// The window's pixels, and PNG files of them.
 #pragma once
 
 #include <cstdint>
@@ -12,12 +12,12 @@ namespace draw {
 
 struct Image {
   glm::ivec2 size{0, 0};
-  std::vector<std::uint8_t> rgb;  // rows from the top
+  std::vector<std::uint8_t> rgb;  // row-major, from the top
 
   glm::ivec3 at(int x, int y) const;  // 0..255
 };
 
-// What the bound framebuffer shows. Call before the buffers are swapped.
+// Reads the bound framebuffer. Call before the buffers are swapped.
 Image read_pixels(const glm::ivec2& size);
 tl::expected<void, std::string> write_png(const Image& image, const std::string& path);
 

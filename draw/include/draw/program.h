@@ -1,4 +1,4 @@
-// A linked shader program and its uniforms by name.
+// A linked shader program, with its uniforms by name.
 #pragma once
 
 #include <glm/fwd.hpp>
@@ -14,12 +14,13 @@
 
 namespace draw {
 
-// Text of the shader file of that name; empty if there is none. Each room has its own.
+// Source text of the named shader file; empty if there is none. Each module has a separate
+// function.
 using ShaderSource = std::string_view (*)(std::string_view file);
 
 class Program {
  public:
-  // Concatenates the named shader files (shared parts first) of each stage. The error is the
+  // Concatenates the named shader files of each stage, shared parts first. The error is the
   // driver's log with the files' names.
   static tl::expected<Program, std::string> build(ShaderSource source,
                                                   std::initializer_list<std::string_view> vertex,
@@ -27,8 +28,8 @@ class Program {
                                                   Quality quality);
 
   void use() const { glUseProgram(handle_.get()); }
-  // Each sets a uniform of the program in use; a name the shader does not have is ignored (the
-  // compiler may have optimised it away).
+  // Each sets a uniform of the program in use. A name that the shader lacks is ignored, because the
+  // compiler may have optimised it away.
   void set(std::string_view name, int value) const;
   void set(std::string_view name, float value) const;
   void set(std::string_view name, const glm::vec2& value) const;

@@ -1,5 +1,5 @@
-// How much a frame may cost. High: full resolution, 4 samples a pixel, soft shadows, bloom. Low:
-// two thirds of the resolution, no post pass: for software OpenGL and old laptops.
+// Cost of a frame. High: full resolution, 4 samples per pixel, soft shadows, bloom. Low: two thirds
+// of the resolution, no post pass, for software OpenGL and old laptops.
 #pragma once
 
 #include <cstdint>

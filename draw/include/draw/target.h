@@ -1,4 +1,4 @@
-// Places to draw to: a texture, optionally with several samples a pixel and with depth.
+// Render targets: a texture, optionally with several samples per pixel and with depth.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -9,8 +9,8 @@ namespace draw {
 
 struct TargetDesc {
   glm::ivec2 size{1, 1};
-  GLenum format = GL_RGB10_A2;  // color-renderable in ES 3.0 without extensions
-  int samples = 0;              // 0: drawn straight into the texture
+  GLenum format = GL_RGB10_A2;  // colour-renderable in ES 3.0 without extensions
+  int samples = 0;              // 0: draws directly into the texture
   bool depth = false;
 };
 
@@ -19,8 +19,8 @@ class Target {
   Target() = default;
   explicit Target(const TargetDesc& desc);
 
-  void bind() const;     // to draw into
-  void resolve() const;  // several samples into the texture; nothing to do without
+  void bind() const;     // as the framebuffer to draw into
+  void resolve() const;  // multisampled into the texture; no effect without samples
   GLuint texture() const { return texture_.get(); }
   GLuint framebuffer() const { return framebuffer_.get(); }
   const glm::ivec2& size() const { return desc_.size; }
@@ -32,15 +32,15 @@ class Target {
   GlRenderbuffer colour_, depth_;
 };
 
-// A depth texture for shadows, compared while it is sampled.
+// A depth texture for shadows, with depth comparison when sampled.
 class ShadowTarget {
  public:
   ShadowTarget() = default;
-  // smooth: compared at four texels and mixed; else at the nearest.
+  // smooth: filters the comparisons of four texels; otherwise compares the nearest.
   ShadowTarget(int size, bool smooth);
   void bind() const;
   GLuint texture() const { return texture_.get(); }
-  int size() const { return size_; }  // of its side [px]
+  int size() const { return size_; }  // side length [px]
 
  private:
   int size_ = 0;

@@ -1,4 +1,4 @@
-// The window: GLFW with an OpenGL ES 3.0 context. What its owner makes of keys and mice is its own.
+// The window: GLFW with an OpenGL ES 3.0 context. Its owner handles keys and mouse.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -14,7 +14,7 @@ struct WindowOptions {
   glm::ivec2 size{1280, 720};
   bool fullscreen = false;
   std::string title = "Virtual Physics";
-  std::string otherwise = "ask for no window";  // what to do without a display
+  std::string otherwise = "ask for no window";  // advice for a machine without a display
   bool visible = true;                          // false: for pictures that are read back
 };
 
@@ -29,18 +29,18 @@ class Window {
   Window& operator=(Window&&) = delete;  // the old window would outlive GLFW
   ~Window() = default;
 
-  // Its callbacks and its user pointer are free.
+  // The owner may set callbacks and the user pointer.
   GLFWwindow* handle() const { return handle_.get(); }
   bool should_close() const;
   glm::ivec2 size() const;         // of the framebuffer [px]
   void swap();                     // shows the frame; waits for the display's refresh
-  void poll();                     // calls the callbacks for what has happened
-  void wait(double seconds);       // until the window has news, at most so long
-  std::string renderer() const;    // name of the driver's
-  bool draws_in_software() const;  // by that name
+  void poll();                     // calls the callbacks of pending events
+  void wait(double seconds);       // until the window has events, at most for this time
+  std::string renderer() const;    // name of the driver
+  bool draws_in_software() const;  // judged by that name
 
  private:
-  // GLFW as a whole, for as long as there is a window.
+  // Initialises GLFW, for as long as there is a window.
   struct Library {
     Library();
     ~Library();

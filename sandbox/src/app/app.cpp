@@ -22,8 +22,8 @@
 namespace sandbox {
 namespace {
 
-constexpr double kLongestFrame = 0.1;  // [s]; what a frame is late by more is let go
-// A frame may step for as long as its picture takes to draw, and at least for this [s].
+constexpr double kLongestFrame = 0.1;  // [s]; a longer delay of a frame is dropped
+// A frame may step for as long as its picture takes to draw, but at least for this time [s].
 constexpr double kLeastStepping = 1.0 / 30.0;
 
 constexpr Simulation::Clocks kClocks{os::monotonic_ns, os::thread_ns, os::monotonic_ns};
@@ -79,7 +79,7 @@ class App {
       : options_(options), simulation_(std::move(simulation)) {
     controls_ = {options.paused, options.rate, options.speed, options.view, 0, !options.no_panel};
   }
-  // Empty, or the sentence to say; exit_code is then set.
+  // Returns an empty string, or the error to print; exit_code is then set.
   std::string start(int& exit_code);
   int loop();
 
@@ -91,7 +91,7 @@ class App {
   void throw_one();
   void skip();
   void advance(double frame);
-  // The next moment of the scene at which something is to be done; none if there is no such.
+  // The next scene time with an action to perform; none: no more actions.
   std::optional<double> next_stop() const;
   bool has_come_to(double time) const;
   void begin_frame(bool first);
@@ -111,7 +111,7 @@ class App {
   OrbitCamera camera_;
   Meter meter_;
   std::string message_;
-  double drawing_ = 0.0;  // how long the last picture took [s]
+  double drawing_ = 0.0;  // duration of the last picture [s]
   glm::ivec2 size_{1, 1};
   bool shot_ = false, leave_ = false;
 };
@@ -141,7 +141,7 @@ std::string App::start(int& exit_code) {
   return {};
 }
 
-// As GLFW counts the pointer's way: on some displays not in the framebuffer's pixels.
+// The screen size in GLFW's pointer units: on some displays not the framebuffer's pixels.
 glm::ivec2 App::pointer_screen() const {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   return {static_cast<int>(size.x), static_cast<int>(size.y)};
@@ -181,8 +181,8 @@ void App::fail_softly(const vp::Expected<void>& result) {
   if (!result) message_ = result.error().message;
 }
 
-// From the eye to what the pointer shows, or to the middle of the picture from a key's press beside
-// it; fast enough to fly nearly straight.
+// Throws from the eye towards the pointer; after a key press beside the picture, towards its
+// centre. Fast enough to fly nearly straight.
 void App::throw_one() {
   const double radius = 0.02 * camera_.distance(), speed = 1.5 * camera_.distance();
   const ImGuiIO& io = ImGui::GetIO();
@@ -213,7 +213,7 @@ void App::fulfil(const Requests& requests) {
   leave_ = leave_ || requests.leave;
 }
 
-// As fast as it goes, with nothing to see.
+// Steps as fast as possible, without drawing.
 void App::skip() {
   while (!has_come_to(options_.skip_to) && !leaving() && message_.empty()) {
     fail_softly(simulation_.step());
@@ -230,7 +230,7 @@ std::optional<double> App::next_stop() const {
   return options_.seconds;
 }
 
-// Not beyond the moment that a picture was asked for.
+// Stops at the time of a requested picture.
 void App::advance(double frame) {
   if (controls_.paused) return;
   if (const auto stop = next_stop())
@@ -253,7 +253,7 @@ void App::draw_frame(Requests& requests) {
 }
 
 // Of the frame just drawn. A picture is worth a slow frame: it is drawn in high quality, unless
-// another was asked for.
+// another was requested.
 std::string App::take_picture() {
   if (!options_.quality && quality_ != draw::Quality::high) {
     const auto view = SceneView::create(draw::Quality::high);

@@ -1,11 +1,11 @@
-// The sandbox: its window, or without one, a run to the end.
+// The sandbox: an interactive window, or a run to the end without one.
 #pragma once
 
 #include "app/options.h"
 
 namespace sandbox {
 
-// The exit code: 0 done, 1 failed, 2 no such scene, 4 no display.
+// Returns the exit code: 0 success, 1 failure, 2 no such scene, 4 no display.
 int run(const Options& options);
 
 }  // namespace sandbox

@@ -1,4 +1,4 @@
-// What a run is summed up by: for the terminal, and as JSON.
+// Summary of a run, for the terminal and as JSON.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace sandbox {
 struct Figures {
   std::string scene;
   int rate = 0;
-  double seconds = 0.0;  // of the scene's time
+  double seconds = 0.0;  // of scene time
   std::size_t steps = 0;
   StepTimes::Figures step;  // [us]
   scenes::Standing standing;
@@ -21,7 +21,7 @@ struct Figures {
   double frames_per_second = 0.0;
 };
 
-// Of what the simulation has come to; frames are not its own.
+// Of the simulation's present state; without the frames.
 Figures figures_of(const Simulation& simulation);
 std::string sentence(const Figures& figures);
 std::string json(const Figures& figures);

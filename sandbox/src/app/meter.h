@@ -1,4 +1,4 @@
-// Frames a second and how fast the scene's time goes, over the last half second.
+// Frame rate, and speed of the scene time relative to real time, over the last half second.
 #pragma once
 
 #include <cstdint>
@@ -7,11 +7,11 @@ namespace sandbox {
 
 class Meter {
  public:
-  // At the end of a frame; scene_time: since the scene's start [s], anew after a reset.
+  // Call at the end of a frame. scene_time: since the scene's start [s]; restarts after a reset.
   void frame(std::int64_t now_ns, double scene_time);
   int frames() const { return frames_; }
   double rate() const { return rate_; }    // [1/s]
-  double speed() const { return speed_; }  // of real time
+  double speed() const { return speed_; }  // relative to real time
 
  private:
   static constexpr std::int64_t kWindowNs = 500'000'000;

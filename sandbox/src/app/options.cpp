@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kLongest = 1e6;  // [s]
 
-// "YAW,PITCH" in degrees, or with ",DISTANCE" as a share of the one that shows all.
+// "YAW,PITCH" in degrees, or with ",DISTANCE" as a fraction of the distance that shows all.
 tl::expected<glm::dvec3, std::string> parse_look(const std::string& text) {
   std::istringstream in(text);
   glm::dvec3 look{0.0, 0.0, 1.0};

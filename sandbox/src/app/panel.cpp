@@ -17,7 +17,7 @@ namespace sandbox {
 namespace {
 
 constexpr std::array<int, 3> kRates{60, 240, 1000};  // [Hz]
-constexpr std::size_t kShown = 1000;                 // steps that the figures are of
+constexpr std::size_t kShown = 1000;                 // number of steps in the statistics
 constexpr float kMargin = 12.0f, kWidth = static_cast<float>(kPanelReach) - 2 * kMargin;  // [px]
 const ImVec4 kDim{0.72f, 0.76f, 0.82f, 1.0f}, kBright{1.0f, 0.86f, 0.45f, 1.0f};
 constexpr double kSlowest = 0.01, kFastest = 10.0;
@@ -26,7 +26,7 @@ bool pressed(int key) {
   return ImGui::IsKeyPressed(key, false);
 }
 
-// The scene that is so many places after this one in the catalogue, from its end to its beginning.
+// The scene `places` after this one in the catalogue, with wrap-around.
 std::string neighbour(std::string_view name, int places) {
   const auto all = scenes::catalogue();
   const auto count = static_cast<int>(all.size());

@@ -1,4 +1,4 @@
-// What is written over the picture, and what can be set there: Dear ImGui.
+// The panel over the picture: statistics and controls, drawn with Dear ImGui.
 #pragma once
 
 #include <optional>
@@ -10,33 +10,33 @@
 
 namespace sandbox {
 
-// From the window's left edge to where the panel ends, with its margins [px].
+// Width from the window's left edge to the panel's end, with its margins [px].
 inline constexpr double kPanelReach = 342.0;
 
-// What stays as it was set.
+// Settings that persist between frames.
 struct Controls {
   bool paused = false;
   int rate = 1000;     // [Hz]
-  double speed = 1.0;  // of real time
+  double speed = 1.0;  // relative to real time
   ViewOptions view;
-  int thrown = 0;  // of kThrownNames
+  int thrown = 0;  // index in kThrownNames
   bool panel = true;
 };
 
-// What was asked for in a frame.
+// Requests of one frame.
 struct Requests {
   bool step = false, reset = false, show_all = false, throw_one = false, leave = false;
   std::optional<std::string> scene;
 };
 
-// By key; the panel's own fields have them first.
+// From keys; the panel's input fields take precedence.
 void read_keys(const Simulation& simulation, Controls& controls, Requests& requests);
 
-// drawing: how long the last picture took [s]; message: of what last went wrong, or empty.
+// drawing: duration of the last picture [s]; message: the last error, or empty.
 void draw_panel(const Simulation& simulation, const Meter& meter, double drawing,
                 const std::string& message, Controls& controls, Requests& requests);
 
-// Colours and the font of what is drawn; the error says which package to install.
+// Sets the panel's colours and font; the error says which package to install.
 tl::expected<void, std::string> style_panel(const std::string& font_directory);
 
 }  // namespace sandbox

@@ -5,8 +5,8 @@
 namespace sandbox {
 namespace {
 
-// A dodecahedron: the corners of a cube, and those of three rectangles of the golden ratio's
-// square.
+// A dodecahedron: the corners of a cube, and of three rectangles with sides in the ratio of the
+// golden ratio squared.
 vp::ConvexHull dodecahedron(double radius) {
   const double a = radius / 1.7320508075688772, g = 1.618033988749895;
   std::vector<vp::Vec3> points;

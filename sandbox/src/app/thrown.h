@@ -1,4 +1,4 @@
-// The shapes that can be thrown into a scene: one of each kind that moves.
+// The shapes that can be thrown into a scene: one of each kind that can move.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@ namespace sandbox {
 
 inline constexpr std::array<const char*, 6> kThrownNames{"box",      "sphere", "capsule",
                                                          "cylinder", "cone",   "hull"};
-// Precondition: index is one of the names'. About as large as a sphere of that radius [m].
+// About as large as a sphere of that radius [m]. Precondition: index is valid in kThrownNames.
 vp::Shape thrown_shape(int index, double radius);
 
 }  // namespace sandbox

@@ -7,13 +7,13 @@
 namespace sandbox {
 namespace {
 
-constexpr double kFieldOfView = 0.66;               // [rad], vertical
-constexpr double kSteepest = 1.5;                   // [rad]: at a right angle there would be no up
-constexpr double kTurn = 0.006;                     // [rad/px]
-constexpr double kZoomStep = 1.15;                  // of the distance, a step of the wheel
-constexpr double kNearest = 0.05, kFarthest = 1e5;  // of the target [m]
+constexpr double kFieldOfView = 0.66;  // [rad], vertical
+constexpr double kSteepest = 1.5;   // [rad]: at a right angle the up direction would be undefined
+constexpr double kTurn = 0.006;     // [rad/px]
+constexpr double kZoomStep = 1.15;  // factor of the distance per wheel step
+constexpr double kNearest = 0.05, kFarthest = 1e5;  // distance to the target [m]
 constexpr double kMostCovered = 0.6;                // of the picture's width
-constexpr double kMargin = 1.06;                    // of the picture around what was fitted into it
+constexpr double kMargin = 1.06;                    // margin factor around a fitted box
 
 glm::vec3 narrow(const vp::Vec3& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
@@ -37,8 +37,8 @@ void OrbitCamera::leave_free(double share) {
   covered_ = std::clamp(share, 0.0, kMostCovered);
 }
 
-// Seen along the view, each corner must lie within the four sides of the picture: the distance that
-// one of them needs is the largest.
+// Each corner must be inside the four sides of the view frustum; the largest distance that a corner
+// needs is used.
 void OrbitCamera::fit(const vp::Vec3& low, const vp::Vec3& high, const glm::ivec2& screen) {
   target_ = 0.5 * (low + high);
   const double tan_y = half_height() / kMargin,
@@ -49,7 +49,7 @@ void OrbitCamera::fit(const vp::Vec3& low, const vp::Vec3& high, const glm::ivec
         vp::Vec3{(corner & 1) != 0 ? high.x : low.x, (corner & 2) != 0 ? high.y : low.y,
                  (corner & 4) != 0 ? high.z : low.z} -
         target_;
-    const double before = dot(p, -forward());  // how much nearer than the target
+    const double before = dot(p, -forward());  // how much closer than the target
     needed = std::max({needed, before + std::abs(dot(p, right())) / tan_x,
                        before + std::abs(dot(p, up())) / tan_y});
   }
@@ -98,12 +98,12 @@ glm::mat4 OrbitCamera::view() const {
   return glm::lookAt(narrow(-distance_ * forward()), glm::vec3(0.0f), glm::vec3(0, 0, 1));
 }
 
-// The nearest and farthest that a depth of 24 bits can tell apart, and the horizon.
+// Near and far planes that 24 bits of depth can resolve, including the horizon.
 glm::mat4 OrbitCamera::projection(const glm::ivec2& screen) const {
   glm::mat4 projection = glm::perspective(
       static_cast<float>(kFieldOfView), static_cast<float>(aspect_of(screen)),
       static_cast<float>(0.02 * distance_), static_cast<float>(60.0 * distance_ + 500.0));
-  projection[2][0] -= static_cast<float>(covered_);  // x / w is larger by it
+  projection[2][0] -= static_cast<float>(covered_);  // shifts x / w
   return projection;
 }
 

@@ -1,5 +1,5 @@
-// An eye that turns about a point. Lengths in metres, angles in radians, z up; double, since worlds
-// may be large: what is drawn is drawn relative to the target.
+// A camera that orbits a point. Lengths in metres, angles in radians, z up. Double precision,
+// because worlds may be large: drawing is relative to the target.
 #pragma once
 
 #include <glm/mat4x4.hpp>
@@ -16,27 +16,27 @@ struct Ray {
 
 class OrbitCamera {
  public:
-  // So much of the picture's width, from its left, is covered: the target lies in the middle of the
-  // rest.
+  // This fraction of the picture's width is covered, from its left; the target is at the centre of
+  // the rest.
   void leave_free(double share);
-  // The whole of a box in what is free, seen from yaw and pitch. screen: [px]
+  // Fits a whole box into the free part, seen from the present yaw and pitch. screen: [px]
   void fit(const vp::Vec3& low, const vp::Vec3& high, const glm::ivec2& screen);
-  void look_from(double yaw, double pitch);  // the pitch is held short of straight up and down
+  void look_from(double yaw, double pitch);  // the pitch is clamped short of straight up and down
 
-  // By a motion of the pointer [px]. Panned, what lies as deep as the target keeps to the pointer.
+  // By a motion of the pointer [px]. pan(): points at the target's depth follow the pointer.
   void orbit(const glm::dvec2& pixels);
   void pan(const glm::dvec2& pixels, const glm::ivec2& screen);
-  void zoom(double steps);  // of the wheel; positive: nearer
+  void zoom(double steps);  // of the wheel; positive: closer
   void scale_distance(double factor);
 
   vp::Vec3 eye() const;
   const vp::Vec3& target() const { return target_; }
   double distance() const { return distance_; }
   vp::Vec3 forward() const;  // unit
-  // Through a pixel counted from the top left of the picture.
+  // Through a pixel, counted from the top left of the picture.
   Ray ray(const glm::dvec2& pixel, const glm::ivec2& screen) const;
 
-  // Of positions relative to the target.
+  // For positions relative to the target.
   glm::mat4 view() const;
   glm::mat4 projection(const glm::ivec2& screen) const;
 

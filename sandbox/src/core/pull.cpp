@@ -5,8 +5,8 @@
 namespace sandbox {
 namespace {
 
-constexpr double kFrequency = 2.0 * vp::kPi * 4.0;  // [rad/s]: follows a hand, does not jerk
-constexpr double kStrongest = 60.0 * 9.81;          // [m/s^2]: lifts what lies under a tower
+constexpr double kFrequency = 2.0 * vp::kPi * 4.0;  // [rad/s]: follows a hand smoothly
+constexpr double kStrongest = 60.0 * 9.81;          // [m/s^2]: can lift a body under a tower
 
 }  // namespace
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kTimesKept = 100'000;  // 100 s at 1 kHz, in 0.8 MB
 constexpr double kReach = 1e6;               // of a pick [m]
-constexpr double kDensity = 1000.0;          // of what is thrown [kg/m^3]
+constexpr double kDensity = 1000.0;          // of a thrown body [kg/m^3]
 
 Piece piece_of(const scenes::Body& body, vp::BodyId id, scenes::EngineShapes& shapes) {
   Piece piece{id, body.motion, {}, {}};
@@ -26,7 +26,7 @@ Piece piece_of(const scenes::Body& body, vp::BodyId id, scenes::EngineShapes& sh
   return piece;
 }
 
-// Of the sphere that is as hard to turn.
+// Radius of the solid sphere with the same mass and mean moment of inertia.
 double radius_of(const vp::Inertia& inertia) {
   const vp::Sym3 I = inertia.central();
   return std::sqrt(2.5 * (I.xx + I.yy + I.zz) / (3.0 * inertia.mass()));
@@ -105,7 +105,7 @@ std::size_t Simulation::moving() const {
 
 void Simulation::bounds(vp::Vec3& low, vp::Vec3& high) const {
   constexpr double kFar = std::numeric_limits<double>::infinity();
-  constexpr double kAround = 1.25;  // to the corners of a body, in radii of a ball as hard to turn
+  constexpr double kAround = 1.25;  // distance to a body's corners, in radii of that sphere
   low = {kFar, kFar, kFar};
   high = -low;
   const bool any = moving() > 0;
@@ -176,7 +176,7 @@ void Simulation::drag(const Ray& ray, const vp::Vec3& forward) {
   if (!grip_) return;
   const double along = dot(ray.direction, forward);
   const double depth = dot(grip_->target - ray.origin, forward);
-  if (along < 1e-3 || depth <= 0.0) return;  // the plane is behind the eye, or seen edge on
+  if (along < 1e-3 || depth <= 0.0) return;  // the plane is behind the eye, or seen edge-on
   pull_to(ray.origin + (depth / along) * ray.direction);
 }
 

@@ -1,4 +1,4 @@
-// How long the last steps took.
+// Durations of the last steps.
 #pragma once
 
 #include <cstddef>
@@ -9,20 +9,20 @@ namespace sandbox {
 class StepTimes {
  public:
   struct Figures {
-    double median = 0.0, p99 = 0.0, max = 0.0;  // of the kept [us]
+    double median = 0.0, p99 = 0.0, max = 0.0;  // of the stored steps [us]
   };
 
-  // kept: so many of the last steps are in the figures, >= 1.
+  // kept: number of stored steps, >= 1.
   explicit StepTimes(std::size_t kept) : kept_(kept) {}
 
   void add(double us);
   void clear();
-  std::size_t size() const { return ring_.size(); }  // of the kept
-  // Of so many of the last. All 0 before the first step. A share q of n steps is the least of them
-  // that q n are at most.
+  std::size_t size() const { return ring_.size(); }  // number of stored steps
+  // Of the last `count` steps. All 0 before the first step. The quantile q of n steps is the
+  // smallest of them that at least q n of them do not exceed.
   Figures figures(std::size_t count) const;
   Figures figures() const { return figures(kept_); }
-  // The last ones, the newest at the end; fewer if there were fewer.
+  // The last steps, the newest at the end; fewer if fewer are stored.
   std::vector<double> last(std::size_t count) const;
 
  private:

@@ -10,9 +10,9 @@ namespace {
 
 // In sizes of an average body.
 constexpr double kFrame = 0.9, kNormal = 0.5;
-// What carries an average body's weight in a step is as long as this.
+// Length of the impulse that supports an average body's weight for one step.
 constexpr double kWeight = 1.0;
-constexpr double kEarth = 9.81;  // [m/s^2], where a scene has no gravity
+constexpr double kEarth = 9.81;  // [m/s^2], if a scene has no gravity
 constexpr double kSmallest = 1e-6, kLargest = 1e6;
 
 class ToMarks : public vp::DebugDraw {
@@ -25,7 +25,7 @@ class ToMarks : public vp::DebugDraw {
   void point(const vp::Vec3& at, vp::DebugCategory mark) override {
     marks_.point(seen(at), mark_colour(mark), behind(mark));
   }
-  // The picture has its own ground.
+  // The picture draws its own ground.
   bool shape(vp::ColliderId, const vp::Shape& shape, const vp::SE3&, vp::DebugCategory) override {
     return std::holds_alternative<vp::HalfSpace>(shape);
   }
@@ -60,7 +60,7 @@ void add_marks(const Simulation& simulation, const vp::DebugDrawOptions& options
   sized.normal_length = fitting(kNormal * typical.size);
   sized.impulse_scale =
       fitting(kWeight * typical.size / (typical.mass * (g > 0.0 ? g : kEarth) * simulation.dt()));
-  (void)simulation.world().debug_draw(sized, to_marks);  // sizes that it takes
+  (void)simulation.world().debug_draw(sized, to_marks);  // its sizes are valid
   if (const auto& grip = simulation.grip()) {
     const vp::Vec3 held = simulation.world().pose(grip->body) * grip->point_body;
     marks.line(to_marks.seen(held), to_marks.seen(grip->target), kGripColour, Marks::kWithin);

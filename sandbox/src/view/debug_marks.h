@@ -1,4 +1,4 @@
-// What the engine tells of a world, and where a hand holds a body, as marks over the picture.
+// The engine's debug drawing of a world, and the grip on a body, as marks over the picture.
 #pragma once
 
 #include "core/simulation.h"
@@ -6,8 +6,8 @@
 
 namespace sandbox {
 
-// Of options the switches count; sizes follow from the scene's own. origin: of the picture, in the
-// world.
+// Uses only the switches of the options; sizes follow from the scene's size. origin: of the
+// picture, in the world.
 void add_marks(const Simulation& simulation, const vp::DebugDrawOptions& options,
                const vp::Vec3& origin, Marks& marks);
 

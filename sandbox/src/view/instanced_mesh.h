@@ -1,4 +1,4 @@
-// A mesh of shape_mesh.h on the GPU, and the bodies that are drawn with it: one call for all.
+// A mesh of shape_mesh.h on the GPU, and its bodies as instances: one draw call for all.
 #pragma once
 
 #include <glm/vec4.hpp>
@@ -12,7 +12,7 @@ namespace sandbox {
 // 80 bytes, as body.vert reads it.
 struct Instance {
   glm::vec4 row[3];   // of the pose, relative to the camera's target
-  glm::vec4 stretch;  // of the core; w: round
+  glm::vec4 stretch;  // of the core; w: rounding radius
   glm::vec4 colour;   // linear rgb; a: gloss
 };
 static_assert(sizeof(Instance) == 80);

@@ -1,5 +1,5 @@
-// Lines and points over the picture: contacts, frames, what is held. What lies behind a body shows
-// through it, more or less.
+// Lines and points over the picture: contacts, frames, the grip. Marks behind a body are drawn
+// through it with less opacity.
 #pragma once
 
 #include <glm/mat4x4.hpp>
@@ -18,14 +18,14 @@ class Marks {
  public:
   static tl::expected<Marks, std::string> create(draw::Quality quality);
 
-  // Opacity behind bodies: of what lies on their surfaces, and of what lies within them.
+  // Opacity behind bodies: of marks on their surfaces, and of marks inside them.
   static constexpr float kOnSurface = 0.1f, kWithin = 0.75f;
 
-  // Positions relative to the camera's target; colours as the screen shows them.
+  // Positions relative to the camera's target; colours in sRGB, as on the screen.
   void line(const glm::vec3& from, const glm::vec3& to, const glm::vec4& colour, float behind);
   void point(const glm::vec3& at, const glm::vec4& colour, float behind);
-  // Draws to the bound target, against its depth, and forgets. [px]; lines may be thinner, as the
-  // driver can.
+  // Draws to the bound target, with its depth test, and clears. [px]; lines may be thinner if the
+  // driver limits their width.
   void flush(const glm::mat4& view_projection, float point_size, float line_width);
 
  private:

@@ -23,7 +23,7 @@ constexpr std::array<glm::vec3, 4> kSpeedColours{{{0.030f, 0.080f, 0.300f},
                                                   {0.800f, 0.560f, 0.060f},
                                                   {0.750f, 0.060f, 0.040f}}};
 
-// Neighbours in number should differ: a hash (the finaliser of MurmurHash3).
+// Gives bodies with adjacent indices different colours: a hash (the finaliser of MurmurHash3).
 std::uint32_t mixed(std::uint32_t x) {
   x ^= x >> 16;
   x *= 0x85EBCA6Bu;

@@ -16,12 +16,12 @@
 namespace sandbox {
 namespace {
 
-constexpr std::size_t kWatched = 96;   // bodies that walls are asked about
-constexpr float kShadowAround = 2.2f;  // of the camera's distance; farther off nothing casts
-constexpr float kHaze = 0.04f;         // of the light, in the camera's distance
-constexpr double kGroundReach = 50.0;  // of the camera's distance
+constexpr std::size_t kWatched = 96;   // number of bodies tested for walls in front of them
+constexpr float kShadowAround = 2.2f;  // in camera distances; no shadows are cast from farther away
+constexpr float kHaze = 0.04f;         // extinction of light per camera distance
+constexpr double kGroundReach = 50.0;  // in camera distances
 
-// Marks: points are as large as they would be on the bodies, within what can be told apart.
+// Marks: points have a size relative to the bodies, within legible limits.
 constexpr double kPoint = 0.2;                           // of a body's size
 constexpr double kSmallestPoint = 3.0;                   // [px]
 constexpr double kLargestPoint = 0.012, kLine = 0.0025;  // of the picture's height
@@ -108,7 +108,7 @@ glm::vec3 SceneView::seen(const vp::Vec3& world) const {
   return narrow(world - origin_);
 }
 
-// Null: it is no such shape.
+// Null: the shape is of another kind.
 template <class T>
 std::vector<Instance>* SceneView::instances_of(const vp::Shape& shape,
                                                ShapeMesh (*mesh)(const T&)) {
@@ -148,8 +148,7 @@ void SceneView::add(const vp::Shape& shape, const vp::SE3& T, const glm::vec4& c
   if (of_shape) of_shape->push_back(instance);
 }
 
-// Walls between the eye and what moves become ghosts, without a shadow; so do, for the shadow,
-// those that would put what moves in the dark.
+// Fixed boxes that hide moving bodies from the eye become transparent ghosts without a shadow.
 void SceneView::gather(const Simulation& simulation, const OrbitCamera& camera,
                        const ViewOptions& options) {
   for (auto& list : instances_) list.clear();
@@ -275,7 +274,7 @@ void SceneView::light(const draw::Program& program, const OrbitCamera& camera) c
   program.set("u_haze", kHaze / static_cast<float>(camera.distance()));
 }
 
-// Its pattern is that of the world, wherever the target is: found in double.
+// The pattern is fixed in the world, wherever the target is; computed in double precision.
 void SceneView::draw_grounds(const OrbitCamera& camera) {
   constexpr double kPattern = 10.0;  // [m]
   light(ground_, camera);

@@ -1,4 +1,4 @@
-// Draws a simulation: bodies in light and shadow, the ground, the sky, marks.
+// Draws a simulation: lit and shadowed bodies, the ground, the sky, marks.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@
 namespace sandbox {
 
 enum class Colouring : std::uint8_t {
-  body,   // each its own
+  body,   // by index
   speed,  // from blue, at rest, to red
 };
 
@@ -34,11 +34,11 @@ class SceneView {
   // Draws to the window's framebuffer of that size, and leaves it bound.
   void draw(const Simulation& simulation, const OrbitCamera& camera, const ViewOptions& options,
             const glm::ivec2& screen);
-  // Of the last picture: one for each kind of shape there, in the picture and in the shadow map.
+  // Of the last picture: one for each kind of shape present, in the picture and in the shadow map.
   int draw_calls() const { return draw_calls_; }
 
  private:
-  // A shape with a mesh of its own: a hull, a mesh or a height field.
+  // A shape with a separate mesh: a hull, a mesh or a height field.
   struct Built {
     vp::Shape shape;
     InstancedMesh mesh;
@@ -76,8 +76,8 @@ class SceneView {
   std::vector<Instance> ghosts_;
   std::vector<vp::SE3> grounds_;  // half-spaces
   Marks marks_;
-  vp::Vec3 origin_;                  // of what is drawn: the camera's target
-  glm::mat4 view_projection_{1.0f};  // of positions relative to it
+  vp::Vec3 origin_;                  // of the drawing: the camera's target
+  glm::mat4 view_projection_{1.0f};  // for positions relative to it
   glm::mat4 shadow_matrix_{1.0f};
   float shadow_texel_ = 0.0f;  // [m]
   int draw_calls_ = 0;

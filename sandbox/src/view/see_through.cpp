@@ -5,7 +5,7 @@
 
 namespace sandbox {
 
-// Against the three pairs of planes in turn, in the box's frame.
+// Slab test: clips the segment against the box's three pairs of planes, in the box's frame.
 bool hides(const vp::Box& box, const vp::SE3& T_world_box, const vp::Vec3& a, const vp::Vec3& b) {
   const vp::Vec3 p = inverse_times(T_world_box, a), way = inverse_times(T_world_box, b) - p;
   double enter = 0.0, leave = 1.0;

@@ -1,5 +1,4 @@
-// Which fixed boxes stand in the way of seeing what moves, as the walls of a pit do. No OpenGL
-// here.
+// Finds fixed boxes that hide moving bodies, such as the walls of a pit. No OpenGL here.
 #pragma once
 
 #include <span>
@@ -8,9 +7,9 @@
 
 namespace sandbox {
 
-// The straight way from a to b goes through the box, or begins or ends in it.
+// The segment from a to b intersects the box.
 bool hides(const vp::Box& box, const vp::SE3& T_world_box, const vp::Vec3& a, const vp::Vec3& b);
-// The box is in the way of more than a tenth of the points, seen from `from`.
+// The box hides more than a tenth of the points, seen from `from`.
 bool hides_many(const vp::Box& box, const vp::SE3& T_world_box, const vp::Vec3& from,
                 std::span<const vp::Vec3> points);
 

@@ -8,7 +8,7 @@
 
 namespace sandbox {
 
-// The map's side goes in steps, so that shadows do not swim with every body that moves.
+// The map's size changes in steps, so that shadows do not shimmer with every moving body.
 ShadowFit fit_shadow(std::span<const Caster> casters, float around) {
   constexpr float kStep = 1.12f;
   const glm::mat4 view = glm::lookAt(kSunDirection, glm::vec3(0.0f), glm::vec3(0, 0, 1));
@@ -23,7 +23,7 @@ ShadowFit fit_shadow(std::span<const Caster> casters, float around) {
   const glm::vec3 middle = 0.5f * (low + high);
   const float needed = 0.5f * std::max(high.x - low.x, high.y - low.y);
   const float half = std::pow(kStep, std::ceil(std::log(needed) / std::log(kStep)));
-  // What receives may lie far below what casts.
+  // Shadow receivers may be far below the casters.
   const float near = -high.z - 1.0f, far = -low.z + 8.0f * half + 1.0f;
   ShadowFit fit;
   fit.matrix =

@@ -1,4 +1,4 @@
-// The sun's camera: a box around what casts. No OpenGL here.
+// The sun's camera: a box around the shadow casters. No OpenGL here.
 #pragma once
 
 #include <glm/mat4x4.hpp>
@@ -7,7 +7,7 @@
 
 namespace sandbox {
 
-inline constexpr glm::vec3 kSunDirection{-0.4607f, -0.4959f, 0.7361f};  // unit, towards it
+inline constexpr glm::vec3 kSunDirection{-0.4607f, -0.4959f, 0.7361f};  // unit, towards the sun
 
 struct Caster {
   glm::vec3 centre;
@@ -19,8 +19,7 @@ struct ShadowFit {
   float width = 1.0f;      // of the square that the map covers [m]
 };
 
-// around: casters farther than that from the origin are let go where they would make the map
-// coarse.
+// around: casters farther than this from the origin are omitted if they would make the map coarse.
 ShadowFit fit_shadow(std::span<const Caster> casters, float around);
 
 }  // namespace sandbox

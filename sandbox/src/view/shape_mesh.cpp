@@ -10,8 +10,8 @@
 namespace sandbox {
 namespace {
 
-// Edges catch light: they are rounded by this share of the shape's least half extent, which hides
-// nothing of how shapes lie on each other.
+// Edges are rounded to catch light, by this fraction of the shape's smallest half extent; it hides
+// nothing of how shapes touch.
 constexpr float kBevel = 0.05f;
 
 struct Builder {
@@ -30,8 +30,8 @@ struct Builder {
   }
 };
 
-// Three vertices a corner, one for each face that meets there: six faces, and between them, where
-// the light turns, strips along the edges and a triangle at each corner.
+// Three vertices per corner, one for each adjacent face: six faces, strips along the edges and a
+// triangle at each corner, over which the normal changes.
 ShapeMesh box_mesh() {
   Builder b;
   for (int corner = 0; corner < 8; ++corner) {
@@ -72,7 +72,7 @@ struct ProfilePoint {
   glm::vec2 core, normal;  // from the axis, and along it
 };
 
-// A profile turned about z, from the bottom to the top; it begins and ends on the axis.
+// A profile revolved about z, from the bottom to the top; it begins and ends on the axis.
 ShapeMesh turned(const std::vector<ProfilePoint>& profile, int slices) {
   Builder b;
   for (int i = 0; i <= slices; ++i) {
@@ -93,7 +93,7 @@ ShapeMesh turned(const std::vector<ProfilePoint>& profile, int slices) {
   return b.mesh;
 }
 
-// Half circles about core points at -z and +z; z = 0: a sphere's.
+// Semicircles about core points at -z and +z; z = 0 gives a sphere.
 std::vector<ProfilePoint> round_profile(float z, int stacks) {
   std::vector<ProfilePoint> profile;
   const auto arc = [&](float from, float core) {
@@ -116,7 +116,7 @@ std::vector<ProfilePoint> cylinder_profile() {
           {{1, 1}, {1, 0}},   {{1, 1}, {0, 1}},   {{0, 1}, {0, 1}}};
 }
 
-// Not round, so that its slant turns with its stretch.
+// Without rounding, so that the slant's normal follows its stretch.
 std::vector<ProfilePoint> cone_profile() {
   const glm::vec2 slant = glm::normalize(glm::vec2(2, 1));
   return {{{0, -1}, {0, -1}}, {{1, -1}, {0, -1}}, {{1, -1}, slant}, {{0, 1}, slant}};
@@ -188,7 +188,7 @@ ShapeMesh hull_mesh(const vp::ConvexHull& hull) {
 
 namespace {
 
-// Flat: each triangle has corners of its own. Without area it is left out.
+// Flat shading: each triangle has separate vertices. A triangle without area is omitted.
 void add_flat(Builder& b, const vp::Vec3& p, const vp::Vec3& q, const vp::Vec3& r) {
   const vp::Vec3 across = cross(q - p, r - p);
   const double size = norm(across);

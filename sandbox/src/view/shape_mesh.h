@@ -1,5 +1,5 @@
-// Meshes of the engine's shapes in the form that body.vert stretches, and how much each is
-// stretched. No OpenGL here.
+// Meshes of the engine's shapes in the form that body.vert scales, and the scale of each shape. No
+// OpenGL here.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace sandbox {
 
-// A point is core * stretch + round * normal.
+// A point is core * stretch + rounding radius * normal.
 struct ShapeVertex {
   glm::vec3 core, normal;
 };
@@ -22,19 +22,19 @@ struct ShapeMesh {
   std::vector<std::uint32_t> indices;  // triangles, counter-clockwise from outside
 };
 
-// The kinds that share a mesh, whatever their sizes.
+// The kinds whose shapes share a mesh for all sizes.
 enum class ShapeKind : std::uint8_t { box, sphere, capsule, cylinder, cone };
 inline constexpr int kShapeKinds = 5;
 
-// detail: 1 for a close look; less where triangles are dear.
+// detail: 1 for close views; less where triangles are expensive.
 ShapeMesh shape_mesh(ShapeKind kind, float detail);
-ShapeMesh hull_mesh(const vp::ConvexHull& hull);  // of one hull; stretched by 1, not round
-// The same of triangles; of a two-sided mesh both sides.
+ShapeMesh hull_mesh(const vp::ConvexHull& hull);  // of one hull; stretch 1, rounding radius 0
+// The same for triangles; for a two-sided mesh both sides.
 ShapeMesh surface_mesh(const vp::TriangleMesh& mesh);
 ShapeMesh surface_mesh(const vp::HeightField& field);
 
-// xyz: stretch of the core; w: round [m]. The bounds are the shape's own. Of hulls and
-// surfaces: 1 and 0.
+// xyz: stretch of the core; w: rounding radius [m]. The result has the shape's bounds. For hulls
+// and surfaces: 1 and 0.
 glm::vec4 stretch_of(const vp::Shape& shape);
 
 }  // namespace sandbox

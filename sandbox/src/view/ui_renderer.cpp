@@ -43,7 +43,7 @@ tl::expected<UiRenderer, std::string> UiRenderer::create(draw::Quality quality) 
   return renderer;
 }
 
-// Scissors are counted from the bottom, ImGui's rectangles from the top.
+// Scissor boxes are counted from the bottom, ImGui's rectangles from the top.
 void UiRenderer::draw(const ImDrawData& data) const {
   constexpr GLenum kIndex = sizeof(ImDrawIdx) == 2 ? GL_UNSIGNED_SHORT : GL_UNSIGNED_INT;
   const glm::vec2 scale{data.FramebufferScale.x, data.FramebufferScale.y};

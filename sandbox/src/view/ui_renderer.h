@@ -1,4 +1,4 @@
-// Draws what Dear ImGui has laid out, with OpenGL ES 3.0.
+// Renders Dear ImGui's draw data with OpenGL ES 3.0.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ namespace sandbox {
 
 class UiRenderer {
  public:
-  // Takes the glyphs of the current ImGui context's fonts.
+  // Copies the glyphs of the current ImGui context's fonts.
   static tl::expected<UiRenderer, std::string> create(draw::Quality quality);
   // To the bound framebuffer.
   void draw(const ImDrawData& data) const;
