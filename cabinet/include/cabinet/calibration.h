@@ -34,7 +34,7 @@ struct RodCalibration {
   double m[2][2];                 // [m / count], [rad / count]
   double slide_gain[2] = {0, 0};  // coefficients of cos(angle), sin(angle)
   double spin_gain[2] = {0, 0};
-  // [counts / s] that the sensor misses: slower motion reads as none, faster as less
+  // [counts / s] that the sensor misses: slower motion reads as none, faster as less.
   double dead_band = 0;
   std::optional<IndexMark> index{};  // empty: no known index mark
 };

@@ -48,9 +48,9 @@ struct MountPriors {
   double optical_distance = 0.005;  // [m] at which counts per metre are inverse to the distance
   double axis_scale = 0.01;  // deviation of the ratio of the axes' scales: the rod's diameter
   // [rad] deviation of the angle between the axes: pixels are square, and a sensor that leans by 4
-  // degrees sees 0.24 % less in one direction
+  // degrees sees 0.24 % less in one direction.
   double right_angle = 0.0015;
-  // deviation of spin_gain from the value given by slide_gain and geometry
+  // Deviation of spin_gain from the value given by slide_gain and geometry.
   double gain_ratio = 0.006;
   double dead_band = 20;      // [counts / s] deviation from zero
   double stop_error = 2e-4;   // [m] deviation of a mark at an end stop

@@ -88,7 +88,7 @@ class CalibrationGuide {
   GuideAdvice missing() const;
   bool seen_stroke() const;
   double along(const Counts& from) const;  // [strokes] away from the person
-  // [turns] forward; unsigned while the direction is unknown
+  // [turns] forward; unsigned while the direction is unknown.
   double turned(const Counts& from) const;
   bool at_stop(double strokes) const;
 

@@ -9,7 +9,7 @@
 
 namespace cabinet {
 
-// [bytes] of a packet to a device: report ID and HID report
+// [bytes] of a packet to a device: report ID and HID report.
 constexpr std::size_t kMostPacket = 65;
 
 // State of the device as seen from its descriptor. The message to the person differs for each.

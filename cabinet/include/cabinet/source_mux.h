@@ -21,8 +21,8 @@ namespace cabinet {
 
 // The reference of a source's positions, which determines how its offset changes.
 enum class Origin : std::uint8_t {
-  // a handle with sensors: only motion is meaningful; the offset stays, except that of an angle
-  // which an index mark has made known
+  // A handle with sensors: only motion is meaningful; the offset stays, except that of an angle
+  // which an index mark has made known.
   relative,
   absolute,  // knows the table (computer player, client with snapshots): the offset fades
 };
