@@ -24,9 +24,10 @@ class LineKeeper {
   LineKeeper(const LineKeeper&) = delete;
   LineKeeper& operator=(const LineKeeper&) = delete;
 
-  // Both run on one thread, without blocking or allocating memory. Returns the descriptor; or -1
-  // after requesting one for a later call. errno then holds the error of the last attempt (ENOENT
-  // before the first).
+  // take() and close() run on one thread, without blocking or allocating memory.
+  //
+  // take() returns the descriptor; or -1 after requesting one for a later call. errno then holds
+  // the error of the last attempt (ENOENT before the first).
   int take();
   void close(int fd);  // closes fd before the next open
   // Queues a packet for a descriptor that was taken and not closed. False: the queue is full, or
