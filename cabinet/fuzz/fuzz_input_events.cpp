@@ -19,7 +19,7 @@ void check(bool holds) {
   if (!holds) std::abort();
 }
 
-// As in the source, but without one: each event once, whatever the pieces.
+// Parses events as the source does, without a source: each event once, for any piece size.
 std::uint64_t reports_of(const std::uint8_t* data, std::size_t size, std::size_t piece) {
   EventReader reader;
   MouseReports reports;

@@ -33,7 +33,7 @@ constexpr double kLeastMetres = 1e-3 / 472 / 4, kMostMetres = 1e-3 * 4;
 // cannot be distinguished.
 constexpr double kLeastSine = 0.01;
 // Limit for an eccentric rod. At half, the rod comes a third closer and recedes as much: it would
-// touch the sensor.
+// grind.
 constexpr double kMostGain = 0.5;
 // A magnet of 6 mm on a collar of 34 mm is on for a fifteenth of a turn.
 constexpr double kLeastMark = 0.01, kMostMark = 1.6;  // [rad] wide

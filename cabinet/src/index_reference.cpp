@@ -20,8 +20,7 @@ constexpr double kMostOff = 0.25, kMostOffAngle = 3 * kDegree;
 constexpr double kQuarterTurn = M_PI / 2;
 // A man's foot, 75 mm from the axis, moves at 15 mm/s; one degree is corrected in 0.1 s.
 constexpr double kRate = 0.2;
-// The first correction may be half a turn: it takes half a second, so that no foot hits a ball
-// hard.
+// The first correction may be half a turn: it takes half a second, so that no foot shoots a ball.
 constexpr double kFirstRate = 6;  // [rad/s]
 // Fraction of a pass's correction. The rest is left to the next one, which averages their errors.
 constexpr double kShare = 0.7;

@@ -73,7 +73,7 @@ void LineKeeper::write_packets() {
 }
 
 void LineKeeper::run() {
-  // Opening a device may need root's rights, which later work does not.
+  // Keeps file access, since only root may be able to open the device.
   os::drop_capabilities(true);
   while (true) {
     work_.wait();  // a signal may interrupt it; then there is no work

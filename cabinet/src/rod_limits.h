@@ -17,8 +17,8 @@ inline constexpr double kFastestTurn = 250;  // [rad/s]
 // second, a USB mouse at 125.
 inline constexpr double kLongestReport = 8e-3;  // [s]
 
-// Limits for this period as seen in frames: one frame may bring two reports of a mouse whose motion
-// began before it.
+// Whether a motion is possible within this time as seen in frames: one frame may bring two reports
+// of a mouse whose motion began before it.
 inline bool possible(const RodMotion& moved, double seconds) {
   const double longest = seconds + 0.010;
   return std::abs(moved.slide) <= kFastestSlide * longest &&

@@ -21,7 +21,8 @@ namespace firmware {
 
 class Gamepads {
  public:
-  static const uint16_t kLetGoMs = 2000;  // without a count; no hand holds a rod that still
+  // Time without a count that means a released rod: no hand is that still.
+  static const uint16_t kLetGoMs = 2000;
   static const uint8_t kWindowMs = 16;  // a sixteenth of a turn within it, 25 rad/s, is a fast turn
   // Windows for which a button stays pressed: 64 ms, long enough for any game.
   static const uint8_t kWindowsHeld = 4;

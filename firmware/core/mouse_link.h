@@ -46,7 +46,7 @@ class MouseLink {
 
   uint8_t mouse() const { return mouse_; }
   State state() const { return state_; }
-  // Enabled, and not known to be silent.
+  // Enabled and answering, as far as is known.
   bool present() const { return present_; }
   // Set up as far as possible without the others.
   bool waits_at_gate() const { return state_ == kGate; }

@@ -13,9 +13,9 @@
 namespace firmware {
 
 // Wires: static void clock_low(), clock_free(), data_low(), data_free(); bool clock(), data(); void
-// settle(): a released line rises by its pull-up within it, else the step takes it for held low;
-// wait_high(): at least 0.6 us; wait_low(): together with the other work of a step between two
-// clocks, a low period of 1.3 us. The tests measure both.
+// settle(): waits until a released line has risen by its pull-up; a line still low counts as held
+// low for this step; wait_high(): at least 0.6 us; wait_low(): together with the other work of a
+// step between two clocks, a low period of 1.3 us. The tests measure both.
 template <typename Wires>
 // NOLINTNEXTLINE(cppcoreguidelines-virtual-class-destructor): final, which it misses of templates
 class SoftI2c final : public I2cReadBus {

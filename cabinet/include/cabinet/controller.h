@@ -13,11 +13,12 @@ struct UsbIdentity {
   std::string serial, product;
 };
 
-// Of a node by its name in a device class: "tty" and "ttyACM0", "hidraw" and "hidraw0". sys: mount
-// point of the kernel's sysfs.
+// The USB identity of a node by its name in a device class: "tty" and "ttyACM0", "hidraw" and
+// "hidraw0". sys: mount point of the kernel's sysfs.
 UsbIdentity usb_identity(const std::string& device_class, const std::string& node,
                          const std::string& sys = "/sys");
-// Of "serial:/dev/ttyACM0" or "hid:/dev/hidraw0". A recording has none.
+// The USB identity of the device at "serial:/dev/ttyACM0" or "hid:/dev/hidraw0". A recording has
+// none.
 UsbIdentity usb_identity_at(const std::string& address, const std::string& sys = "/sys");
 std::string controller_serial(const std::string& address, const std::string& sys = "/sys");
 
