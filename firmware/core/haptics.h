@@ -23,8 +23,8 @@ class I2cBus {
   virtual void write(uint8_t address, const uint8_t* bytes, uint8_t size) = 0;
   // State of the last transfer and of a write chained to it.
   virtual State state() = 0;
-  // Queues a write that starts automatically if the write in progress succeeds. False: not queued;
-  // this bus does not support it.
+  // Queues a write that starts automatically if the write in progress succeeds. False: not queued,
+  // for instance because this bus does not support it.
   virtual bool chain(uint8_t, const uint8_t*, uint8_t) { return false; }
 
   // Claims the bus until release(), after the end of the last transfer. False: another user has it.

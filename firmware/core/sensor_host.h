@@ -1,8 +1,8 @@
 // Eight SPI motion sensors and the frame with their counts, the counterpart of MouseHost for PS/2
 // mice.
 //
-// Each millisecond: sample(), make_frame(), then service() in the remaining time. service() sets up
-// a sensor, or checks that all are still set up. A sensor with invalid answers counts as absent.
+// Each millisecond: sample(), add_to_frame(), then service() in the remaining time. service() sets
+// up a sensor, or checks that all are still set up. A sensor with invalid answers counts as absent.
 // Absent sensors are tried every kRetryMs. No SROM is uploaded: the sensors run their built-in
 // program.
 #ifndef FIRMWARE_CORE_SENSOR_HOST_H

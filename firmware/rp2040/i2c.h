@@ -20,7 +20,7 @@ class I2c : public firmware::I2cReadBus {
   void read(uint8_t address) override;
   uint8_t byte() override;
   State state() override;
-  // Ends a transfer. It only needs to wake the polling loop.
+  // Called at the end of a transfer. It only needs to wake the polling loop.
   void on_interrupt();
 
  private:
