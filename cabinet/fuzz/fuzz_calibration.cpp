@@ -1,4 +1,4 @@
-// Any text: refused with a sentence, or a calibration that turns any counts into finite motion.
+// Any text: rejected with a sentence, or a calibration that converts any counts to finite motion.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>

@@ -1,4 +1,4 @@
-// Byte 0: packing and piece size; the rest: what a device sends.
+// Byte 0: packing and piece size. The rest: data from a device.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>

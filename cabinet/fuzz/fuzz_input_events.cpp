@@ -1,5 +1,5 @@
-// Bytes 0 and 1: the size of a piece and whether the mouse is plugged in again after it; the rest:
-// what a mouse's node gives to read, through a pipe to the source that plays it.
+// Bytes 0 and 1: the size of a piece, and whether the mouse is plugged in again after it. The rest:
+// data read from a mouse's node, passed through a pipe to the source.
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -19,7 +19,7 @@ void check(bool holds) {
   if (!holds) std::abort();
 }
 
-// As the source does it, without one: each event once, whatever the pieces.
+// Parses events as the source does, without a source: each event once, for any piece size.
 std::uint64_t reports_of(const std::uint8_t* data, std::size_t size, std::size_t piece) {
   EventReader reader;
   MouseReports reports;

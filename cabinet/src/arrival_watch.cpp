@@ -24,7 +24,7 @@ ArrivalWatch::~ArrivalWatch() {
   thread_.join();
 }
 
-// By edges: each arrival wakes once, whether what came before was read or not.
+// Edge-triggered: each arrival wakes the thread once, whether earlier bytes were read or not.
 void ArrivalWatch::watch(int fd) {
   epoll_event event{.events = EPOLLIN | EPOLLET, .data = {.fd = fd}};
   ::epoll_ctl(epoll_.get(), EPOLL_CTL_ADD, fd, &event);
@@ -37,7 +37,8 @@ void ArrivalWatch::run() {
     const int ready =
         ::epoll_wait(epoll_.get(), events.data(), static_cast<int>(events.size()), -1);
     const std::int64_t now_us = os::monotonic_us();
-    if (ready < 0 && errno != EINTR) return;  // without it, arrivals are known to a poll
+    // Without this thread, poll() still bounds arrival times.
+    if (ready < 0 && errno != EINTR) return;
     for (int i = 0; i < ready; ++i) {
       if (events[static_cast<std::size_t>(i)].data.fd == end_.get()) return;
       last_us_.store(now_us, std::memory_order_release);

@@ -1,6 +1,6 @@
-// Says when bytes last came on a line, to some 20 us: the poller, which looks each millisecond,
-// only knows that they came since it looked before. The bytes themselves it leaves to the poller:
-// if this thread is late, the poller reads them all the same.
+// Measures when bytes last arrived on a line, to about 20 us. The poller, which reads every
+// millisecond, only knows that they arrived since its last read. The watch does not read the bytes:
+// if its thread is late, the poller still reads them all.
 #pragma once
 
 #include <atomic>
@@ -18,8 +18,8 @@ class ArrivalWatch {
   ArrivalWatch(const ArrivalWatch&) = delete;
   ArrivalWatch& operator=(const ArrivalWatch&) = delete;
 
-  void watch(int fd);  // until it is closed; any thread
-  // Of CLOCK_MONOTONIC [us]; 0: none came yet. Any thread, without waiting.
+  void watch(int fd);  // until fd is closed; from any thread
+  // On CLOCK_MONOTONIC [us]; 0: none arrived yet. From any thread, without blocking.
   std::int64_t last_us() const { return last_us_.load(std::memory_order_acquire); }
 
  private:

@@ -1,4 +1,4 @@
-// The calibration file, JSON; its schema is in docs/cabinet.md.
+// The calibration file, JSON; docs/cabinet.md has its schema.
 #include "cabinet/calibration.h"
 
 #include "calibration_check.h"
@@ -23,21 +23,22 @@ using nlohmann::json;
 using Failure = std::optional<std::string>;  // what is wrong and what to do
 
 constexpr int kVersion = 3;  // 1 had no gains and no dead band, 2 no serial number and no date
-// Eight rods are 2 KiB; what is far longer is another file.
+// Eight rods take 2 KiB; a much longer file is something else.
 constexpr std::size_t kMostBytes = 64 * 1024;
-// Sensors known: from PS/2 at 1 count/mm to a PMW3360 at 12000 counts an inch (472 a mm); on rods
-// of 16 mm a count along the surface turns by 1 / 8 mm. A file may lie 4 times outside.
+// Known sensors: from PS/2 at 1 count/mm to a PMW3360 at 12000 counts per inch (472 per mm). On
+// rods of 16 mm, a count of length l along the surface turns the rod by l / 8 mm. A file may exceed
+// this range by a factor of 4.
 constexpr double kLeastMetres = 1e-3 / 472 / 4, kMostMetres = 1e-3 * 4;
-// Sine of the angle between the two rows (1 for a square sensor): below this slide and spin can not
-// be told apart.
+// Minimum sine of the angle between the two rows (1 for a square sensor): below it, slide and spin
+// cannot be distinguished.
 constexpr double kLeastSine = 0.01;
-// Of an eccentric rod. Half is a rod that comes a third closer and goes as far away: it would
+// Limit for an eccentric rod. At half, the rod comes a third closer and recedes as much: it would
 // grind.
 constexpr double kMostGain = 0.5;
 // A magnet of 6 mm on a collar of 34 mm is on for a fifteenth of a turn.
 constexpr double kLeastMark = 0.01, kMostMark = 1.6;  // [rad] wide
 constexpr double kMostDeadBand = 4000;                // [counts / s] 50 mm/s at 78.7 counts/mm
-// Counts that are further apart belong to two motions, the second of which has just begun.
+// Counts further apart belong to two motions, the second of which has just started.
 constexpr double kLongestMotion = 0.05;  // [s] ten reports of a PS/2 mouse
 
 constexpr std::size_t kMostWord = 64;  // bytes
@@ -121,7 +122,7 @@ Failure read_row(const json& rod, const char* key, double (&row)[2]) {
   return {};
 }
 
-// Of a rod of version 2; what is left out is zero.
+// Of a rod in version 2; missing values are zero.
 Failure read_corrections(const json& rod, RodCalibration& calibration) {
   Failure wrong;
   if (rod.contains(kSlideGainKey)) wrong = read_row(rod, kSlideGainKey, calibration.slide_gain);
@@ -147,7 +148,7 @@ Failure read_number(const json& rod, const char* key, double& number) {
   return {};
 }
 
-// Left out, the rod has none.
+// If missing, the rod has no mark.
 Failure read_index(const json& rod, RodCalibration& calibration) {
   if (!rod.contains(kIndexAngleKey)) return {};
   IndexMark mark{};
@@ -158,7 +159,7 @@ Failure read_index(const json& rod, RodCalibration& calibration) {
   return wrong;
 }
 
-// Left out, it stays empty.
+// If missing, it stays empty.
 Failure read_word(const json& file, const char* key, std::string& word) {
   const auto found = file.find(key);
   if (found == file.end()) return {};
@@ -295,7 +296,7 @@ tl::expected<Calibration, std::string> parse_calibration(std::string_view text,
   try {
     file = json::parse(text);
   } catch (const json::exception& error) {
-    // A number too large for a double ends here too.
+    // Also fails for a number too large for a double.
     const auto* const at = dynamic_cast<const json::parse_error*>(&error);
     return tl::unexpected(sentence(
         name, "is not JSON" + (at != nullptr ? " at byte " + std::to_string(at->byte) : "") +

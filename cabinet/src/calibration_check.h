@@ -1,4 +1,4 @@
-// What no calibration of a rod may be, whether a file or a fit says it.
+// Validity checks of a rod's calibration, for a file or a fit.
 #pragma once
 
 #include <optional>
@@ -8,8 +8,8 @@
 
 namespace cabinet {
 
-// The rest of a sentence that begins with the rod: what is wrong, and what to do. None: it is
-// sound.
+// Returns the rest of a sentence that begins with the rod: what is wrong, and what to do. Empty:
+// the calibration is valid.
 std::optional<std::string> check_rod(const RodCalibration& rod);
 
 }  // namespace cabinet

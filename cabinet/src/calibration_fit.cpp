@@ -14,27 +14,29 @@ namespace cabinet {
 namespace {
 
 using Kind = CalibrationMark::Kind;
-using Numbers = Eigen::Matrix<double, kFitted, 1>;  // of RodCalibration, each near 1 or below
+// Parameters of RodCalibration, scaled to order 1 or below.
+using Numbers = Eigen::Matrix<double, kFitted, 1>;
 
-// Cauchy's scale [deviations]: from all but least squares, which a poor start can not lead astray,
-// to 2.385, which is 95 % as efficient and cares little for what lies far off.
+// Cauchy scales [deviations]: first almost least squares, which a poor start cannot mislead, down
+// to 2.385, which has 95 % of its efficiency and a low weight for outliers.
 constexpr double kCauchy[] = {100, 10, 2.385};
-constexpr double kOutlier = 5.0;        // of deviations
-constexpr double kMostOutliers = 0.25;  // of all marks: with more, which are the good ones?
-constexpr double kWeakGain = 0.1;       // deviation about none, so that a poor run has an answer
-constexpr double kBandUnit = 100;       // [counts / s] that the dead band is in units of
+constexpr double kOutlier = 5.0;  // [deviations]
+// Of all marks: with more, the good ones cannot be identified.
+constexpr double kMostOutliers = 0.25;
+constexpr double kWeakGain = 0.1;  // deviation from zero, so that a poor run has a solution
+constexpr double kBandUnit = 100;  // [counts / s] unit of the dead band
 constexpr int kIterations = 60;
 constexpr int kPriorRows = 2 + 2 + 2 + 1;
 
-// What a run has to tell before its fit is believed.
-constexpr double kScaleDeviation = 0.004;  // relative: 0.8 mm in a stroke of 200 mm
+// Required accuracy of a fit.
+constexpr double kScaleDeviation = 0.004;  // relative: 0.8 mm per stroke of 200 mm
 constexpr double kGainDeviation = 0.01;
 constexpr double kMostSlideRms = 1e-3;    // [m]
 constexpr double kMostAngleRms = 0.0875;  // [rad] 5 degrees
 constexpr std::size_t kLeastSlideMarks = 9, kLeastAngleMarks = 4;
 
 struct Scale {
-  double slide, angle;  // [m / count], [rad / count]: what the numbers of m are in units of
+  double slide, angle;  // [m / count], [rad / count]: units of m
 };
 
 RodCalibration calibration_of(const Numbers& n, const Scale& scale) {
@@ -44,9 +46,9 @@ RodCalibration calibration_of(const Numbers& n, const Scale& scale) {
           .dead_band = n[8] * kBandUnit};
 }
 
-// One residual's mark and the mark of its kind before it.
+// The mark of a residual and the previous mark of its kind.
 struct Difference {
-  std::size_t from, to;  // of run.marks
+  std::size_t from, to;  // indices in run.marks
 };
 
 std::vector<Difference> differences(const CalibrationRun& run) {
@@ -67,7 +69,7 @@ double first_angle(const CalibrationRun& run) {
   return 0;
 }
 
-// Where the rod is at each mark, of that mark's kind.
+// The rod's slide or angle at each mark, according to its kind.
 std::vector<double> integrate(const CalibrationRun& run, const RodCalibration& calibration) {
   std::vector<double> at_mark;
   RodIntegrator rod(calibration);
@@ -93,13 +95,13 @@ class Problem {
   const std::vector<Difference>& rows() const { return differences_; }
   Eigen::Index marks() const { return static_cast<Eigen::Index>(differences_.size()); }
 
-  // Of both marks.
+  // Of the difference of both marks.
   double deviation(const Difference& d) const {
     return std::sqrt(2.0) *
            (run_.marks[d.to].kind == Kind::slide ? priors_.stop_error : priors_.angle_error);
   }
 
-  // Marks first, then priors; in deviations.
+  // In deviations: first the marks, then the priors.
   Eigen::VectorXd residuals(const Numbers& n, const Scale& scale) const {
     const std::vector<double> at = integrate(run_, calibration_of(n, scale));
     Eigen::VectorXd r(marks() + kPriorRows);
@@ -122,7 +124,7 @@ class Problem {
     return r;
   }
 
-  // Square roots of Cauchy's weights of the marks; priors are not doubted.
+  // Square roots of the Cauchy weights of the marks; priors have weight 1.
   Eigen::VectorXd weights(const Eigen::VectorXd& r, double cauchy) const {
     Eigen::VectorXd w = Eigen::VectorXd::Ones(r.size());
     for (Eigen::Index i = 0; i < marks(); ++i) w[i] = 1 / std::hypot(1.0, r[i] / cauchy);
@@ -137,7 +139,8 @@ class Problem {
   }
 
   Eigen::MatrixXd derivative(const Numbers& n, const Scale& scale) const {
-    constexpr double kStep = 1e-5;  // of numbers near 1: rounding and curvature both below 1e-9
+    // For parameters of order 1: rounding and curvature errors below 1e-9.
+    constexpr double kStep = 1e-5;
     Eigen::MatrixXd j(marks() + kPriorRows, kFitted);
     for (int i = 0; i < kFitted; ++i) {
       Numbers high = n, low = n;
@@ -154,8 +157,8 @@ class Problem {
   std::vector<Difference> differences_;
 };
 
-// Sums of counts between two marks, by least squares: no gains, no dead band. None if the run does
-// not move both ways.
+// Linear least squares on the sums of counts between two marks, without gains and dead band. Empty
+// if the run does not move in both directions.
 std::optional<RodCalibration> linear_fit(const CalibrationRun& run) {
   Eigen::Matrix2d normal[2] = {Eigen::Matrix2d::Zero(), Eigen::Matrix2d::Zero()};
   Eigen::Vector2d right[2] = {Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
@@ -171,7 +174,7 @@ std::optional<RodCalibration> linear_fit(const CalibrationRun& run) {
   RodCalibration rod{};
   for (int row = 0; row < 2; ++row) {
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> spread(normal[row]);
-    if (!(spread.eigenvalues()[0] > 1e4)) return {};  // a hundred counts in the lesser direction
+    if (!(spread.eigenvalues()[0] > 1e4)) return {};  // a hundred counts in the weaker direction
     const Eigen::Vector2d m = normal[row].ldlt().solve(right[row]);
     rod.m[row][0] = m[0];
     rod.m[row][1] = m[1];
@@ -179,7 +182,7 @@ std::optional<RodCalibration> linear_fit(const CalibrationRun& run) {
   return rod;
 }
 
-// Levenberg and Marquardt.
+// Levenberg-Marquardt.
 void minimize(const Problem& problem, const Scale& scale, double cauchy, Numbers& n) {
   double damping = 1e-3;
   Eigen::VectorXd r = problem.residuals(n, scale);
@@ -233,7 +236,7 @@ std::optional<std::string> check_run(const CalibrationRun& run) {
   return {};
 }
 
-// What the run does not tell. Deviations are in units of the numbers.
+// Reports parameters that the run does not determine. Deviations are in units of the parameters.
 std::optional<std::string> check_deviations(const RodFit& fit, const Scale& scale) {
   const auto& d = fit.deviation;
   if (d[4] > kGainDeviation || d[5] > kGainDeviation) {

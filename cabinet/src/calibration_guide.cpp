@@ -12,17 +12,18 @@ using Kind = CalibrationMark::Kind;
 
 constexpr int kStrokesToAndFro = 3, kStrokes = 8, kEighths = 7, kTurns = 5;
 
-// A stroke is at least so many counts: one a millimetre, of rods that reach 100 mm.
+// Min counts of a stroke: one per millimetre, for rods with a reach of 100 mm.
 constexpr double kLeastStroke = 100;
-// A stop is where the strokes to and fro ended, within so much of a stroke: of a rod that is 0.15
-// mm off centre a stroke has up to 4 % more or fewer counts, by its angle.
+// Tolerance of a stop's position, as a fraction of a stroke, around the ends of the strokes to and
+// fro. For a rod that is 0.15 mm eccentric, a stroke has up to 4 % more or fewer counts, depending
+// on its angle.
 constexpr double kAtStop = 0.12;
-// Strokes to and fro begin anew when one is longer by so much.
+// Strokes to and fro restart when one is longer by this factor.
 constexpr double kLonger = 1.1;
-constexpr double kLeastTurn = 0.06;     // [turns] half of the eighth that is asked for
+constexpr double kLeastTurn = 0.06;     // [turns] half of the requested eighth
 constexpr double kNearlyDown = 0.08;    // [turns]
-constexpr double kReadSeconds = 2.0;    // to read what is asked
-constexpr double kMostOffDown = 0.3;    // [turns] from straight down, by scales not fitted yet
+constexpr double kReadSeconds = 2.0;    // time to read a request
+constexpr double kMostOffDown = 0.3;    // [turns] from straight down, by scales not yet fitted
 constexpr double kRestCounts = 2;       // a sensor at rest may flicker
 constexpr double kRestStrokes = 0.002;  // 0.4 mm
 
@@ -145,8 +146,8 @@ GuideAdvice CalibrationGuide::missing() const {
       return turns < kLeastTurn ? GuideAdvice::turn_more : GuideAdvice::none;
     case Motion::turn_feet_down:
       if (turns < -kLeastTurn) return GuideAdvice::wrong_way;
-      // After eighths that were larger the feet may hang down already: whoever has read that, and
-      // has left them so, is through.
+      // If the previous eighths were larger than asked, the feet may already hang down. The step
+      // ends if the person has had time to read the request and left them so.
       if (turns < kLeastTurn &&
           (std::abs(all - 1) > kNearlyDown || time_ - began_s_ < kReadSeconds))
         return GuideAdvice::turn_more;
@@ -198,7 +199,7 @@ void CalibrationGuide::add(const CountIncrement& counts) {
     advice_ = GuideAdvice::none;
     return;
   }
-  // A rod that was not moved since the step was asked for waits for its person.
+  // A rod that was not moved since the request gets no advice.
   const bool moved =
       std::abs(along(began_at_)) > 2 * kAtStop || std::abs(turned(began_at_)) > kLeastTurn;
   advice_ = missing();

@@ -1,5 +1,5 @@
-// The host's time as the device's clock: the frame that came with the least delay says how far the
-// two are apart.
+// Maps the host's time to the device's clock. The frame with the minimum delay gives the offset
+// between the two.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@ namespace cabinet {
 
 class ClockMap {
  public:
-  // A frame of the device's time came at the host's, or was found there by then.
+  // Records that a frame with this device time arrived at this host time, or was found by then.
   void frame(std::int64_t device_us, std::int64_t host_us) {
     const std::int64_t apart = host_us - device_us;
     if (!started_ || host_us - began_us_ > kWindowUs) {
@@ -24,8 +24,8 @@ class ClockMap {
   void reset() { started_ = false; }
 
  private:
-  // Long enough to find a frame that was hardly delayed, short enough for two clocks that differ by
-  // half a percent to stay within 0.6 ms.
+  // Long enough to include a frame with little delay. Short enough that two clocks whose rates
+  // differ by half a percent stay within 0.6 ms.
   static constexpr std::int64_t kWindowUs = 64'000;
   bool started_ = false;
   std::int64_t began_us_ = 0, least_ = 0, before_ = 0;

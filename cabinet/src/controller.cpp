@@ -13,8 +13,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// From the device to the USB device that it is a part of: interface and, with hidraw, HID device
-// lie between, with serial lines behind a bridge their port. Above it are hubs, which have serial
+// Walks up from the device node to its USB device. In between are the interface and, for hidraw,
+// the HID device, or, for serial lines behind a bridge, their port. Hubs above it have serial
 // numbers of their own.
 constexpr int kMostLevels = 6;
 constexpr std::size_t kMostUsbWord = 64;
@@ -32,7 +32,7 @@ bool is_plain(char c) {
   return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '-';
 }
 
-// As versions before named it: two serial numbers could share a name.
+// The file name of earlier versions, in which two serial numbers could have the same name.
 std::string older_file(const std::string& folder, const std::string& serial) {
   std::string name;
   for (const char c : serial) name += is_plain(c) ? c : '_';
@@ -79,7 +79,7 @@ std::string controller_serial(const std::string& address, const std::string& sys
 std::string calibration_file(const std::string& folder, const std::string& serial) {
   std::string name;
   for (const char c : serial) {
-    // That no serial number is named as those that have none.
+    // So that no serial number maps to the name for controllers without one.
     if (is_plain(c) && !(name.empty() && serial == kUnnumbered)) {
       name += c;
       continue;
@@ -97,7 +97,7 @@ std::string kept_calibration(const std::string& folder, const std::string& seria
   if (exists(file)) return file;
   std::string older = older_file(folder, serial);
   if (serial.empty() || !exists(older)) return {};
-  // It may be that of another, whose name it was too.
+  // The file may belong to another controller that had the same name.
   const auto calibration = load_calibration(older);
   return calibration && !serial_conflict(*calibration, serial).empty() ? "" : older;
 }

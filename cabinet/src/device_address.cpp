@@ -1,4 +1,4 @@
-// "serial:/dev/ttyACM0" and its kin: from an address a person types to an open source.
+// Opens a source from an address that a person types, such as "serial:/dev/ttyACM0".
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
@@ -42,7 +42,8 @@ tl::expected<Address, std::string> parse_address(const std::string& text) {
                         "file:recording.bin.");
 }
 
-// Empty, or the sentence. A device may come later; a recording will not.
+// Empty, or the error sentence. A device may be connected later, but a missing recording is an
+// error.
 std::string objection(const std::string& text, const Address& address) {
   struct stat about {};
   if (stat(address.path.c_str(), &about) != 0) {
@@ -65,13 +66,13 @@ std::string objection(const std::string& text, const Address& address) {
   return {};
 }
 
-// An attempt costs the poller nothing, and the device is in its hands at the second.
+// An attempt costs the poller nothing. The second attempt returns the device.
 constexpr std::int64_t kReopenUs = 100'000;
 
 std::unique_ptr<DeviceSource> line_source(DeviceOptions options, const std::string& path,
                                           CalibrationFinder find) {
   auto arrivals = std::make_shared<ArrivalWatch>();
-  // Written by the thread that opens before it hands a descriptor over, read by the poller then.
+  // The opening thread writes it before it hands over a descriptor; the poller reads it after that.
   auto found = std::make_shared<std::optional<Calibration>>();
   auto keeper = std::make_shared<LineKeeper>([path, arrivals, found, find = std::move(find)] {
     const int fd = open_exclusively(path.c_str());
@@ -104,7 +105,7 @@ bool write_all(int fd, const char* bytes, std::size_t size) {
   return true;
 }
 
-// The whole recording, to be read from the start; empty: all is well.
+// Copies the complete recording, positioned at the start. Empty: success.
 std::string copy_to_memory(const std::string& text, const std::string& path, int memory) {
   const os::FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
   if (!file || memory < 0) return text + ": " + std::strerror(errno) + "; try again.";
@@ -125,7 +126,7 @@ std::string copy_to_memory(const std::string& text, const std::string& path, int
   return {};
 }
 
-// The opener keeps a descriptor of its own, so that the poller's close() frees nothing.
+// The opener keeps its own descriptor, so that the poller's close() frees nothing.
 tl::expected<std::unique_ptr<DeviceSource>, std::string> recording_source(DeviceOptions options,
                                                                           const std::string& path) {
   auto memory = std::make_shared<os::FileDescriptor>(::memfd_create("recording", MFD_CLOEXEC));

@@ -18,16 +18,16 @@
 namespace cabinet {
 namespace {
 
-// Bounds the work of one poll: 160 ms of a line at 1 Mbaud. What is left waits for the next poll.
+// Bounds the work of a poll: 160 ms of a line at 1 Mbaud. The rest waits for the next poll.
 constexpr std::size_t kMostBytesPerPoll = 16 * 1024;
 constexpr int kMostReadsPerPoll = 512;
-// A recording's pause is played in full up to this; a longer one is a break between two sessions.
+// A recording's pause is played in full up to this length; a longer one separates two sessions.
 constexpr std::int64_t kLongestPauseUs = 600'000'000;
-// Two polls are no further apart, as far as anything is concluded from it.
+// Max interval between polls for estimates of the arrival time.
 constexpr std::int64_t kLongestPollUs = 1'500;
-// A line that has so many bytes to send yet gets no more: 10 ms at 1 Mbaud.
+// A line with more unsent bytes than this gets no packet: 10 ms at 1 Mbaud.
 constexpr int kMostQueuedBytes = 1024;
-// A device that sends noise is not called silent between two pieces of it.
+// A device that sends noise does not become silent between two bursts of it.
 constexpr std::int64_t kNoiseUs = 1'000'000;
 
 bool keeps_message_bounds(int fd, const struct stat& about) {
@@ -83,14 +83,15 @@ struct DeviceSource::Impl {
   int open_error = 0;
   std::int64_t try_open_us = 0;
   bool tried = false;
-  bool heard = false;  // since it was opened
+  bool heard = false;  // a frame since it was opened
   bool ever_heard = false;
-  bool fresh = false;                                       // heard from within silence_us
-  std::int64_t heard_us = 0, polled_us = 0, before_us = 0;  // the last two polls
-  std::optional<std::int64_t> bytes_us;  // when bytes last came, since it was opened
+  bool fresh = false;  // a frame within silence_us
+  // Times of the last frame and the last two polls.
+  std::int64_t heard_us = 0, polled_us = 0, before_us = 0;
+  std::optional<std::int64_t> bytes_us;  // time of the last bytes since it was opened
 
-  // A recording: one frame is looked at ahead of its time.
-  bool socket = false, hidraw = false;  // what is open
+  // Of a recording, one frame is read ahead of its time.
+  bool socket = false, hidraw = false;  // type of the open device
   bool recording = false, played = false;
   bool pending = false;
   wire::DeviceFrame frame{};
@@ -146,7 +147,7 @@ void DeviceSource::Impl::lose_device(std::int64_t now_us) {
   tracker.hold();
 }
 
-// When the pending frame of a recording is to be seen: as long after the last one as it was then.
+// Time when the pending frame of a recording is due: its original interval after the last one.
 std::int64_t DeviceSource::Impl::due_us(std::int64_t now_us) const {
   if (!heard) return now_us;
   const auto elapsed = static_cast<std::int32_t>(frame.time_us - tracker.last_frame_time_us());
@@ -154,7 +155,7 @@ std::int64_t DeviceSource::Impl::due_us(std::int64_t now_us) const {
   return last_due_us + elapsed;
 }
 
-// Of the bytes that a poll finds.
+// Arrival time of the bytes found by a poll.
 std::int64_t DeviceSource::Impl::arrival_us(std::int64_t now_us) const {
   const std::int64_t since = std::max(before_us, now_us - kLongestPollUs);
   const std::int64_t told = options.arrived_us ? options.arrived_us() : 0;
@@ -174,14 +175,14 @@ void DeviceSource::Impl::accept(std::int64_t now_us) {
   heard_us = now_us;
 }
 
-// Bytes came lately that belong to no frame. What came right after the last frame is only the piece
-// of one at which a device fell silent.
+// Bytes arrived recently that are not part of a frame. Bytes right after the last frame do not
+// count: they are an incomplete frame of a device that fell silent.
 bool DeviceSource::Impl::garbled() const {
   if (!bytes_us || polled_us - *bytes_us > kNoiseUs) return false;
   return !heard || *bytes_us - heard_us > options.silence_us / 2;
 }
 
-// False when the next frame of a recording is not due yet.
+// False if the next frame of a recording is not due yet.
 bool DeviceSource::Impl::take_frames(std::int64_t now_us) {
   while (pending || reader.next(frame, counters)) {
     pending = recording && due_us(now_us) > now_us;
@@ -236,8 +237,8 @@ bool DeviceSource::send(std::span<const std::byte> packet) {
   if (in.socket)
     return ::send(in.fd, packet.data(), packet.size(), MSG_DONTWAIT | MSG_NOSIGNAL) ==
            static_cast<ssize_t>(packet.size());
-  // A part of a packet would spoil the next one too: none goes into a queue that may not hold all
-  // of it.
+  // A partial packet would corrupt the next one too, so nothing goes into a queue that may lack the
+  // capacity for all of it.
   int queued = 0;
   if (::ioctl(in.fd, TIOCOUTQ, &queued) != 0 || queued > kMostQueuedBytes) return false;
   return ::write(in.fd, packet.data(), packet.size()) == static_cast<ssize_t>(packet.size());

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kSecondsOfDay = 86'400;
 
-// Of what it says itself: a copy, or one from another machine, is no younger than that.
+// By the date in the file: a copy, or a file from another machine, is not younger than that.
 double age_in_days(const Calibration& calibration, const std::string& path, std::int64_t now_s) {
   struct stat about {};
   std::optional<std::int64_t> made_s = os::utc_seconds(calibration.made);
@@ -24,7 +24,7 @@ double age_in_days(const Calibration& calibration, const std::string& path, std:
   return static_cast<double>(now_s - made_s.value_or(now_s)) / kSecondsOfDay;
 }
 
-// What was read, and what is to be said of it.
+// The calibration read, and the result to report.
 struct ReadCalibration {
   std::optional<Calibration> calibration;
   CalibrationCheck check;

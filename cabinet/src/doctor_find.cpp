@@ -24,14 +24,14 @@ namespace fs = std::filesystem;
 
 // Bits of linux/input-event-codes.h.
 constexpr unsigned kRelX = 0, kRelY = 1, kButtonSouth = 0x130;
-// pid.codes' test ids: of a controller, and of one that is four gamepads besides, of whose
-// interfaces the first has the frames.
+// pid.codes test IDs: of a controller, and of one that is also four gamepads; the first of its
+// interfaces has the frames.
 constexpr const char* kControllerId = ":00001209:00000001";
 constexpr const char* kGamepadsId = ":00001209:00000002";
 constexpr const char* kFirstInterface = "/input0";
-// The USB bridges of the boards that our serial firmware is for: Arduino Mega 2560 with an
-// ATmega8U2 and 16U2, and the CH340 of its copies. Any other line is another device's, which
-// opening might restart.
+// The USB bridges of the boards with our serial firmware: Arduino Mega 2560 with an ATmega8U2 or
+// 16U2, and the CH340 of its copies. Other lines belong to other devices, which opening might
+// restart.
 constexpr std::array kBridges = {"2341:0010", "2341:0042", "2a03:0010", "2a03:0042", "1a86:7523"};
 constexpr std::size_t kMostEntries = 256, kMostText = 4096;
 
@@ -55,7 +55,7 @@ std::vector<std::string> entries(const fs::path& folder, const std::string& pref
   return names;
 }
 
-// The kernel's list of bits: hexadecimal words of 64, the highest first.
+// Parses the kernel's bit lists: 64-bit words in hexadecimal, the highest first.
 bool has_bit(const std::string& text, unsigned bit) {
   std::istringstream stream(text);
   std::vector<std::string> words;
@@ -68,8 +68,8 @@ bool has_bit(const std::string& text, unsigned bit) {
   return error == std::errc{} && end == word.data() + word.size() && (value >> bit % 64 & 1) != 0;
 }
 
-// Opening it costs a board its state, if it is a serial line: its rights are looked at. ENOTTY: it
-// is no device at all.
+// Checks access rights without opening, since opening a serial line may restart its board. ENOTTY:
+// not a device.
 int error_of(const fs::path& node, bool open) {
   struct stat about {};
   if (::stat(node.c_str(), &about) != 0) return errno;
@@ -107,7 +107,7 @@ bool has_frames(const std::string& uevent) {
   return id.ends_with(kGamepadsId) && value_of(uevent, "HID_PHYS").ends_with(kFirstInterface);
 }
 
-// Its sticks rest wherever its rods do, and the controller itself is examined.
+// Excluded: its sticks rest where its rods are, and the controller itself is examined.
 bool is_of_controller(const fs::path& input) {
   return read_text(input / "id" / "vendor") == "1209" &&
          read_text(input / "id" / "product") == "0002";
@@ -150,7 +150,7 @@ void find_inputs(const DoctorOptions& options, std::vector<FoundDevice>& devices
   }
 }
 
-// One that was found already is only marked.
+// A device that was found already only gets the flag.
 void add_named(const DoctorAddress& address, const std::string& sys,
                std::vector<FoundDevice>& devices) {
   std::error_code unknown;

@@ -13,21 +13,21 @@
 namespace cabinet {
 namespace {
 
-// A rod that nobody touches moves less: sensors' noise is a count or two, 0.9 degrees each.
+// A rod that nobody touches moves less: sensor noise is a count or two, 0.9 degrees each.
 constexpr double kNoiseSlide = 0.5e-3, kNoiseAngle = 3 * std::numbers::pi / 180;
-// A mouse that moves its rod so far is in a hand: some 500 counts. Noise is less.
+// A mouse that moves its rod this far is in use: about 500 counts. Noise is less.
 constexpr double kHandSlide = 20e-3, kHandAngle = 45 * std::numbers::pi / 180;
-constexpr double kHandStick = 0.5;                       // a gamepad's stick, of its way, in a hand
-constexpr double kHidFrames = 900, kSerialFrames = 225;  // a second; 1000 and 250 are sent
-constexpr double kMouseReports = 90;                     // the slowest mice send 125
-constexpr double kLatencyUs = 1'500;                     // a poll each 1 ms leaves 0.5
-constexpr double kOldDays = 180;  // sensors and rods are moved in half a year
+constexpr double kHandStick = 0.5;  // deflection of a gamepad's stick in use, fraction of full
+constexpr double kHidFrames = 900, kSerialFrames = 225;  // per second; 1000 and 250 are sent
+constexpr double kMouseReports = 90;                     // per second; the slowest mice send 125
+constexpr double kLatencyUs = 1'500;  // polling every 1 ms gives 0.5 ms on average
+constexpr double kOldDays = 180;      // in half a year, sensors and rods get moved
 const char* const kBusyCure =
     "end what keeps the machine busy; the server asks for real-time priority (CAP_SYS_NICE)";
 
 struct KindWords {
   const char* named;    // in a sentence of its own
-  const char* a_class;  // of what a path may be
+  const char* a_class;  // class that a path may belong to
 };
 
 KindWords words_of(DeviceKind kind) {
@@ -165,7 +165,7 @@ void judge_gamepad(const FoundDevice& device, std::vector<Trouble>& troubles) {
                      100 * double{kStickDeadZone})});
 }
 
-// Of a mouse and a gamepad.
+// For a mouse and a gamepad.
 void judge_reports(const FoundDevice& device, std::vector<Trouble>& troubles) {
   const SourceCounters& c = device.counters;
   if (c.lost > 0)
@@ -192,7 +192,7 @@ void judge_input(const FoundDevice& device, std::vector<Trouble>& troubles) {
 void judge_controller(const FoundDevice& device, bool another_is_live,
                       std::vector<Trouble>& troubles) {
   const bool serial = device.kind == DeviceKind::serial_controller;
-  const bool is_it = !serial || device.named;  // and not some other device behind such a bridge
+  const bool is_it = !serial || device.named;  // not another device behind such a bridge
   switch (device.state) {
     case DeviceState::live:
       judge_frames(device, troubles);
@@ -229,7 +229,7 @@ void judge_calibration(const CalibrationCheck& check, std::vector<Trouble>& trou
   }
 }
 
-// Each that surely is a controller has its own, or the one that was named.
+// Each device that is certainly a controller has its own file or the given one.
 void judge_calibrations(const Diagnosis& diagnosis, std::vector<Trouble>& troubles) {
   for (const CalibrationCheck& check : diagnosis.calibrations) judge_calibration(check, troubles);
   for (const FoundDevice& device : diagnosis.devices) {

@@ -6,7 +6,7 @@
 
 namespace cabinet {
 
-// The troubles of what was found and listened to, in the order of a person who looks for them.
+// The troubles of the devices found and examined, in the order in which a person would check them.
 std::vector<Trouble> troubles_of(const Diagnosis& diagnosis);
 
 }  // namespace cabinet

@@ -23,8 +23,8 @@
 namespace cabinet {
 namespace {
 
-constexpr double kStartSeconds = 3;  // of an Arduino's boot loader, and ours
-// Reports that are further apart belong to two motions.
+constexpr double kStartSeconds = 3;  // of an Arduino's boot loader and our firmware
+// Reports further apart belong to two motions.
 constexpr std::int64_t kLongestPauseUs = 50'000;
 
 std::function<std::int64_t()> each_millisecond() {
@@ -66,7 +66,7 @@ class RangesOfRods {
   std::array<Range, kRods> ranges_;
 };
 
-// How many reports a second come while something moves.
+// Report rate during motion.
 class RateOfMotion {
  public:
   void add(std::uint64_t frames, std::int64_t now_us) {
@@ -88,8 +88,8 @@ class RateOfMotion {
   std::optional<std::int64_t> last_us_;
 };
 
-// EBUSY: another program has locked or grabbed it. It is not grabbed: the desktop's pointer goes
-// on.
+// EBUSY: another program has locked or grabbed the device. It is not grabbed here, so that the
+// desktop's pointer still works.
 int open_input(const char* path) {
   os::FileDescriptor fd(open_exclusively(path));
   if (!fd) return -1;
@@ -105,7 +105,7 @@ int open_input(const char* path) {
   return fd.release();
 }
 
-// A mouse or a gamepad that is listened to beside others.
+// Listens to a mouse or a gamepad alongside others.
 class Ear {
  public:
   virtual ~Ear() = default;
@@ -113,7 +113,7 @@ class Ear {
   virtual void tell(FoundDevice& device) const = 0;
 };
 
-// It would move a rod as any mouse on the desk does.
+// Moves a rod as a hand mouse does.
 class MouseEar final : public Ear {
  public:
   explicit MouseEar(const std::string& path)
@@ -176,8 +176,8 @@ class GamepadEar final : public Ear {
   }
 
  private:
-  // Off its middle, in parts of its way. Where the kernel does not say how far it goes it is taken
-  // for one of 16 bits.
+  // Deflection as a fraction of the axis range. If the kernel does not report the range, a 16-bit
+  // axis is assumed.
   struct Stick {
     std::uint16_t code;
     double middle = 0, way = 32'768;

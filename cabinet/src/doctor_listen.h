@@ -7,10 +7,10 @@
 
 namespace cabinet {
 
-// Fills in what the device shows while nobody is to touch it.
+// Fills in the results of listening to a device while nobody touches it.
 void listen_to_controller(FoundDevice& device, const Calibration& calibration,
                           const DoctorOptions& options);
-// Mice and gamepads among them that may be read, all at once.
+// Listens to all readable mice and gamepads among them at once.
 void listen_to_inputs(std::vector<FoundDevice>& devices, const DoctorOptions& options);
 
 }  // namespace cabinet

@@ -172,7 +172,7 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
     out["troubles"].push_back(
         {{"device", trouble.device}, {"what", trouble.what}, {"cure", trouble.cure}});
   }
-  // A name that is no UTF-8 is a device's fault, and no reason to say nothing.
+  // A device name that is not UTF-8 must not prevent the output.
   return out.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 

@@ -15,7 +15,7 @@ namespace cabinet {
 int open_exclusively(const char* path) {
   constexpr int kHow = O_NONBLOCK | O_NOCTTY | O_CLOEXEC;
   os::FileDescriptor fd(::open(path, O_RDWR | kHow));
-  // One that may only be read plays all the same, without haptics.
+  // A read-only device still works, without haptics.
   if (!fd && (errno == EACCES || errno == EROFS))
     fd = os::FileDescriptor(::open(path, O_RDONLY | kHow));
   if (!fd) return -1;

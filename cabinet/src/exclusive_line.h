@@ -2,9 +2,10 @@
 
 namespace cabinet {
 
-// Opens the device to read, for this program alone: no other server has it at the same time
-// (flock), and a serial line no other program (TIOCEXCL; root may all the same). A tty is made raw
-// at 1 Mbaud. -1 and errno; EBUSY: another has it. May wait for a USB device's answer.
+// Opens the device for reading, exclusively: no other server has it at the same time (flock), and
+// no other program has a serial line (TIOCEXCL; root still can). Sets a tty to raw mode at 1 Mbaud.
+// Returns -1 and errno on failure; EBUSY: another program has it. May block until a USB device
+// answers.
 int open_exclusively(const char* path);
 
 }  // namespace cabinet

@@ -14,7 +14,7 @@ bool is_padded(std::span<const std::uint8_t> report) {
   return std::all_of(padding.begin(), padding.end(), [](std::uint8_t byte) { return byte == 0; });
 }
 
-// The controller's page has asked for the settings, and every reader hears the answer.
+// The answer to the controller page's request for the settings, which every reader receives.
 bool tells_settings(std::span<const std::uint8_t> report) {
   return is_padded(report) && wire::is_settings_report(report.data(), wire::kDeviceFrameBytes);
 }
@@ -58,7 +58,7 @@ bool FrameReader::next_cobs(wire::DeviceFrame& frame, SourceCounters& counters) 
     if (zero == nullptr) {
       if (end_ - begin_ < wire::kDeviceCobsBytes) return false;
       if (!searching_) ++counters.bad;
-      searching_ = true;  // too long to be a frame: drop all up to the next 0
+      searching_ = true;  // too long for a frame: drop everything up to the next 0
       begin_ = end_ = 0;
       return false;
     }

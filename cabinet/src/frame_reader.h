@@ -1,4 +1,5 @@
-// Cuts bytes from a device into frames. Bytes are a stranger's: whatever is not a frame is counted.
+// Splits bytes from a device into frames. The bytes are untrusted: anything that is not a frame is
+// counted.
 #pragma once
 
 #include <array>
@@ -11,22 +12,22 @@
 
 namespace cabinet {
 
-// How frames lie in what read() returns.
+// Layout of frames in the bytes from read().
 enum class Packing : std::uint8_t {
-  cobs,            // a stream: COBS, each frame closed by a 0
-  report_message,  // one read() is one 64-byte report: hidraw, SOCK_SEQPACKET
-  report_stream,   // 64-byte reports end to end; one that does not decode starts a search
+  cobs,            // a stream of COBS frames, each terminated by a 0
+  report_message,  // each read() returns one 64-byte report: hidraw, SOCK_SEQPACKET
+  report_stream,   // contiguous 64-byte reports; one that does not decode starts a search
 };
 
 class FrameReader {
  public:
-  // Forgets what was half read.
+  // Drops incomplete input.
   void reset(Packing packing);
-  // Where read() may put bytes; never empty once next() has returned false.
+  // Buffer for the next read(); not empty once next() has returned false.
   std::span<std::uint8_t> room();
-  // read() put so many bytes (or one message of that length) there.
+  // Reports that read() stored this many bytes (or one message of that length) there.
   void filled(std::size_t bytes, SourceCounters& counters);
-  // The next whole frame; adds to counters.bad what lies before it and is none.
+  // Extracts the next complete frame. Adds invalid data before it to counters.bad.
   bool next(wire::DeviceFrame& frame, SourceCounters& counters);
 
  private:
@@ -36,7 +37,7 @@ class FrameReader {
   Packing packing_ = Packing::cobs;
   std::array<std::uint8_t, 4096> buffer_{};
   std::size_t begin_ = 0, end_ = 0;
-  bool searching_ = false;  // inside bytes already counted as bad
+  bool searching_ = false;  // within bytes already counted as bad
 };
 
 // A 64-byte report: a frame and 18 zeros.

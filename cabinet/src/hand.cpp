@@ -7,19 +7,20 @@
 namespace cabinet {
 namespace {
 
-constexpr double kKeyRate = 1.2;       // [m/s] slide at full ramp: the goal's width in 0.17 s
-constexpr double kKeyRamp = 12.0;      // [m/s^2]: a tap moves a few mm, 0.1 s to full rate
-constexpr double kPadRate = 1.5;       // [m/s] at full deflection
-constexpr double kKeySwingRate = 60;   // [rad/s]: a foot at 72 mm strikes with 4.3 m/s
-constexpr double kPadSwingRate = 140;  // [rad/s]: the fastest a person turns a rod
-constexpr double kStrikes = 6.0;       // [rad/s] slower, a rod is only set right
-// A stalled window does not fling the rods [s]; a window of 10 frames a second is none.
+constexpr double kKeyRate = 1.2;      // [m/s] slide rate after the ramp: the goal's width in 0.17 s
+constexpr double kKeyRamp = 12.0;     // [m/s^2]: a tap moves a few mm, full rate after 0.1 s
+constexpr double kPadRate = 1.5;      // [m/s] at full deflection
+constexpr double kKeySwingRate = 60;  // [rad/s]: a foot at 72 mm hits at 4.3 m/s
+constexpr double kPadSwingRate = 140;  // [rad/s]: the fastest rotation by a person
+constexpr double kStrikes = 6.0;       // [rad/s] below this, a rod is only being adjusted
+// Max step after a stalled window [s], so that it does not fling the rods. A window with 10 frames
+// per second does not count as stalled.
 constexpr double kLongestStep = 0.11;
-constexpr int kMostTaps = 4;  // in one poll
+constexpr int kMostTaps = 4;  // per poll
 
-// A mouse reports every 8 ms or faster: a poll that brings nothing, that long after the last
-// movement, says that the hand stands. Held longer, the rate drives the rod on past where the hand
-// stopped.
+// A mouse reports at least every 8 ms. A poll without events this long after the last movement
+// means that the hand is at rest. With a longer hold, the rate would drive the rod past where the
+// hand stopped.
 constexpr std::int64_t kReportUs = 8'000;
 constexpr std::int64_t kRateHoldUs = 9'000;
 
@@ -31,7 +32,7 @@ float axis(float value) {
   return std::isfinite(value) ? std::clamp(value, -1.0f, 1.0f) : 0;
 }
 
-// 0 inside the dead zone, then from 0 to 1, so that nothing jumps at its rim.
+// 0 inside the dead zone, then linear from 0 to 1, so that nothing jumps at its boundary.
 double outside_dead_zone(float value) {
   const float beyond = std::max(std::abs(value) - kStickDeadZone, 0.0f) / (1 - kStickDeadZone);
   return std::copysign(beyond, value);
@@ -67,7 +68,7 @@ void Hand::mouse_moved(double right_px, double forward_px) {
            options_.slide_limit[line_]);
   if (forward == 0) return;
   line.angle += options_.angle_sign * options_.radians_per_pixel * forward;
-  line.swinging = false;  // the mouse takes the angle from a flick
+  line.swinging = false;  // mouse motion overrides a flick
 }
 
 void Hand::choose(int line) {
@@ -108,7 +109,7 @@ void Hand::adopt(int rod, double slide, double angle) {
     if (options_.rods[i] != rod || line.moved) continue;
     line.slide = std::clamp(slide, -options_.slide_limit[i], options_.slide_limit[i]);
     line.angle = angle;
-    line.sent_slide = line.slide;  // not a motion: no rate
+    line.sent_slide = line.slide;  // an adopted pose is not motion: no rate
     line.sent_angle = line.angle;
   }
 }
@@ -147,7 +148,7 @@ double Hand::swing_wanted() const {
 }
 
 void Hand::drive_slide(double seconds) {
-  // The key's ramp: up with kKeyRamp, to nothing at once when it is let go or turned round.
+  // The key's ramp: rises with kKeyRamp, and drops to zero at once on release or reversal.
   if (key_slide_ == 0 || key_slide_ * key_rate_ < 0) key_rate_ = 0;
   key_rate_ = towards(key_rate_, key_slide_ * kKeyRate, kKeyRamp * seconds);
   const double stick = larger(outside_dead_zone(pad_.left_x), outside_dead_zone(pad_.left_y));
@@ -169,7 +170,7 @@ void Hand::drive_swing(int index, double seconds) {
   if (!line.swinging) return;
   const bool by_stick = key_spin_ == 0 && wanted != 0;
   const double target = line.rest_angle + options_.angle_sign * wanted * kSwing;
-  // A tap is over before the next poll: the whole flick is in this one.
+  // A tap ends before the next poll, so this poll applies the full flick.
   const double reach = (by_stick ? kPadSwingRate : kKeySwingRate) * seconds;
   line.angle = tapped ? target : towards(line.angle, target, reach);
   if (wanted == 0 && line.angle == line.rest_angle) line.swinging = false;

@@ -9,8 +9,8 @@
 namespace cabinet {
 namespace {
 
-constexpr float kWeakest = 0.08f;   // below, no motor starts
-constexpr double kSoftShare = 0.5;  // of the strength, of a man of restitution 0
+constexpr float kWeakest = 0.08f;   // below it, no motor starts
+constexpr double kSoftShare = 0.5;  // fraction of full strength for a man of restitution 0
 
 }  // namespace
 
@@ -21,7 +21,7 @@ std::optional<HapticPulse> haptic_pulse(int rod, double impulse, double restitut
       std::min(std::log(impulse / kSoftestFelt) / std::log(kHardestFelt / kSoftestFelt), 1.0);
   const double strength =
       (kWeakest + (1.0 - kWeakest) * share) * (kSoftShare + (1.0 - kSoftShare) * hardness);
-  // Soft ones last longer, and so do hard hits.
+  // Soft men and hard hits give longer pulses.
   const double length = 0.5 * share + 0.5 * (1.0 - hardness);
   const double ms = kShortestPulseMs + (kLongestPulseMs - kShortestPulseMs) * length;
   return HapticPulse{rod, static_cast<float>(strength), static_cast<std::uint16_t>(ms)};
@@ -68,7 +68,7 @@ HapticEncoder command_encoder(DeviceFraming framing) {
     wire::encode_device_command(command, plain.data());
     auto* bytes = reinterpret_cast<std::uint8_t*>(out.data());
     if (framing == DeviceFraming::cobs) return wire::cobs_encode(plain.data(), plain.size(), bytes);
-    // Report number 0: there is one kind of report.
+    // Report ID 0: there is only one report.
     std::ranges::fill(out.first(1 + wire::kDeviceReportBytes), std::byte{0});
     std::ranges::copy(plain, bytes + 1);
     return 1 + wire::kDeviceReportBytes;

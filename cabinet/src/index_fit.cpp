@@ -1,12 +1,12 @@
-// By the angle of the fitted calibration, which is ahead of the feet by `zero` and more by each
-// turn (drift), pass i of the mark, the way d_i (1 forward, -1 back) at v_i [rad/s], has its middle
-// at
-//   middle_i = mark + 2 pi k_i + drift middle_i + d_i lag + v_i delay        k_i whole
-// and the rod, with the feet straight down for the j-th time, is at
+// The angle of the fitted calibration is ahead of the feet by `zero`, and more with each turn
+// (drift). In this angle, pass i of the mark, with direction d_i (1 forward, -1 back) and rate v_i
+// [rad/s], has its middle at
+//   middle_i = mark + 2 pi k_i + drift middle_i + d_i lag + v_i delay        k_i an integer
+// When the feet are straight down for the j-th time, the rod is at
 //   angle_j = known_j + drift angle_j + zero
-// The mark is at mark - zero. The delay, of the sensor's reports to the switch, is that of fast
-// turns only: it is fitted so that the lag is the switch's own, and dropped, as the drift is. Least
-// squares with what is known of any switch, once more without what lies far off.
+// The mark is at mark - zero. The delay, from the sensor's reports to the switch, matters only in
+// fast turns. It is fitted so that the lag is only the switch's own, and then dropped, as is the
+// drift. The method is least squares with priors for any switch, repeated once without outliers.
 #include "index_fit.h"
 
 #include <Eigen/Dense>
@@ -22,13 +22,13 @@ namespace {
 
 using Kind = CalibrationMark::Kind;
 
-constexpr double kLag = 0.03, kDelay = 0.010;  // [rad], [s] deviations, known beforehand
-constexpr double kScaleDrift = 0.002;          // [rad / rad] deviation, known beforehand
-constexpr double kNoise = 0.02;                // [rad] of a pass in a fast turn, at first
+constexpr double kLag = 0.03, kDelay = 0.010;  // [rad], [s] deviations of the priors
+constexpr double kScaleDrift = 0.002;          // [rad / rad] deviation of the prior
+constexpr double kNoise = 0.02;                // [rad] initial deviation of a pass in a fast turn
 constexpr double kLeastNoise = 0.002;          // [rad]
-constexpr double kFarOff = 2.5;                // of the deviations of all
-constexpr int kLeastPasses = 3;                // each way
-constexpr double kMostSpread = 0.06;           // [rad] of middles or widths that are of one mark
+constexpr double kFarOff = 2.5;                // [rms of the residuals]
+constexpr int kLeastPasses = 3;                // in each direction
+constexpr double kMostSpread = 0.06;           // [rad] of middles or widths of the same mark
 
 struct FeetDown {
   double angle, known;  // [rad]
@@ -76,7 +76,7 @@ double wrong(const IndexPass& pass, const Fit& fit) {
   return std::remainder(pass.middle - middle, 2 * M_PI);
 }
 
-// Normal equations in mark, zero, drift, lag and delay.
+// Normal equations for mark, zero, drift, lag and delay.
 struct Equations {
   using Row = Eigen::Matrix<double, 1, 5>;
   Eigen::Matrix<double, 5, 5> normal = Eigen::Matrix<double, 5, 5>::Zero();
@@ -124,7 +124,7 @@ Fit solve(const Seen& seen, double noise, double feet_error) {
   return fit;
 }
 
-// Of a mark of which the rod turned back half way, nothing is known.
+// A pass during which the rod turned back says nothing about the mark.
 void drop_turned_back(std::vector<IndexPass>& passes) {
   std::vector<double> widths;
   widths.reserve(passes.size());
@@ -158,7 +158,7 @@ void fit_index(const CalibrationRun& run, const MountPriors& priors, RodFit& fit
   marked.index = IndexMark{std::remainder(mark.mark - mark.zero, 2 * M_PI), mark.width, mark.lag};
   if (check_rod(marked)) return;
   fit.calibration = marked;
-  // What the rod's eccentricity adds once a turn is known as well as its gain.
+  // The rod's eccentricity adds an error once per turn, which is known as well as its gain.
   fit.index_deviation = std::hypot(mark.deviation, fit.deviation[6], fit.deviation[7]);
 }
 

@@ -1,12 +1,12 @@
-// A rod's index mark from the run that calibrates the rod: the turns pass it several times.
+// Fits a rod's index mark to the calibration run, whose turns pass it several times.
 #pragma once
 
 #include "cabinet/calibration_fit.h"
 
 namespace cabinet {
 
-// Adds to a fit what the run shows of the mark: nothing, if it was not seen; no mark, if it was but
-// its passes do not agree, or are all one way.
+// Adds the index mark to a fit. Changes nothing if the mark was not seen. Sets no mark if its
+// passes disagree or all have the same direction.
 void fit_index(const CalibrationRun& run, const MountPriors& priors, RodFit& fit);
 
 }  // namespace cabinet

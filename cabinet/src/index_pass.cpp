@@ -8,10 +8,11 @@
 namespace cabinet {
 namespace {
 
-// A magnet is round: further along the rod its mark is narrower. While the rod moves so far along
-// itself both edges move by less, on a mark of 6 mm.
-constexpr double kStands = 0.5e-3;      // [m]
-constexpr double kStepSeconds = 0.010;  // [s] in which the steps of reports are forgotten, to 1/e
+// A magnet is round: away from its centre along the rod, its mark is narrower. If the rod slides by
+// at most this during a pass, both edges of a mark of 6 mm move by less.
+constexpr double kStands = 0.5e-3;  // [m]
+// [s] time constant of the decaying max of the reports' steps.
+constexpr double kStepSeconds = 0.010;
 
 }  // namespace
 
@@ -21,7 +22,7 @@ std::optional<IndexPass> IndexPasses::add(bool under, const RodMotion& at, doubl
   since_entry_ += seconds;
   const bool before = std::exchange(under_, under);
   if (!std::exchange(known_, true) || before == under) return {};
-  const RodMotion edge{at.slide, at.angle - 0.5 * turned};  // in the middle of the frame
+  const RodMotion edge{at.slide, at.angle - 0.5 * turned};  // at the middle of the frame
   if (under) {
     entered_ = Entry{edge, step_};
     since_entry_ = 0;

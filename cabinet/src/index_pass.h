@@ -1,4 +1,4 @@
-// A rod's index mark as it passes under its switch: what both a calibration and play see of it.
+// Detects passes of a rod's index mark under its switch, for calibration and for play.
 #pragma once
 
 #include <optional>
@@ -8,19 +8,20 @@
 namespace cabinet {
 
 struct IndexPass {
-  double middle;  // [rad] between the angles at which the switch went on and off
-  double turned;  // [rad] between the two, signed: the mark's width and the way that the rod turned
+  double middle;  // [rad] midpoint of the angles at which the switch went on and off
+  // [rad] signed difference of the two: width of the mark, with the sign of the rotation.
+  double turned;
   double seconds;  // between the two
-  double step;  // [rad] the most that one report of about then had: so well known are both angles
+  double step;     // [rad] max angle step of a report around then: the resolution of both angles
 };
 
-// Follows one rod from frame to frame.
+// Tracks one rod from frame to frame.
 class IndexPasses {
  public:
-  // at: where the rod is by the frame; turned: what the frame added to its angle. A pass, when it
-  // is over: a mark that a sliding rod brings under its switch, or takes away, has passed nothing.
+  // at: pose of the rod at the frame. turned: the frame's increment of its angle. Returns a pass
+  // when it ends. A mark that a sliding rod moves under its switch or away from it is not a pass.
   std::optional<IndexPass> add(bool under, const RodMotion& at, double turned, double seconds);
-  // What was before the next frame does not belong to it.
+  // Discards the state: the next frame does not continue the previous ones.
   void forget();
   bool passing() const { return entered_.has_value(); }
 

@@ -9,19 +9,20 @@ namespace cabinet {
 namespace {
 
 constexpr double kDegree = M_PI / 180;
-// Of one report at the edges: the angle of each is known to half of it, and the switch is read up
-// to a millisecond late. 9 rad/s at 1000 reports a second.
+// Max angle step of a report at the edges: the angle of each edge is known to half of it, and the
+// switch is read up to a millisecond late. 9 rad/s at 1000 reports a second.
 constexpr double kMostStep = 0.5 * kDegree;
 // A coarse sensor has steps of a count, however slow the rod.
 constexpr double kMostCounts = 1.5;
-// Of the width: a pass that is as wide is one of this mark, at its place along the rod.
+// Tolerance of the width, as a fraction: a pass of similar width is of this mark, at its position
+// along the rod.
 constexpr double kMostOff = 0.25, kMostOffAngle = 3 * kDegree;
 constexpr double kQuarterTurn = M_PI / 2;
-// A man's foot, 75 mm from the axis, creeps by 15 mm/s; a degree is gone in 0.1 s.
+// A man's foot, 75 mm from the axis, moves at 15 mm/s; one degree is corrected in 0.1 s.
 constexpr double kRate = 0.2;
-// The first time it may be half a turn: in half a second, so that no foot strikes a ball.
+// The first correction may be half a turn: it takes half a second, so that no foot shoots a ball.
 constexpr double kFirstRate = 6;  // [rad/s]
-// Of what a pass says: the rest is left to the next one, which evens out what the two get wrong.
+// Fraction of a pass's correction. The rest is left to the next one, which averages their errors.
 constexpr double kShare = 0.7;
 
 }  // namespace
@@ -39,7 +40,7 @@ void IndexReference::lose() {
 double IndexReference::frame(bool under, const RodMotion& at, double turned, double seconds) {
   if (!mark_) return 0;
   if (const auto pass = passes_.add(under, at, turned, seconds)) take(*pass);
-  if (left_ == 0 || passes_.passing()) return 0;  // both edges are to be of one angle
+  if (left_ == 0 || passes_.passing()) return 0;  // both edges must be in the same angle
   const double step = std::clamp(left_, -rate_ * seconds, rate_ * seconds);
   left_ -= step;
   return step;
@@ -51,7 +52,8 @@ void IndexReference::take(const IndexPass& pass) {
     return;
   const double middle = pass.middle - std::copysign(mark_->lag, pass.turned);
   const double wrong = std::remainder(mark_->angle - middle, 2 * M_PI);
-  const bool turning = rate_ == kFirstRate && left_ != 0;  // the men are on their way there yet
+  // The first correction is still in progress.
+  const bool turning = rate_ == kFirstRate && left_ != 0;
   if (!known_ || turning) {
     known_ = true;
     left_ = wrong;

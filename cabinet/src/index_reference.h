@@ -1,6 +1,7 @@
-// What keeps a rod's angle true in play: its index mark. Counts drift, the mark stays; each pass
-// that was slow enough says by how much the angle is off, and that is taken out too slowly to be
-// seen. The first pass says where the feet are: until then the angle is from wherever the rod was.
+// Corrects a rod's angle in play by its index mark. Counts drift, the mark does not. Each pass that
+// was slow enough measures the error of the angle, which is then removed too slowly to be visible.
+// The first pass determines where the feet are: until then the angle is relative to the initial
+// one.
 #pragma once
 
 #include <cstdint>
@@ -14,15 +15,15 @@ class IndexReference {
  public:
   explicit IndexReference(const RodCalibration& calibration);
 
-  // at: where the rod is by the frame; turned: what the frame added to its angle. Returns what is
-  // to be added to the angle besides.
+  // at: pose of the rod at the frame. turned: the frame's increment of its angle. Returns the
+  // correction to add to the angle.
   double frame(bool under, const RodMotion& at, double turned, double seconds);
-  // The rod may have been turned, and nobody counted it.
+  // The rod may have been turned without being counted.
   void lose();
 
   bool known() const { return known_; }  // the angle is from feet straight down
-  // Passes that contradicted the angle by more than a quarter turn. They change nothing: the mark,
-  // or its switch, is not where it was.
+  // Passes that contradicted the angle by more than a quarter turn. They change nothing: the mark
+  // or its switch has moved.
   std::uint64_t disagreements() const { return disagreements_; }
 
  private:
@@ -32,8 +33,8 @@ class IndexReference {
   double most_step_;
   IndexPasses passes_;
   bool known_ = false;
-  double left_ = 0;  // [rad] to be added yet
-  double rate_ = 0;  // [rad/s] of that
+  double left_ = 0;  // [rad] remaining correction
+  double rate_ = 0;  // [rad/s] of the correction
   std::uint64_t disagreements_ = 0;
 };
 

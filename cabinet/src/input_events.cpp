@@ -26,7 +26,7 @@ bool EventReader::next(input_event& event) {
 }
 
 std::optional<std::int64_t> stamp_of(const input_event& event, std::int64_t now_us) {
-  // Seconds of a stranger's: those that would overflow are sorted out first.
+  // The seconds are untrusted: rejects values that would overflow.
   const std::int64_t seconds = event.input_event_sec, micros = event.input_event_usec;
   if (seconds < (now_us - kOldestUs) / 1'000'000 || seconds > now_us / 1'000'000 || micros < 0 ||
       micros >= 1'000'000) {

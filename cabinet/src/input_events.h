@@ -1,4 +1,4 @@
-// What an input device of the kernel (evdev) sends, taken apart: bytes are a stranger's.
+// Parses the events of a kernel input device (evdev). The bytes are untrusted.
 #pragma once
 
 #include <linux/input.h>
@@ -13,11 +13,11 @@
 
 namespace cabinet {
 
-// Cuts bytes that come in pieces of any size into events.
+// Splits bytes that arrive in pieces of any size into events.
 class EventReader {
  public:
   void reset() { filled_ = at_ = 0; }
-  // To be read into, and then told of by filled(); never empty once next() has said no.
+  // Buffer for read(), to be followed by filled(). Not empty once next() has returned false.
   std::span<std::byte> room();
   void filled(std::size_t bytes) { filled_ += bytes; }
   bool next(input_event& event);
@@ -27,27 +27,26 @@ class EventReader {
   std::size_t filled_ = 0, at_ = 0;
 };
 
-// When it happened, on the clock of now_us; none if that is of no time between the last second and
-// now.
+// Time of an event, on the clock of now_us. Empty if it does not lie within the last second.
 std::optional<std::int64_t> stamp_of(const input_event& event, std::int64_t now_us);
 
 struct MouseReport {
-  std::int64_t right = 0, forward = 0;  // counts, one of them not 0
-  std::int64_t time_us = 0;             // its stamp, or now
+  std::int64_t right = 0, forward = 0;  // counts, at least one not 0
+  std::int64_t time_us = 0;             // its time stamp, or now
 };
 
-// Adds a mouse's events up to reports of motion. What a kernel's buffer did not hold is lost, and
-// so is the report in which it says so.
+// Sums a mouse's events to reports of motion. Events that overflowed the kernel's buffer are lost,
+// and so is the report that says so.
 class MouseReports {
  public:
   void reset() { *this = {}; }
-  // Counts frames (reports of motion), lost, stale (no stamp) and latency.
+  // Counts frames (reports of motion), lost, stale (no valid stamp) and latency.
   std::optional<MouseReport> take(const input_event& event, std::int64_t now_us,
                                   SourceCounters& counters);
 
  private:
   std::int64_t right_ = 0, forward_ = 0;  // since the last report
-  bool dropped_ = false;                  // until the report that comes after
+  bool dropped_ = false;                  // until the end of the current report
 };
 
 }  // namespace cabinet

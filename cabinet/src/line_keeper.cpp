@@ -42,7 +42,7 @@ int LineKeeper::take() {
   return -1;
 }
 
-// The place is free: the descriptor before was closed before this one was opened.
+// to_close_ is free: the previous descriptor was closed before this one was opened.
 void LineKeeper::close(int fd) {
   to_close_.store(fd, std::memory_order_release);
   work_.post();
@@ -62,7 +62,7 @@ bool LineKeeper::send(int fd, std::span<const std::byte> packet) {
   return true;
 }
 
-// What a device does not take is lost.
+// Data that a device does not accept is lost.
 void LineKeeper::write_packets() {
   std::uint32_t taken = taken_.load(std::memory_order_relaxed);
   while (taken != put_.load(std::memory_order_acquire)) {
@@ -73,14 +73,15 @@ void LineKeeper::write_packets() {
 }
 
 void LineKeeper::run() {
-  os::drop_capabilities(true);  // a device may be root's to open
+  // Keeps file access, since only root may be able to open the device.
+  os::drop_capabilities(true);
   while (true) {
-    work_.wait();  // interrupted by a signal, it finds nothing to do
-    // Asked first: who asks has said before what is to be closed. An ask after this look wakes
-    // anew.
+    work_.wait();  // a signal may interrupt it; then there is no work
+    // Read handover_ first: a request follows the store of the descriptor to close. A later request
+    // posts work_ again.
     const bool asked = handover_.load(std::memory_order_acquire) == kAsked;
-    // What is closed was given up after its last packet was put, so that none is left for a number
-    // that is another file's by then.
+    // The descriptor was closed after its last packet was queued. So after write_packets() no
+    // packet is left for a number that by then names another file.
     const int closing = to_close_.exchange(-1, std::memory_order_acq_rel);
     write_packets();
     close_if_open(closing);

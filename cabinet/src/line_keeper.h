@@ -1,6 +1,6 @@
-// Opens and closes a device on a thread of its own: on a USB serial line either may take from
-// milliseconds to seconds, and so may setting the line up. It also writes to those whose write(2)
-// waits for the device. The thread that polls never waits.
+// Opens, configures and closes a device on a thread of its own: each may take milliseconds to
+// seconds on a USB serial line. It also writes to devices whose write(2) blocks. The polling thread
+// never blocks.
 #pragma once
 
 #include <array>
@@ -18,19 +18,20 @@ namespace cabinet {
 
 class LineKeeper {
  public:
-  // open: returns a descriptor that is ready to be read, or -1 and errno. It may wait.
+  // open: returns a descriptor that is ready to read, or -1 and errno. It may block.
   explicit LineKeeper(std::function<int()> open);
-  ~LineKeeper();  // waits for the thread, closes what nobody took
+  ~LineKeeper();  // joins the thread and closes a descriptor that was not taken
   LineKeeper(const LineKeeper&) = delete;
   LineKeeper& operator=(const LineKeeper&) = delete;
 
-  // Both on one thread, without waiting or taking memory.
-  // The descriptor; or -1, one is asked for, to be taken later, and errno says why the last attempt
-  // failed (ENOENT while there was none).
+  // take() and close() run on one thread, without blocking or allocating memory.
+  //
+  // take() returns the descriptor; or -1 after requesting one for a later call. errno then holds
+  // the error of the last attempt (ENOENT before the first).
   int take();
-  void close(int fd);  // closed before the next is opened
-  // Writes a packet to a descriptor that was taken and not closed. False: as many wait already as
-  // there is room for, or it is longer than kMostPacket.
+  void close(int fd);  // closes fd before the next open
+  // Queues a packet for a descriptor that was taken and not closed. False: the queue is full, or
+  // the packet is longer than kMostPacket.
   bool send(int fd, std::span<const std::byte> packet);
 
  private:
@@ -43,16 +44,17 @@ class LineKeeper {
     std::array<std::byte, kMostPacket> bytes{};
   };
 
-  // handover_ is a descriptor, or one of these. The poller moves it from idle to asked and from a
-  // descriptor to idle, the thread from asked to a descriptor or, in vain, to idle.
+  // handover_ is a descriptor or one of these states. The poller changes it from idle to asked, and
+  // from a descriptor to idle. The thread changes it from asked to a descriptor, or to idle on
+  // failure.
   static constexpr int kIdle = -1, kAsked = -2;
   std::function<int()> open_;
   std::atomic<int> handover_{kIdle};
   std::atomic<int> to_close_{-1};
   std::atomic<int> error_;  // of the last attempt
   std::atomic<bool> ending_{false};
-  // Written by the poller up to put_, by the thread taken out up to taken_: counters, of the places
-  // modulo their number.
+  // Ring buffer. The poller writes entries up to put_, the thread reads up to taken_. Both are
+  // counters; their index is modulo the capacity.
   std::array<Packet, 16> packets_{};
   std::atomic<std::uint32_t> put_{0}, taken_{0};
   os::ThreadSignal work_;

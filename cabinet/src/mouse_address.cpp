@@ -1,4 +1,4 @@
-// "evdev:/dev/input/event5:4": from an address a person types to a mouse that is grabbed.
+// Opens and grabs a mouse from an address that a person types, such as "evdev:/dev/input/event5:4".
 #include <fcntl.h>
 #include <linux/input.h>
 #include <sys/ioctl.h>
@@ -57,7 +57,7 @@ bool is_mouse_address(const std::string& address) {
 tl::expected<MouseAddress, std::string> parse_mouse_address(const std::string& address) {
   MouseAddress parsed;
   if (is_mouse_address(address)) parsed.path = address.substr(kScheme.size());
-  // Names in /dev/input/by-path have colons, and go on behind them.
+  // Names in /dev/input/by-path contain colons, with more text after them.
   const std::size_t colon = parsed.path.rfind(':');
   const std::string rod = colon == std::string::npos ? "" : parsed.path.substr(colon + 1);
   const bool names_rod =

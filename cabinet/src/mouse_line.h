@@ -4,8 +4,9 @@ namespace cabinet {
 
 bool is_mouse(int fd);  // an evdev device with two relative axes
 
-// Opens a mouse for this program alone: locked, and grabbed, so that nobody else hears it; stamps
-// of CLOCK_MONOTONIC. -1 and errno: EBUSY, another has it; ENOTTY: no mouse.
+// Opens a mouse exclusively: locked, and grabbed, so that no other program gets its events. Stamps
+// are of CLOCK_MONOTONIC. Returns -1 and errno on failure: EBUSY: another program has it; ENOTTY:
+// not a mouse.
 int open_mouse_line(const char* path);
 
 }  // namespace cabinet

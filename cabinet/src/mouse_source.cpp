@@ -16,7 +16,7 @@ namespace cabinet {
 namespace {
 
 constexpr int kMostReadsPerPoll = 16;  // of 64 events: 5 polls of the fastest mouse
-// The kernel hands an event on within this.
+// Max delay from the kernel's stamp until an event can be read.
 constexpr std::int64_t kHandOverUs = 500;
 
 }  // namespace
@@ -58,7 +58,7 @@ struct MouseSource::Impl {
 
   EventReader reader;
   MouseReports reports;
-  std::int64_t seen_us = 0;  // the last report, or poll
+  std::int64_t seen_us = 0;  // time of the last report, or poll
   std::int64_t reported_us = 0;
 };
 
@@ -154,7 +154,7 @@ void MouseSource::poll(std::int64_t now_us) {
   if (in.fd < 0) in.open_device(now_us);
   if (in.fd >= 0) in.take_in(now_us);
   if (in.fd < 0) return;
-  if (now_us - kHandOverUs > in.seen_us) {  // nothing has come until then
+  if (now_us - kHandOverUs > in.seen_us) {  // no event until then
     in.seen_us = now_us - kHandOverUs;
     in.filter.update(0, 0, in.seen_us);
   }

@@ -5,10 +5,10 @@
 namespace cabinet {
 namespace {
 
-// Of a new instant rate: halves the jitter of a 5 ms report seen through 4 ms frames, and follows a
-// flick in two reports. Smaller is smoother and later.
+// Gain of a new instantaneous rate: halves the jitter of 5 ms reports seen through 4 ms frames, and
+// follows a flick in two reports. A smaller gain is smoother and slower.
 constexpr double kGain = 0.6;
-// Two increments are never taken to lie closer: a clock that stands must not give infinite rates.
+// Min time between two increments: a stopped clock must not give infinite rates.
 constexpr std::int64_t kLeastIntervalUs = 500;
 
 }  // namespace

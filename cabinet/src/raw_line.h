@@ -2,8 +2,8 @@
 
 namespace cabinet {
 
-// A tty: raw bytes at 1 Mbaud; a read of nothing is EAGAIN (VMIN 1), so that 0 only ever means
-// hang-up. May wait for a USB device's answer.
+// Sets a tty to raw bytes at 1 Mbaud. A read without data returns EAGAIN (VMIN 1), so that 0 always
+// means hang-up. May block until a USB device answers.
 void make_raw(int fd);
 
 }  // namespace cabinet

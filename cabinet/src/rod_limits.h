@@ -1,4 +1,4 @@
-// What a rod can do in a hand.
+// Limits of a rod's motion by hand.
 #pragma once
 
 #include <algorithm>
@@ -13,18 +13,19 @@ namespace cabinet {
 // of the fastest shots.
 inline constexpr double kFastestSlide = 10;  // [m/s]
 inline constexpr double kFastestTurn = 250;  // [rad/s]
-// A mouse's report may be of so long before what brings it: PS/2 at 200 a second, a USB mouse at
-// 125.
+// Max time that a mouse's report may span before the frame that delivers it: PS/2 at 200 reports a
+// second, a USB mouse at 125.
 inline constexpr double kLongestReport = 8e-3;  // [s]
 
-// In so long, seen in frames: one may bring two reports of a mouse whose motion began before it.
+// Whether a motion is possible within this time as seen in frames: one frame may bring two reports
+// of a mouse whose motion began before it.
 inline bool possible(const RodMotion& moved, double seconds) {
   const double longest = seconds + 0.010;
   return std::abs(moved.slide) <= kFastestSlide * longest &&
          std::abs(moved.angle) <= kFastestTurn * longest;
 }
 
-// The rod goes on from what was measured, not beyond its stops. limit 0: it has none.
+// Adds the extrapolation to the measured pose, clamped at the stops. limit 0: no stops.
 inline void show_ahead(const RodMotion& measured, const RodAhead& ahead, double limit,
                        RodInput& input) {
   const double slide = measured.slide + ahead.slide;

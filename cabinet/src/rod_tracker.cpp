@@ -12,15 +12,15 @@
 namespace cabinet {
 namespace {
 
-// Over a longer gap than it takes the fastest hand to move half a wrap of the counts, a difference
-// of counts no longer names one motion. 3.7 s at 8 counts/mm, 0.75 s at 1000 dpi, 63 ms at 12000
-// cpi.
-constexpr double kFastestSurface = 1.1;            // [m/s] of a rod: 140 rad/s on 16 mm
-constexpr std::int64_t kLongestGapUs = 2'000'000;  // a hand does other things in longer
-constexpr std::int64_t kShortestGapUs = 50'000;    // a dozen lost frames are never a new run
+// If the fastest hand can move half a wrap of the counts within a gap, the difference of the counts
+// is ambiguous. This takes 3.7 s at 8 counts/mm, 0.75 s at 1000 dpi, 63 ms at 12000 cpi.
+constexpr double kFastestSurface = 1.1;  // [m/s] of a rod's surface: 140 rad/s on 16 mm
+// After a longer gap, the hand has done something else.
+constexpr std::int64_t kLongestGapUs = 2'000'000;
+constexpr std::int64_t kShortestGapUs = 50'000;  // a dozen lost frames are never a new run
 
 std::int64_t longest_gap_us(const Calibration& calibration) {
-  double metres = std::numeric_limits<double>::infinity();  // a count, of the finest sensor
+  double metres = std::numeric_limits<double>::infinity();  // per count of the finest sensor
   for (const RodCalibration& rod : calibration.rods) {
     metres = std::min({metres, std::hypot(rod.m[0][0], rod.m[0][1]),
                        std::hypot(rod.m[1][0], rod.m[1][1]) * kRodRadius});
@@ -30,16 +30,16 @@ std::int64_t longest_gap_us(const Calibration& calibration) {
   return std::max(static_cast<std::int64_t>(us), kShortestGapUs);
 }
 
-// A restarted micro-controller is believed when it has been up for less than this ...
+// A restarted micro-controller is accepted if it has been up for less than this ...
 constexpr std::uint32_t kBootUs = 10'000'000;
-// ... or when nothing was accepted for longer than kLongestGapUs of the host's clock: over half an
-// hour the device's clock, seen as a signed difference, looks turned back. Over so much of it the
-// difference says nothing, not even that a frame follows.
+// ... or if nothing was accepted for longer than kLongestGapUs of the host's clock. For over half
+// an hour, the device's clock, as a signed difference, appears to run backwards. After that long,
+// the difference means nothing, not even that a frame follows.
 constexpr std::int64_t kHalfClockUs = std::int64_t{1} << 31;
-// ... and so many frames followed each other: fewer could be a late duplicate.
+// ... and if this many frames followed each other: fewer could be late duplicates.
 constexpr int kStraysOfNewRun = 4;
 
-// Between two runs of a device nobody knows how long it was: long enough for every motion to end.
+// The time between two runs of a device is unknown. This is long enough for every motion to end.
 constexpr std::int64_t kBetweenRunsUs = 1'000'000;
 
 std::int32_t elapsed_us(const wire::DeviceFrame& from, const wire::DeviceFrame& to) {
@@ -94,7 +94,7 @@ void RodTracker::hold() {
   }
 }
 
-// Where the last report said.
+// Rests at the last report.
 void RodTracker::stand(int rod) {
   RodInput& input = rods_[rod];
   input.slide = measured_[rod].slide;
@@ -112,8 +112,8 @@ void RodTracker::predict(std::int64_t now_us) {
   }
 }
 
-// A frame that does not follow the last accepted one is a late duplicate, or the first of another
-// run (a restart, or a gap too long to trust). The latter shows in frames that follow each other.
+// A frame that does not follow the last accepted one is a late duplicate, or the first of a new run
+// (a restart, or a gap too long to trust). In a new run, the frames follow each other.
 bool RodTracker::starts_new_run(const wire::DeviceFrame& frame, std::int64_t silent_us) {
   const bool in_row = strays_ > 0 && sequence_step(stray_, frame) == 1 && follows(stray_, frame);
   strays_ = in_row ? strays_ + 1 : 1;
@@ -153,8 +153,8 @@ bool RodTracker::accept(const wire::DeviceFrame& frame, std::int64_t arrived_us,
   return true;
 }
 
-// Of what came since the last frame. None if it can not be: a sensor that was dazzled, or half of
-// the counts' range, whose sign nobody knows.
+// Motion since the last frame. Zero if it is impossible: a sensor dazzled by light, or half of the
+// counts' range, whose sign is ambiguous.
 RodMotion RodTracker::motion(int rod, const wire::DeviceFrame& frame, SourceCounters& counters) {
   constexpr int kHalfRange = -32768;
   const int slide = increment(last_.slide[rod], frame.slide[rod]);
@@ -173,7 +173,7 @@ RodMotion RodTracker::motion(int rod, const wire::DeviceFrame& frame, SourceCoun
 void RodTracker::advance(int rod, const wire::DeviceFrame& frame, std::int64_t now_us,
                          SourceCounters& counters) {
   RodInput& input = rods_[rod];
-  if ((frame.present >> rod & 1) == 0) {  // this mouse was unplugged: others go on
+  if ((frame.present >> rod & 1) == 0) {  // this mouse was unplugged; the others continue
     filters_[rod].rest();
     stand(rod);
     if (input.status == RodStatus::live) input.status = RodStatus::held;

@@ -1,6 +1,7 @@
-// From a device's frames to rods: which frames count, how far each rod moved, how fast.
+// Computes rod motion from a device's frames: which frames are valid, how far each rod moved, and
+// how fast.
 //
-// Counts are cumulative and wrap: an increment is the 16-bit difference, so that a lost frame loses
+// Counts are cumulative and wrap. An increment is a 16-bit difference, so a lost frame loses
 // nothing as long as a rod moves less than 32767 counts between two accepted frames.
 #pragma once
 
@@ -18,21 +19,21 @@ namespace cabinet {
 
 class RodTracker {
  public:
-  // slide_limit: |slide| never passes it [m]; 0 means no limit. A handle pushed to its end stop is
-  // thereby brought back to zero error, as a rod turned past its index mark is in its angle.
+  // slide_limit: |slide| is clamped to it [m]; 0: no limit. So a handle at its end stop gets zero
+  // error, just as a pass of the index mark corrects the angle.
   RodTracker(const Calibration& calibration, const std::array<double, kRods>& slide_limit);
 
-  // False: stale, counted and dropped. arrived_us: when the frame came, as far as is known; at
-  // most now_us, and on the same clock.
+  // False: the frame is stale; it is counted and dropped. arrived_us: arrival time of the frame, as
+  // far as known; at most now_us, on the same clock.
   bool accept(const wire::DeviceFrame& frame, std::int64_t arrived_us, std::int64_t now_us,
               SourceCounters& counters);
-  // Moves the rods on to where they are now, by the reports of before.
+  // Extrapolates the rods to now from previous reports.
   void predict(std::int64_t now_us);
-  // The device is gone or silent: rods that were live are held, at once and with zero rates.
+  // The device is disconnected or silent: live rods become held at once, with zero rates.
   void hold();
-  // The next frame is of another run of the device: it moves nothing.
+  // The next frame is from another run of the device and moves nothing.
   void forget_base() { have_last_ = false; }
-  // From the next run on; the rods stay where they are.
+  // Applies from the next run on; the rods keep their poses.
   void calibrate(const Calibration& calibration);
 
   const RodInputs& rods() const { return rods_; }
@@ -49,7 +50,7 @@ class RodTracker {
                SourceCounters& counters);
 
   std::array<double, kRods> slide_limit_;
-  std::int64_t longest_gap_us_;  // over which counts are trusted
+  std::int64_t longest_gap_us_;  // max interval over which increments are valid
   std::array<RodIntegrator, kRods> integrators_;
   std::array<RodMotion, kRods> measured_{};  // as of the last report
   RodInputs rods_{};
@@ -59,11 +60,11 @@ class RodTracker {
   ClockMap clock_;
   wire::DeviceFrame last_{};
   bool have_last_ = false;
-  std::int64_t accepted_us_ = 0;     // the host's clock at last_
-  std::array<bool, kRods> based_{};  // last_ holds counts from which this rod may go on
-  std::int64_t clock_us_ = 0;        // the device's clock without its wraps, at last_
-  wire::DeviceFrame stray_{};        // the last frame that did not follow
-  int strays_ = 0;                   // how many in a row followed each other
+  std::int64_t accepted_us_ = 0;     // host time of last_
+  std::array<bool, kRods> based_{};  // last_ has counts from which this rod's increments are valid
+  std::int64_t clock_us_ = 0;        // the device's clock without wrapping, at last_
+  wire::DeviceFrame stray_{};        // the last frame that did not follow last_
+  int strays_ = 0;                   // number of such frames in a row that follow each other
 };
 
 }  // namespace cabinet

@@ -8,12 +8,12 @@
 namespace cabinet {
 namespace {
 
-// Of the offset on an absolute driver: gone to 2 % in 0.6 s, at 1.3 m/s at most on a 0.2 m offset,
-// no faster than a hand.
+// Time constant for the offset of an absolute driver: down to 2 % in 0.6 s, at up to 1.3 m/s for an
+// offset of 0.2 m, no faster than a hand.
 constexpr double kFadeSeconds = 0.15;
 constexpr double kTurn = 2 * std::numbers::pi;
 
-// Takes `share` of the offset away; returns the rate at which it left.
+// Removes the fraction `share` of the offset; returns the rate of the change.
 double fade(double& offset, double towards, double share, double seconds) {
   const double step = (towards - offset) * share;
   offset += step;
@@ -33,7 +33,7 @@ int SourceMux::add(InputSource& source, Origin origin) {
 void SourceMux::assign(int rod, std::span<const int> order) {
   auto& wanted = slots_[rod].order;
   wanted.clear();
-  wanted.reserve(order.size());  // another order of as many takes no memory
+  wanted.reserve(order.size());  // an order of the same size needs no allocation
   std::copy_if(order.begin(), order.end(), std::back_inserter(wanted),
                [&](int index) { return index >= 0 && index < static_cast<int>(sources_.size()); });
 }
@@ -41,7 +41,7 @@ void SourceMux::assign(int rod, std::span<const int> order) {
 void SourceMux::place(int rod, double slide, double angle) {
   rods_[rod].slide = std::clamp(slide, -slide_limit_[rod], slide_limit_[rod]);
   rods_[rod].angle = angle;
-  slots_[rod].driver = kNobody;  // whoever drives next takes over from here
+  slots_[rod].driver = kNobody;  // the next driver takes over from this pose
 }
 
 int SourceMux::pick(int rod) const {
@@ -82,9 +82,8 @@ void SourceMux::follow(int rod, double seconds) {
   const double limit = slide_limit_[rod];
   const double wanted = in.slide + slot.slide_offset;
   const double slide = std::clamp(wanted, -limit, limit);
-  if (slide != wanted && slide_rate * wanted > 0)
-    slide_rate = 0;                        // at the stop: none into the wall
-  if (entry.origin == Origin::relative) {  // ... and no wind-up, by what was measured
+  if (slide != wanted && slide_rate * wanted > 0) slide_rate = 0;  // at the stop: no rate into it
+  if (entry.origin == Origin::relative) {  // ... and no wind-up, by the measured position
     const double measured = in.slide - in.slide_ahead;
     slot.slide_offset = std::clamp(measured + slot.slide_offset, -limit, limit) - measured;
   }

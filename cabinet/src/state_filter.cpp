@@ -6,24 +6,24 @@
 namespace cabinet {
 namespace {
 
-// A mouse's report comes so much before or after its time: its firmware's loop, and ours.
+// Max jitter of a mouse's report, in both directions: loop time of its firmware and of ours.
 constexpr double kJitterUs = 200;
-constexpr double kDrift = 0.004;      // of a period: a ceramic resonator
-constexpr double kSynchronous = 1.1;  // of a frame
+constexpr double kDrift = 0.004;      // relative, of the period: a ceramic resonator
+constexpr double kSynchronous = 1.1;  // [frames] a shorter report period counts as synchronous
 constexpr double kShortestUs = 500, kLongestUs = 16'000;
 // PS/2 at 200 or 100 reports a second, USB at 125 to 1000.
 constexpr std::array<double, 6> kPeriodsUs = {1'000, 2'000, 4'000, 5'000, 8'000, 10'000};
-constexpr int kRun = 16;             // reports, over which the period shows through frames of 4 ms
-constexpr double kFastCounts = 3.0;  // in a report: none is empty at such a speed
-constexpr double kSlowCounts = 1.5;  // fewer: its rate is over the time since the count before
+constexpr int kRun = 16;             // reports, enough to resolve the period through frames of 4 ms
+constexpr double kFastCounts = 3.0;  // per report: at this speed no report is empty
+constexpr double kSlowCounts = 1.5;  // below it, the rate spans the time since the previous count
 constexpr double kSlowUs = 100e3;
-// A hand's: 14 N m on the least inertia of a rod with its hand; 350 N on its mass
+// A hand's limits: 14 N m on the minimum inertia of a rod with its hand; 350 N on its mass.
 constexpr std::array<double, 2> kMaxAcceleration = {300, 14'000};  // [m/s^2], [rad/s^2]
-// A hand that moves steadily may brake in the next moment. To expect so much of it costs a steady
-// motion 0.75 mm and 1.4 degrees at the end of 5 ms (1 mm and 2 degrees may be lost), and takes a
-// quarter off what a rod runs past a hand that stops within 10 ms.
+// Assumed braking, since a steadily moving hand may brake at any moment. It costs a steady motion
+// 0.75 mm and 1.4 degrees at the end of 5 ms (1 mm and 2 degrees are allowed), and reduces a rod's
+// overshoot past a hand that stops within 10 ms by a quarter.
 constexpr std::array<double, 2> kBraking = {60, 2'000};  // [m/s^2], [rad/s^2]
-constexpr double kBrakingShare = 0.2;                    // ... but not more of a rate in one period
+constexpr double kBrakingShare = 0.2;  // ... but at most this fraction of a rate per period
 
 double nominal_period(double us) {
   return *std::ranges::min_element(kPeriodsUs, {}, [us](double p) { return std::abs(p - us); });
@@ -42,12 +42,13 @@ void StateFilter::rest() {
   lines_ = {};
 }
 
-// A sensor that reports in every frame is read for it.
+// A sensor that reports in every frame is polled for it.
 bool StateFilter::synchronous() const {
   return !stamped_ && period_us_ < kSynchronous * interval_us_;
 }
 
-// When the report came: after one frame, until the next, and so many periods after the last one.
+// Bounds the time of the report: after one frame, until the next, and a whole number of periods
+// after the previous report.
 void StateFilter::locate(const Bounds& frames, bool fast) {
   const Bounds possible{frames.after_us - kJitterUs, frames.until_us};
   if (located_) learn_period(frames.until_us, fast);
@@ -65,11 +66,10 @@ void StateFilter::locate(const Bounds& frames, bool fast) {
   bounds_ = located_ && both.after_us <= both.until_us ? both : possible;
 }
 
-// The rate of a sensor is one of a few, set by its driver; its own clock is off by less than
-// kDrift.
+// A sensor's driver sets its rate to one of a few values. Its own clock is off by less than kDrift.
 void StateFilter::learn_period(double until_us, bool fast) {
   const double gap = until_us - seen_us_;
-  if (gap < 0.5 * period_us_) {  // no sensor reports out of turn
+  if (gap < 0.5 * period_us_) {  // no sensor reports early
     period_us_ = nominal_period(gap);
     run_ = 0;
   }
@@ -87,7 +87,7 @@ void StateFilter::append(double time_us, const std::array<double, 2>& step) {
   reports_[newest_] = {time_us, {before.position[0] + step[0], before.position[1] + step[1]}};
 }
 
-// How many of the last reports, this one apart, lie on the line from the first of them to it.
+// Number of previous reports on the line from the first of them to the last report.
 int StateFilter::steady_reports(int axis) const {
   const Report& last = report(0);
   int steady = 1;
@@ -129,7 +129,7 @@ StateFilter::Line StateFilter::line(int axis) const {
   return {last, acceleration};
 }
 
-// A frame by which the next report would have come.
+// Whether the next report would have arrived by this frame.
 bool StateFilter::due(double frame_us) const {
   if (synchronous()) return frame_us > bounds_.until_us;
   return frame_us >= bounds_.until_us + period_us_ + kJitterUs;
@@ -156,7 +156,7 @@ void StateFilter::update(double d_slide, double d_angle, std::int64_t frame_us) 
     reports_[newest_].time_us = gap ? frames.after_us : slow ? last : time - period_us_;
     known_ = 1;
     moving_ = true;
-    if (!gap && !slow) {  // it stood a period before that, too
+    if (!gap && !slow) {  // also at rest one period earlier
       const Report stood = reports_[newest_];
       reports_[newest_].time_us -= period_us_;
       append(stood.time_us, {0, 0});
@@ -172,7 +172,8 @@ void StateFilter::update(double d_slide, double d_angle, std::int64_t frame_us) 
 RodAhead StateFilter::at(std::int64_t time_us) const {
   if (!moving_) return {};
   const Report& last = report(0);
-  // Beyond the next report nothing is known, should no frame say more.
+  // Limit of the extrapolation if no more frames arrive: beyond the next report, the motion is
+  // unknown.
   const double until = last.time_us + std::max(period_us_, interval_us_) + interval_us_;
   const double time = std::max(static_cast<double>(time_us), frame_us_);
   const double s = 1e-6 * (std::clamp(time, last.time_us, until) - last.time_us);

@@ -1,4 +1,4 @@
-// Once warm, a poll takes no memory: the server's loop calls it 1000 times a second.
+// Once warm, a poll allocates no memory: the server's loop calls it 1000 times a second.
 #include <gtest/gtest.h>
 #include <linux/input.h>
 
@@ -38,7 +38,7 @@ TEST(Allocation, PollingThroughFramesNoiseUnplugAndReplugTakesNoMemory) {
     if (i == 1'100) line.plug();
     if (i < 1'000 || i >= 1'400) {
       Bytes bytes = cobs(simulated.frame());
-      if (i % 7 == 0) bytes[9] = 0;  // and now and then a broken one
+      if (i % 7 == 0) bytes[9] = 0;  // an invalid one now and then
       line.master.send(bytes);
     }
     const long before = os::testing::allocations();
@@ -51,7 +51,7 @@ TEST(Allocation, PollingThroughFramesNoiseUnplugAndReplugTakesNoMemory) {
   EXPECT_GT(device.counters().frames, 1'300u);
   const long before = os::testing::allocations();
   const auto held = std::make_unique<Bytes>(100);
-  EXPECT_GT(os::testing::allocations(), before);  // the counter counts
+  EXPECT_GT(os::testing::allocations(), before);  // check that allocations are counted
 }
 
 TEST(Allocation, PollingAMouseTakesNoMemory) {

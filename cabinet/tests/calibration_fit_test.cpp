@@ -1,4 +1,4 @@
-// Fits of runs with a simulated sensor whose mount is known.
+// Fits of runs with a simulated sensor on a known mount.
 #include "cabinet/calibration_fit.h"
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ TEST_P(MountErrors, OfFourDegreesThreePercentAndEccentricityAreFittedAway) {
   std::mt19937 random(1234);
   double slide = 0, angle = 0, worst_slide = 0, worst_angle = 0;
   constexpr int kMounts = 20;
-  constexpr double kPlay = 10;  // [s] without a stop that would take out drift
+  constexpr double kPlay = 10;  // [s] without a stop that would remove drift
   for (int i = 0; i < kMounts; ++i) {
     const Mount mount = drawn_mount(random, GetParam());
     SimulatedRod rod(mount, static_cast<std::uint32_t>(100 + i));
@@ -94,7 +94,8 @@ TEST(CalibrationFit, FindsADeadBand) {
   EXPECT_LT(play(mount, fit->calibration, 10, 3).slide, 0.5 * play(mount, without, 10, 3).slide);
 }
 
-// By an independent route: many runs with the same mount scatter as each one says of itself.
+// An independent check: fits of many runs with the same mount scatter by the deviations they
+// report.
 TEST(CalibrationFit, ItsDeviationsAreThoseOfManyRuns) {
   const Mount mount{.tilt = 0.05, .eccentricity = 1e-4, .towards = 2};
   constexpr int kRuns = 30;
@@ -118,7 +119,7 @@ TEST(CalibrationFit, ItsDeviationsAreThoseOfManyRuns) {
     const double scatter = std::sqrt((squares[k] / kRuns - mean * mean) * kRuns / (kRuns - 1));
     std::printf("number %zu: scatter %.3g, deviation %.3g\n", k, scatter, told[k]);
     EXPECT_LT(scatter, 1.5 * told[k]) << k;
-    EXPECT_GT(scatter, told[k] / 4) << k;  // the marks are better than the priors take them for
+    EXPECT_GT(scatter, told[k] / 4) << k;  // the marks are better than the priors assume
   }
 }
 

@@ -1,4 +1,4 @@
-// A simulated hand that does what the guide asks, on a simulated rod with a sensor of some mount.
+// A simulated hand follows the guide, on a simulated rod with a sensor on a drawn mount.
 #include "cabinet/calibration_guide.h"
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ TEST(CalibrationGuide, WhoDoesWhatItAsksIsThroughWithARunThatFits) {
   }
 }
 
-// The truth against what the fitted calibration says of ten seconds of play.
+// Compares the fitted calibration with the true motion over ten seconds of play.
 TEST(CalibrationGuide, ItsRunsFitAwayTheErrorsOfAMount) {
   std::mt19937 random(4321);
   double slide = 0, angle = 0;
@@ -131,7 +131,7 @@ TEST(CalibrationGuide, SaysThatTheRodWasNotTurnedOrTheWrongWay) {
   EXPECT_NEAR(fit->calibration.m[1][1] * 8e3 * kRodRadius, 1, 0.005);
 }
 
-// Eighths that were all too large: before the feet are asked for they hang down already.
+// All eighths were too large: the feet hang down before the guide asks for it.
 TEST(CalibrationGuide, FeetThatHangDownAlreadyNeedNoTurn) {
   Session s;
   s.person.eighth_error = 0;
@@ -150,7 +150,7 @@ TEST(CalibrationGuide, FeetThatHangDownAlreadyNeedNoTurn) {
   EXPECT_TRUE(s.guide.finished()) << s.guide.step();
 }
 
-// People and mounts of many kinds.
+// Many persons and mounts.
 TEST(CalibrationGuide, NobodyGetsStuck) {
   for (std::uint32_t i = 0; i < 60; ++i) {
     std::mt19937 random(i);
@@ -199,7 +199,7 @@ TEST(CalibrationGuide, AskedBackItAsksForTheStepBeforeOnceMore) {
 
   Session early;
   early.guide.mark();
-  early.guide.mark();  // no stroke was seen
+  early.guide.mark();  // no stroke yet
   EXPECT_EQ(early.guide.step(), 1);
   early.guide.back();
   EXPECT_EQ(early.guide.step(), 0);

@@ -18,7 +18,7 @@ std::string rod_json(const std::string& slide, const std::string& angle) {
 
 const std::string kGoodRod = rod_json("[0.000125, 0]", "[0, 0.015625]");
 
-// Eight good rods but for the sixth.
+// Eight valid rods except the sixth.
 std::string file_json(const std::string& sixth_rod = kGoodRod, int rods = 8) {
   std::string text = R"({"version": 1, "rods": [)";
   for (int i = 0; i < rods; ++i) text += (i > 0 ? "," : "") + (i == 5 ? sixth_rod : kGoodRod);
@@ -96,7 +96,7 @@ TEST(Calibration, TheCoarsestAndTheFinestSensorAreFine) {
   EXPECT_EQ(complaint(file_json(rod_json("[2.1e-6, 0]", "[0, 2.6e-4]"))), "");
 }
 
-// One of version 2 with more of the sixth rod.
+// Version 2 with additional fields of the sixth rod.
 std::string corrected(const std::string& more) {
   std::string text = file_json(kGoodRod.substr(0, kGoodRod.size() - 1) + ", " + more + "}");
   return text.replace(text.find("\"version\": 1"), 12, "\"version\": 2");
@@ -107,7 +107,7 @@ TEST(Calibration, AFileOfBeforeIsRead) {
   ASSERT_TRUE(before.has_value()) << before.error();
   EXPECT_EQ(before->rods[5].slide_gain[0], 0);
   EXPECT_EQ(before->rods[5].dead_band, 0);
-  EXPECT_EQ(complaint(corrected(R"("slide_gain": [0.03, 0.01])")), "");  // the rest is zero
+  EXPECT_EQ(complaint(corrected(R"("slide_gain": [0.03, 0.01])")), "");  // the others are zero
 }
 
 TEST(Calibration, AnIndexMarkIsKeptAndMayBeLeftOut) {

@@ -10,7 +10,7 @@ using namespace cabinet;
 
 namespace {
 
-// Ten minutes of frames that are up to 5 ms late, from clocks that are half a percent off.
+// Ten minutes of frames with delays of up to 5 ms, from clocks that are half a percent off.
 TEST(ClockMap, FollowsAClockThatRunsFastOrSlow) {
   for (const double rate : {0.995, 1.0, 1.005}) {
     ClockMap map;
@@ -23,7 +23,7 @@ TEST(ClockMap, FollowsAClockThatRunsFastOrSlow) {
       const auto seen = static_cast<double>(map.device_us(host));
       worst = std::max(worst, std::abs(seen - static_cast<double>(device)));
     }
-    EXPECT_LT(worst, 1'000) << rate;  // 0.5 % of the 128 ms that are looked back on: 640
+    EXPECT_LT(worst, 1'000) << rate;  // 0.5 % of the 128 ms of history: 640
   }
 }
 

@@ -1,4 +1,4 @@
-// A tree as the kernel shows it, made in a folder.
+// A folder tree in the form of the kernel's sysfs.
 #include "cabinet/controller.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ struct Sys {
   fs::path root = fs::path(testing::TempDir()) / ("sys_" + std::to_string(getpid()));
   Sys() { fs::create_directories(root); }
   ~Sys() { fs::remove_all(root); }
-  // class/KIND/NAME is a link into the devices, as in sysfs.
+  // class/KIND/NAME is a link to the device, as in sysfs.
   void add(const std::string& kind, const std::string& name, const std::string& between,
            const std::string& serial) {
     const fs::path usb = root / "devices/usb1" / ("1-" + name);
@@ -29,7 +29,7 @@ struct Sys {
     std::ofstream(usb / "idVendor") << "1209\n";
     std::ofstream(usb / "idProduct") << "0001\n";
     if (!serial.empty()) std::ofstream(usb / "serial") << serial << "\n";
-    // A hub has one too.
+    // A hub has a serial number too.
     std::ofstream(root / "devices/usb1/serial") << "0000:00:14.0\n";
   }
 };

@@ -1,4 +1,4 @@
-// The source on real descriptors: ptys, socket pairs, files. The clock is handed in.
+// The source on real descriptors: ptys, socket pairs, files. The tests pass the clock in.
 #include "cabinet/device_source.h"
 
 #include <gtest/gtest.h>
@@ -50,7 +50,7 @@ struct Bench {
   const RodInput& rod(int index) const { return source->rods()[index]; }
 };
 
-// What the reports said, without the motion since.
+// The state at the last report, without the extrapolation.
 double measured_slide(const RodInput& rod) {
   return rod.slide - rod.slide_ahead;
 }
@@ -94,7 +94,7 @@ TEST(DeviceSource, AnUnpluggedLineHoldsAtTheNextPoll) {
   bench.send_and_step();
   EXPECT_GT(bench.rod(0).slide_rate, 0.0);
   bench.line.unplug();
-  bench.step(1'000);  // noticed 1 ms later; 100 ms are allowed
+  bench.step(1'000);  // detected 1 ms later; 100 ms are allowed
   EXPECT_FALSE(bench.source->connected());
   for (const RodInput& rod : bench.source->rods()) {
     EXPECT_EQ(rod.status, RodStatus::held);
@@ -115,7 +115,7 @@ TEST(DeviceSource, PluggedInAgainItContinuesWithoutAJump) {
   EXPECT_EQ(bench.rod(0).status, RodStatus::held);
 
   bench.line.plug();
-  bench.device.slide[0] = 20'000;  // turned meanwhile, or another micro-controller altogether
+  bench.device.slide[0] = 20'000;  // turned meanwhile, or another micro-controller
   const std::int64_t plugged_us = bench.now_us;
   while (!bench.source->connected() && bench.now_us < plugged_us + 2'000'000) {
     if (bench.opened > 1) bench.line.master.send(cobs(bench.device.frame()));
@@ -169,15 +169,15 @@ TEST(DeviceSource, TellsSilenceNoiseAndAbsenceApart) {
   bench.line.master.send(Bytes(100, 0x55));
   bench.step(1'000);
   EXPECT_EQ(state(), DeviceState::garbled);
-  bench.step(900'000);  // noise now and then
+  bench.step(900'000);  // occasional noise
   EXPECT_EQ(state(), DeviceState::garbled);
   bench.step(100'001);
   EXPECT_EQ(state(), DeviceState::silent);
 
-  bench.line.master.send({0});  // the noise ends here
+  bench.line.master.send({0});  // end of the noise
   bench.send_and_step();
   EXPECT_EQ(state(), DeviceState::live);
-  // Cut off in the middle of a frame: that piece makes it no noise.
+  // Cut off in the middle of a frame: an incomplete frame is not noise.
   const Bytes piece = cobs(bench.device.frame());
   bench.line.master.send(Bytes(piece.begin(), piece.begin() + 20));
   bench.step(1'000);
@@ -198,7 +198,7 @@ TEST(DeviceSource, TellsSilenceNoiseAndAbsenceApart) {
   EXPECT_EQ(state(), DeviceState::missing);
   bench.line.plug();
   bench.step(200'000);
-  EXPECT_EQ(state(), DeviceState::silent);  // what it was before counts no more
+  EXPECT_EQ(state(), DeviceState::silent);  // its earlier state no longer counts
 }
 
 TEST(DeviceSource, TellsADeviceThatMayNotBeOpenedFromOneThatIsNotThere) {
@@ -273,7 +273,7 @@ void expect_paced(const std::function<Bytes(const wire::DeviceFrame&)>& coded) {
   EXPECT_EQ((*source)->counters().frames, 100u);
   EXPECT_EQ((*source)->counters().bad, 0u);
   EXPECT_EQ((*source)->state(), DeviceState::over);
-  // Played once: at its end the rods hold, and go on holding.
+  // Played once: at its end the rods become held and stay so.
   for (int i = 1; i < 10; ++i) (*source)->poll(start + 500'000 + i * 300'000);
   EXPECT_EQ((*source)->rods()[0].status, RodStatus::held);
   EXPECT_EQ((*source)->counters().frames, 100u);
@@ -328,14 +328,14 @@ TEST(OpenDevice, ReadsAPtyByItsAddress) {
   SimulatedDevice device;
   EXPECT_TRUE(poll_until_connected(device));
 
-  // It hangs up: held at the next poll. The path is no device's then, and nothing else happens.
+  // Hang-up: held at the next poll. The path then names no device, and nothing else happens.
   line.master.close();
   for (int i = 0; i < 1'000; ++i) (*source)->poll(now_us += 1'000);
   EXPECT_FALSE((*source)->connected());
   EXPECT_EQ((*source)->rods()[0].status, RodStatus::held);
 }
 
-// Before the first is plugged in nobody knows which it will be, and the next may be another.
+// Before the first one is plugged in, the controller is unknown; the next one may be another.
 TEST(OpenDevice, WhatIsPluggedInIsMeasuredByItsOwnCalibration) {
   const std::string link = testing::TempDir() + "sf_line_" + std::to_string(::getpid());
   std::filesystem::remove(link);

@@ -1,4 +1,4 @@
-// Bytes that are not what they should be, on every kind of line: counted, and harmless.
+// Invalid bytes on every kind of line: counted, without other effect.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -127,7 +127,8 @@ TEST(HidReports, ShortAndLongOnesAreCountedAndTheNextIsTaken) {
   }
 }
 
-// The controller's page asks for them; a server or doctor beside it hears the answer.
+// The controller's page requests the settings; a server or doctor on the same device reads the
+// answer too.
 TEST(SettingsTold, AreNoFaultOfTheLine) {
   Bytes told(wire::kDeviceFrameBytes);
   wire::encode_settings_report({}, wire::kHasSensors, 1, told.data());

@@ -1,4 +1,4 @@
-// Each trouble once, in a tree of files that stands for /dev and /sys, with ptys for controllers.
+// Each trouble once, in a file tree in place of /dev and /sys, with ptys for controllers.
 #include "cabinet/doctor.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ namespace fs = std::filesystem;
 
 constexpr std::int64_t kMade = 1'795'348'800;  // 2026-11-22T12:00:00Z
 
-// A machine with nothing connected, to which things are plugged.
+// A machine to which tests connect devices.
 class Doctor : public testing::Test {
  protected:
   Doctor() {
@@ -45,7 +45,7 @@ class Doctor : public testing::Test {
     options.dev = (root_ / "dev").string();
     options.sys = (root_ / "sys").string();
     options.seconds = 0.5;
-    // A frame each millisecond, once the line is open.
+    // A frame every millisecond, once the line is open.
     options.next_poll = [this] {
       now_us_ += 1'000;
       if (++polls_ > 2 && line_.master.fd >= 0) frame();
@@ -68,7 +68,7 @@ class Doctor : public testing::Test {
     fs::create_directories((root_ / path).parent_path());
     std::ofstream(root_ / path) << text;
   }
-  // The calibration of that name as made then by the controller with that serial number.
+  // A calibration with this file name, dated kMade, for the controller with this serial number.
   void date_calibration(const fs::path& path, const char* made, const char* serial = "") const {
     Calibration calibration = nominal_calibration();
     calibration.made = made;
@@ -76,7 +76,7 @@ class Doctor : public testing::Test {
     fs::create_directories((root_ / path).parent_path());
     ASSERT_TRUE(save_calibration(calibration, (root_ / path).string()));
   }
-  // As the kernel tells of the USB device that a node is a part of.
+  // The kernel's files for the USB device of a node.
   void describe_usb(const std::string& kind, const std::string& node, const std::string& vendor,
                     const std::string& product, const std::string& serial = "") const {
     const fs::path usb = fs::path("sys/devices/usb1") / ("1-" + node), part = usb / "1-1:1.0";
@@ -93,7 +93,7 @@ class Doctor : public testing::Test {
     fs::create_symlink(line_.path, root_ / "dev/ttyACM0");
     describe_usb("tty", "ttyACM0", "2341", "0042", serial);
   }
-  // Another line beside, which is silent until the test writes to it.
+  // Another line, silent until the test writes to it.
   SerialLine& plug_line(const fs::path& node) {
     SerialLine& line = *others_.emplace_back(std::make_unique<SerialLine>());
     line.plug();
@@ -125,7 +125,7 @@ class Doctor : public testing::Test {
   SerialLine& plug_gamepad() {
     return plug_input("event9", "0", "7fdb000000000000 0 0 0 0", "A pad");
   }
-  // An event that happened before now by so much.
+  // An event this long before now.
   void happen(const SerialLine& line, std::uint16_t type, std::uint16_t code, int value,
               std::int64_t ago_us = 300) const {
     input_event made{};
@@ -147,7 +147,7 @@ class Doctor : public testing::Test {
     if (polls_ % every == 0) (void)line_.master.send_what_fits(bytes);
   }
 
-  // The only trouble; its cure.
+  // The cure of the only trouble.
   void expect_trouble(const std::string& what, const std::string& cure) const {
     const Diagnosis diagnosis = examine(options);
     ASSERT_EQ(diagnosis.troubles.size(), 1u) << diagnosis_text(diagnosis);
@@ -203,7 +203,7 @@ TEST_F(Doctor, AHidControllerIsFoundByItsId) {
   EXPECT_TRUE(examine(options).devices.empty());
 }
 
-// Its gamepads are its rods once more, and rest where those do.
+// Its gamepads mirror its rods and rest where those do.
 TEST_F(Doctor, AControllerThatIsGamepadsTooIsFoundOnce) {
   plug_hid();
   for (int interface = 0; interface < 5; ++interface)
@@ -317,8 +317,8 @@ TEST_F(Doctor, MotionsThatNoRodCanMakeAreSaid) {
   expect_trouble("1 motions came that no rod can make", "distance of the sensor");
 }
 
-// Somebody turns the rod to and fro while it listens, past a mark that comes a third of a turn
-// later the second time: its collar has slipped.
+// A person turns the rod to and fro during the examination, past a mark that comes a third of a
+// turn later the second time: its collar has slipped.
 TEST_F(Doctor, AnIndexMarkThatDisagreesIsSaid) {
   plug_serial();
   Calibration calibration = nominal_calibration();
@@ -383,7 +383,7 @@ TEST_F(Doctor, ALineThatIsNotKnownAsOursIsNotOpenedUnlessItIsNamed) {
   plug_serial();
   const SerialLine& modem = plug_line("dev/ttyUSB0");
   describe_usb("tty", "ttyUSB0", "0403", "6001");
-  // Whoever opens a line that is locked is told so.
+  // Opening a locked line reports the lock.
   const os::FileDescriptor owner(modem.open());
   ASSERT_EQ(::flock(owner.get(), LOCK_EX), 0);
   const Diagnosis diagnosis = examine(options);
@@ -432,7 +432,7 @@ TEST_F(Doctor, WhatIsNamedAndNotThereOrNoDeviceIsSaid) {
 }
 
 TEST_F(Doctor, ALineThatHangsUpAtOnceIsSaid) {
-  options.calibration.clear();  // of which a line that is no controller needs none
+  options.calibration.clear();  // none needed for a line that is not a controller
   options.devices = {*parse_doctor_address("serial:/dev/null")};
   expect_trouble("hung up before it sent a frame", "plug it in again");
 }

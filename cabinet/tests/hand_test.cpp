@@ -52,7 +52,7 @@ TEST(Hand, TheMouseMovesTheActiveRodOnly) {
   p.hand.mouse_moved(-10, 0);
   p.frames(1);
   EXPECT_NEAR(p.rod(0).slide, -0.006, 1e-12);
-  EXPECT_NEAR(p.rod(3).slide, 0.06, 1e-12);  // holds where the hand left it
+  EXPECT_NEAR(p.rod(3).slide, 0.06, 1e-12);  // stays where the hand left it
   EXPECT_EQ(p.rod(3).status, RodStatus::live);
 }
 
@@ -100,7 +100,7 @@ TEST(Hand, SlideStopsAtItsLimitWithoutWindUpAndTheAngleTurnsOn) {
   EXPECT_NEAR(p.active().angle, 120, 1e-9);  // 19 turns
   p.hand.mouse_moved(-10, 0);
   p.frames(1);
-  EXPECT_NEAR(p.active().slide, 0.1 - 0.006, 1e-12);  // back at once
+  EXPECT_NEAR(p.active().slide, 0.1 - 0.006, 1e-12);  // reverses at once
 }
 
 TEST(Hand, RatesAreThoseOfTheMotionAndFallToZero) {
@@ -134,15 +134,15 @@ TEST(Hand, AdoptedPositionsAreTakenUntilTheHandMovesTheRod) {
   Player p;
   p.hand.adopt(3, 0.05, 1.5);
   p.hand.adopt(5, -0.08, 7.0);
-  p.hand.adopt(2, 0.05, 1.0);  // not one of its rods
+  p.hand.adopt(2, 0.05, 1.0);  // not a rod of this hand
   p.frames(1);
   EXPECT_EQ(p.rod(3).slide, 0.05);
-  EXPECT_EQ(p.rod(3).slide_rate, 0);  // taken over, not moved
+  EXPECT_EQ(p.rod(3).slide_rate, 0);  // adopted, not moved
   EXPECT_EQ(p.rod(5).angle, 7.0);
   EXPECT_EQ(p.rod(2).status, RodStatus::absent);
 
   p.hand.mouse_moved(10, 0);
-  p.hand.adopt(3, -0.02, 0);  // an old snapshot does not drag the hand back
+  p.hand.adopt(3, -0.02, 0);  // an old snapshot does not move the rod back
   p.frames(1);
   EXPECT_NEAR(p.rod(3).slide, 0.056, 1e-12);
   EXPECT_EQ(p.rod(3).angle, 1.5);
@@ -202,7 +202,7 @@ TEST(Hand, AHeldKeyMovesAsFarAtTenFramesASecondAsAtSixty) {
     p.frames(i == 0 ? 12 : 2, i == 0 ? 16'667 : 100'000);
     way[i] = p.active().slide;
   }
-  EXPECT_NEAR(way[1] / way[0], 1.0, 0.35);  // the ramp is taken in larger steps
+  EXPECT_NEAR(way[1] / way[0], 1.0, 0.35);  // larger steps integrate the ramp more coarsely
 }
 
 TEST(Hand, ASpinKeyFlicksAndReturnsToTheNearestHangingAngle) {
@@ -275,7 +275,7 @@ TEST(Hand, OfATeamThatIsSharedOnlyTheOwnRodsAreChosenAndLive) {
   options.slide_limit = {0.2, 0.2, 0.2, 0.2};
   options.has = {true, false, false, true};
   Hand hand(options);
-  EXPECT_EQ(hand.active_line(), 0);  // the first of its rods inwards from the midfield
+  EXPECT_EQ(hand.active_line(), 0);  // its first rod from the midfield towards the own goal
   hand.choose(2);
   EXPECT_EQ(hand.active_line(), 0);
   hand.cycle(1);
@@ -324,7 +324,7 @@ TEST(Hand, NothingNotFiniteComesOut) {
   p.hand.adopt(3, nan, infinite);
   p.hand.place(3, nan, infinite);
   p.frames(10);
-  p.hand.poll(p.now_us - 1'000'000'000);  // a clock that falls
+  p.hand.poll(p.now_us - 1'000'000'000);  // a clock that runs backwards
   for (const RodInput& rod : p.hand.rods()) {
     EXPECT_TRUE(std::isfinite(rod.slide) && std::isfinite(rod.angle));
     EXPECT_TRUE(std::isfinite(rod.slide_rate) && std::isfinite(rod.angle_rate));

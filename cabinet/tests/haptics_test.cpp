@@ -1,4 +1,4 @@
-// What a hit feels like, how much of it there may be, and its way to a controller.
+// The pulse of a hit, the limit on pulses, and their transmission to a controller.
 #include "cabinet/haptics.h"
 
 #include <gtest/gtest.h>
@@ -57,7 +57,7 @@ TEST(HapticPulse, IsBoundedAndNoneForWhatIsNoHit) {
   }
 }
 
-// A minute of a ball that is pinched, as hard as can be: what the motor gets of its most.
+// A minute of the hardest hits of a pinched ball: the motor's energy relative to its maximum.
 TEST(HapticLimiter, KeepsTheMeanPowerWhateverComes) {
   for (const std::int64_t every_us : {1'000, 10'000, 61'000}) {
     HapticLimiter limiter;
@@ -99,7 +99,7 @@ TEST(HapticLimiter, RefusesARodThatIsNone) {
   EXPECT_FALSE(limiter.admit({kRods, 1.0f, 20}, 0));
 }
 
-// The packet of this test: rod, strength, length.
+// The packet format of this test: rod, strength, length.
 std::size_t encode(const HapticPulse& pulse, std::span<std::byte> out) {
   out[0] = static_cast<std::byte>(pulse.rod);
   out[1] = static_cast<std::byte>(255.0f * pulse.strength);

@@ -1,4 +1,4 @@
-// A magnet on a rod and its switch: found by a calibration, and the angle kept true by it in play.
+// A magnet on a rod and its switch: a calibration finds it, and it corrects the angle in play.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@ using namespace cabinet_test;
 namespace {
 
 constexpr double kDegree = M_PI / 180;
-constexpr double kReach = 0.1;  // [m] of the rods here; the near stop is at -kReach
+constexpr double kReach = 0.1;  // [m] of these rods; the near stop is at -kReach
 
 tl::expected<RodFit, std::string> guided_fit(const Mount& mount, std::uint32_t seed) {
   CalibrationGuide guide;
@@ -50,7 +50,7 @@ TEST(IndexMark, IsFoundByACalibrationWithItsWidthAndItsSwitchsLag) {
       EXPECT_NEAR(mark.lag, 0.5 * mount.mark.hysteresis, 0.8 * kDegree);
     }
   }
-  // The feet are marked to 1.5 degrees, 14 times.
+  // The feet are marked with an error of 1.5 degrees, 14 times.
   std::printf("%.2f degrees rms\n", std::sqrt(squares) / kDegree);
   EXPECT_LT(std::sqrt(squares), 1 * kDegree);
 }
@@ -64,8 +64,8 @@ struct Play {
   std::vector<Rest> rests;
 };
 
-// A hand that plays as play() has it; a sixth of its motions end at a stop. Each `calm` seconds it
-// pulls the rod to the near stop and lets the men swing past their mark, there and back.
+// A hand that plays as in play(); a sixth of its motions end at a stop. Every `calm` seconds it
+// pulls the rod to the near stop and swings the men past their mark and back.
 Play long_play(const Mount& mount, double seconds, double calm, std::uint32_t seed) {
   SimulatedRod rod(mount, seed);
   Play play;
@@ -101,8 +101,8 @@ struct Mean {
   double mean() const { return sum / n; }
 };
 
-// Mean error of the last 30 s, and of the angle by how much that is another than that of the 30 s
-// after the first half minute: what a calibration of the feet is off stays, and is no drift.
+// slide, angle_error: mean error over the last 30 s. angle: change of the mean error from that of
+// the second 30 s, since a constant error of the feet's calibration is not drift.
 struct Drift {
   double slide, angle, angle_error;  // [m], [rad]
   std::uint64_t disagreements;
@@ -145,7 +145,7 @@ Drift drift(const Play& play, const RodCalibration& rod, bool stops, int report_
   return {slide.mean(), late.mean() - early.mean(), late.mean(), counters.index_disagreements[0]};
 }
 
-// Of so many mounts, each calibrated and played for so long.
+// Calibrates this many mounts and plays each for this long.
 struct Drifts {
   Drift rms{}, worst{};
   void add(const Drift& d, int mounts) {
@@ -165,7 +165,7 @@ struct Drifts {
   }
 };
 
-// SF_MOUNTS=30 for the figures of docs/cabinet.md: a minute.
+// SF_MOUNTS=30 gives the results in docs/cabinet.md; it takes a minute.
 int mounts_wanted() {
   const char* const mounts = std::getenv("SF_MOUNTS");
   return mounts != nullptr ? std::atoi(mounts) : 2;
@@ -174,14 +174,14 @@ int mounts_wanted() {
 struct Sensor {
   double counts_per_mm;
   int report;       // [ms]
-  double most_rms;  // [rad] of the angle's drift
+  double most_rms;  // [rad] of the drift of the angle
 };
 class Drifting : public testing::TestWithParam<Sensor> {};
 INSTANTIATE_TEST_SUITE_P(Of, Drifting,
                          testing::Values(Sensor{78.7, 1, 0.5 * kDegree},
-                                         Sensor{8, 5, 0.9 * kDegree}));  // a mouse: a count
+                                         Sensor{8, 5, 0.9 * kDegree}));  // a mouse: one count
 
-// Of 30 mounts at most 0.29 mm and 0.55 degrees at 78.7 counts/mm; without mark and stops 2.3 mm
+// With 30 mounts, at most 0.29 mm and 0.55 degrees at 78.7 counts/mm; without mark and stops 2.3 mm
 // and 2.5 degrees rms.
 TEST_P(Drifting, IndexMarkAndStopsLeaveNoneAfterTenMinutesOfPlay) {
   const Sensor sensor = GetParam();
@@ -193,7 +193,7 @@ TEST_P(Drifting, IndexMarkAndStopsLeaveNoneAfterTenMinutesOfPlay) {
     mount.mark = drawn_mark(random, -kReach);
     mount.mark.angle = std::uniform_real_distribution<double>(-1, 1)(random);
     const auto seed = static_cast<std::uint32_t>(10 * i);
-    const auto fit = guided_fit(mount, seed);  // of 5 ms a frame, which takes a fifth of the time
+    const auto fit = guided_fit(mount, seed);  // 5 ms per frame, which takes a fifth of the time
     ASSERT_TRUE(fit) << fit.error();
     ASSERT_TRUE(fit->calibration.index);
     mount.report = sensor.report;
@@ -212,8 +212,8 @@ TEST_P(Drifting, IndexMarkAndStopsLeaveNoneAfterTenMinutesOfPlay) {
   EXPECT_LE(with.rms.angle, sensor.most_rms);
 }
 
-// A rod at its near stop with a perfect sensor, whose mark is at the feet, and what a tracker has
-// of it. The tracker takes the angle of the beginning for feet straight down.
+// A rod at its near stop with an exact sensor and its mark at the feet, and a tracker of it. The
+// tracker takes the initial angle for feet straight down.
 struct Handle {
   static constexpr double kWidth = 22 * kDegree, kLag = 0.75 * kDegree;
   static constexpr double kCount = 1e-3 / 78.7 / kRodRadius;  // [rad]
@@ -253,7 +253,7 @@ struct Handle {
     fastest = std::max(fastest, std::abs(corrected() - last_corrected) / 1e-3);
     last_corrected = corrected();
   }
-  // By how much the tracker has changed the angle beyond what was counted.
+  // The tracker's change of the angle beyond the counted motion.
   double corrected() const {
     return tracker.measured(0).angle - static_cast<double>(device.spin[0]) * kCount;
   }
@@ -310,7 +310,7 @@ TEST(IndexMark, AfterWholeTurnsItIsTheSameMark) {
   Handle h(0);
   h.turn(-0.5, 0.3);
   h.turn(0.5, 0.5);
-  h.turn(10 * 2 * M_PI - 0.5, 2);  // far too fast for the mark to say anything
+  h.turn(10 * 2 * M_PI - 0.5, 2);  // too fast for the mark to be evaluated
   h.turn(10 * 2 * M_PI + 0.5, 0.5);
   h.turn(h.rod.angle, 1);
   EXPECT_NEAR(h.error(), 0, 0.3 * kDegree);
@@ -379,7 +379,7 @@ TEST(IndexMark, WhoeverWasAwayHasToPassItAgain) {
   ASSERT_TRUE(h.tracker.rods()[0].angle_known);
   h.device.present = 0xFE;
   h.send();
-  h.rod.angle += 2;  // by a hand, and nobody counted
+  h.rod.angle += 2;  // turned by a hand without being counted
   h.device.present = 0xFF;
   h.turn(h.rod.angle, 0.1);
   EXPECT_FALSE(h.tracker.rods()[0].angle_known);
@@ -413,7 +413,7 @@ TEST(IndexMark, ARunThatSeesNoneOrOneThatIsLooseHasNone) {
   person.follow();
   CalibrationRun run = guide.run();
   ASSERT_TRUE(fit_rod(run)->calibration.index);
-  // It slips on the rod: what is seen of it comes ever later.
+  // It slips on the rod: its passes come later and later.
   std::mt19937 random(8);
   std::size_t late = 0;
   for (std::size_t i = 0; i < run.increments.size(); ++i) {
@@ -426,7 +426,7 @@ TEST(IndexMark, ARunThatSeesNoneOrOneThatIsLooseHasNone) {
   EXPECT_FALSE(loose->calibration.index);
 }
 
-// A handle that a computer player drove meanwhile: what it means is known, not only its motion.
+// A handle that a computer player drove meanwhile: its pose is known, not only its motion.
 TEST(IndexMark, AnAngleThatIsKnownTakesItsOffsetOut) {
   struct Fixed : InputSource {
     RodInputs all{};

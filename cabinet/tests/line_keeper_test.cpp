@@ -1,4 +1,4 @@
-// A device that takes its time to open: whoever polls does not wait for it.
+// A device that opens slowly: the poller does not wait for it.
 #include "line_keeper.h"
 
 #include <gtest/gtest.h>
@@ -41,14 +41,14 @@ TEST(LineKeeper, DoesNotWaitForADeviceThatOpensSlowly) {
   std::atomic<int> opened{0};
   LineKeeper keeper([&, answer = answered.get_future().share()] {
     ++opened;
-    answer.wait();  // for as long as the test likes
+    answer.wait();  // blocks as long as the test requires
     return ::open("/dev/null", O_RDONLY | O_CLOEXEC);
   });
   for (int i = 0; i < 1'000; ++i) EXPECT_EQ(keeper.take(), -1);
   answered.set_value();
   const Descriptor device(take_when_ready(keeper));
   EXPECT_TRUE(is_open(device.fd));
-  EXPECT_EQ(opened, 1);  // asked a thousand times, opened once
+  EXPECT_EQ(opened, 1);  // requested a thousand times, opened once
 }
 
 TEST(LineKeeper, AsksAgainForADeviceThatIsNotThere) {
@@ -72,7 +72,7 @@ TEST(LineKeeper, SaysWhyADeviceDoesNotOpen) {
   EXPECT_TRUE(says(EBUSY));
 }
 
-// A port that one program may hold only once could not be opened otherwise.
+// Otherwise a port with exclusive access could not be opened.
 TEST(LineKeeper, ClosesADeviceBeforeItOpensItAgain) {
   std::atomic<int> last{-1};
   std::atomic<int> still_open{0};
@@ -108,7 +108,7 @@ TEST(LineKeeper, WritesPacketsInTheirOrderThoughTheDeviceTakesItsTime) {
     packet[0] = static_cast<std::byte>(number);
     return keeper.send(line, packet);
   };
-  // Nobody reads: the thread waits in write(2) once the pipe is full, and the sender never does.
+  // Nobody reads: the thread blocks in write(2) once the pipe is full, and the sender never does.
   int sent = 0;
   ASSERT_TRUE(comes_true([&] {
     if (send(sent)) ++sent;

@@ -1,4 +1,4 @@
-// A line is one program's, and tells when bytes came.
+// A line is exclusive and reports when bytes arrived.
 #include <gtest/gtest.h>
 #include <sys/ioctl.h>
 

@@ -1,4 +1,4 @@
-// Mice as the kernel tells of them, replayed through a socket pair. The clock is handed in.
+// Mice with the kernel's events, replayed through a socket pair. The tests pass the clock in.
 #include "cabinet/mouse_source.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ using namespace cabinet_test;
 
 namespace {
 
-constexpr double kMetres = 1.5 * 25.4e-6, kRadians = 60 * 25.4e-6;  // a count
+constexpr double kMetres = 1.5 * 25.4e-6, kRadians = 60 * 25.4e-6;  // per count
 
 struct Desk {
   Descriptor mouse;
@@ -96,7 +96,7 @@ TEST(MouseSource, TwoMiceAreTwoRods) {
   EXPECT_EQ(right.source.rods()[3].status, RodStatus::absent);
 }
 
-// A mouse of 125 reports a second, moved at 0.4 m/s: the rod is where the hand is at the poll.
+// A mouse with 125 reports a second, moved at 0.4 m/s: the rod is where the hand is at the poll.
 TEST(MouseSource, GoesOnBetweenReportsByTheKernelsTime) {
   Desk desk;
   const std::int64_t began = desk.now_us;
@@ -114,7 +114,7 @@ TEST(MouseSource, GoesOnBetweenReportsByTheKernelsTime) {
     const double hand = counts_per_us * static_cast<double>(desk.now_us - began) * kMetres;
     if (ms > 60) worst = std::max(worst, std::abs(desk.rod().slide - hand));
   }
-  EXPECT_LT(worst, 0.0006);  // 4.8 mm in a report; the braking that is expected, 0.48 mm
+  EXPECT_LT(worst, 0.0006);  // 4.8 mm per report; the assumed braking takes 0.48 mm
 }
 
 TEST(MouseSource, AHandThatStopsIsAtRestWhenItsNextReportDoesNotCome) {

@@ -27,7 +27,7 @@ struct Tracked {
     now_us += after_us;
     return tracker.accept(frame, now_us, now_us, counters);
   }
-  // As the last report said, with the rates of now.
+  // Pose of the last report, with current rates.
   RodInput rod(int index) const {
     RodInput rod = tracker.rods()[index];
     rod.slide = tracker.measured(index).slide;
@@ -39,7 +39,7 @@ struct Tracked {
 TEST(RodTracker, FollowsAllRodsExactlyThroughWrapsBothWays) {
   Tracked t;
   t.take(t.device.frame());
-  for (int i = 0; i < 20'000; ++i) {  // rod r: +-(40 + 5 r) counts a frame, up to 24 wraps
+  for (int i = 0; i < 20'000; ++i) {  // rod r: +-(40 + 5 r) counts per frame, up to 24 wraps
     for (int rod = 0; rod < kRods; ++rod) {
       const int sign = rod % 2 == 0 ? 1 : -1;
       t.device.slide[rod] += sign * (40 + 5 * rod);
@@ -126,7 +126,7 @@ TEST(RodTracker, FollowsSequenceAndClockAcrossTheirWraps) {
   EXPECT_EQ(t.counters.lost + t.counters.stale, 0u);
 }
 
-// Uptimes before the restart: short, long, and past half the clock's range, where the fall back to
+// Uptimes before the restart: short, long, and past half the clock's range, where the step back to
 // 0 looks like a step forward.
 class Restart : public testing::TestWithParam<std::uint32_t> {};
 
@@ -157,8 +157,8 @@ TEST_P(Restart, ContinuesWithoutAJump) {
 INSTANTIATE_TEST_SUITE_P(AfterUptime, Restart,
                          testing::Values(2'000'000u, 600'000'000u, 2'600'000'000u, 4'200'000'000u));
 
-// The micro-controller ran on, only nobody heard it. Signed 32-bit differences of its clock: the
-// longest positive, negative ones, and past its wrap one that looks like the next frame's.
+// The micro-controller ran on unheard. Signed 32-bit differences of its clock: the largest positive
+// one, negative ones, and past its wrap one that looks like the next frame's.
 class Silence : public testing::TestWithParam<std::int64_t> {};
 
 TEST_P(Silence, IsFollowedByANewRunWithoutAJump) {
@@ -190,8 +190,8 @@ INSTANTIATE_TEST_SUITE_P(OfMinutes, Silence,
                                          71 * 60'000'000LL, (1LL << 32) + 100'000,
                                          100 * 60'000'000LL));
 
-// At each resolution: a motion in a gap that the counts can carry arrives; after a longer gap,
-// where they may have wrapped, nothing moves.
+// At each resolution: a motion during a gap that the counts can represent is applied; after a
+// longer gap, in which they may have wrapped, nothing moves.
 void expect_longest_gap(double counts_per_mm, std::uint32_t trusted_us, std::uint32_t doubted_us) {
   Tracked t;
   t.tracker = RodTracker(nominal_calibration(counts_per_mm), {});
@@ -225,7 +225,7 @@ TEST(RodTracker, UndoesATiltedSensor) {
   Tracked t;
   t.tracker = RodTracker(calibration, {});
   t.take(t.device.frame());
-  // 40 mm along and nothing around, as the tilted sensor counts it.
+  // 40 mm along the rod and no rotation, as counted by the tilted sensor.
   t.device.slide[4] = std::lround(0.04 * std::cos(tilt) / kMetresPerCount);
   t.device.spin[4] = std::lround(-0.04 * std::sin(tilt) / kMetresPerCount);
   t.take(t.device.frame());
@@ -233,8 +233,8 @@ TEST(RodTracker, UndoesATiltedSensor) {
   EXPECT_NEAR(t.rod(4).angle, 0.0, 0.015);  // a count
 }
 
-// An eccentric rod of which the sensor counts 4 % more while the feet hang down, and 4 % less while
-// they are up: 40 mm each, and half a turn between them.
+// An eccentric rod: the sensor counts 4 % more while the feet hang down, and 4 % less while they
+// are up. 40 mm each, and half a turn in between.
 TEST(RodTracker, UndoesAnEccentricRod) {
   Calibration calibration = nominal_calibration();
   calibration.rods[4].slide_gain[0] = -0.04;
@@ -276,7 +276,7 @@ TEST(RodTracker, APredictionEndsAtTheStop) {
     t.take(t.device.frame());
   }
   EXPECT_NEAR(t.rod(1).slide, 0.088, 1e-12);
-  t.tracker.predict(t.now_us + 4'000);  // 104 mm, if nothing were in the way
+  t.tracker.predict(t.now_us + 4'000);  // 104 mm without the stop
   EXPECT_EQ(t.tracker.rods()[1].slide, 0.1);
   EXPECT_EQ(t.tracker.rods()[1].slide_rate, 0);
   t.tracker.predict(t.now_us + 500);
@@ -290,7 +290,7 @@ TEST(RodTracker, AnUnpluggedMouseHoldsItsRodOnly) {
   t.device.slide[5] = t.device.slide[6] = 80;
   t.take(t.device.frame());
   t.device.present = static_cast<std::uint8_t>(~(1 << 5));
-  t.device.slide[5] = 40'000;  // whatever its counter says now
+  t.device.slide[5] = 40'000;  // its counter may show anything
   t.device.slide[6] = 160;
   t.take(t.device.frame());
   EXPECT_EQ(t.rod(5).status, RodStatus::held);
@@ -300,7 +300,7 @@ TEST(RodTracker, AnUnpluggedMouseHoldsItsRodOnly) {
   EXPECT_NEAR(t.rod(6).slide, 0.02, 1e-12);
 
   t.device.present = 0xFF;
-  t.device.slide[5] = -500;  // plugged in again, it counts from elsewhere
+  t.device.slide[5] = -500;  // plugged in again, it counts from another value
   t.take(t.device.frame());
   EXPECT_EQ(t.rod(5).status, RodStatus::live);
   EXPECT_NEAR(t.rod(5).slide, 0.01, 1e-12);
@@ -318,8 +318,8 @@ TEST(RodTracker, ARodNeverHeardOfIsAbsent) {
   EXPECT_EQ(t.rod(4).status, RodStatus::absent);
 }
 
-// A steady motion, reported every 5 ms, seen through frames of another period: the rate falls by as
-// much as a hand may brake until the next report, and no further.
+// A steady motion, reported every 5 ms, seen through frames of another period: until the next
+// report the rate falls by as much as the assumed braking, and no further.
 void expect_steady_rate(std::uint32_t frame_us) {
   Tracked t;
   t.take(t.device.frame(frame_us));
@@ -334,9 +334,9 @@ void expect_steady_rate(std::uint32_t frame_us) {
     if (at < 50'000) continue;
     least = std::min(least, t.rod(0).slide_rate);
     most = std::max(most, t.rod(0).slide_rate);
-    EXPECT_NEAR(t.rod(0).angle_rate, -250.0, 18);  // 2000 rad/s^2, 5 ms, and what the phase lacks
+    EXPECT_NEAR(t.rod(0).angle_rate, -250.0, 18);  // 2000 rad/s^2, 5 ms, and the phase error
   }
-  EXPECT_GT(least, 0.7) << frame_us;  // 0.2 in a period, and twice in the 8 ms of two 4 ms frames
+  EXPECT_GT(least, 0.7) << frame_us;  // 0.2 per period, and twice in the 8 ms of two 4 ms frames
   EXPECT_LT(most, 1.02) << frame_us;
   std::printf("  frames of %u us: a steady 1 m/s is seen as %.3f to %.3f m/s\n", frame_us, least,
               most);
@@ -381,9 +381,9 @@ TEST(RodTracker, AnIncrementThatNoRodCanMakeMovesNothing) {
     EXPECT_EQ(t.rod(2).slide, 0) << counts;
     EXPECT_EQ(t.rod(2).slide_rate, 0) << counts;
     EXPECT_EQ(t.rod(2).status, RodStatus::live);
-    EXPECT_NEAR(t.rod(3).slide, 0.01, 1e-12);  // others go on
+    EXPECT_NEAR(t.rod(3).slide, 0.01, 1e-12);  // the others continue
     EXPECT_EQ(t.counters.impossible, 1u);
-    t.device.slide[2] += 80;  // and so does it, from there
+    t.device.slide[2] += 80;  // and so does this one, from there
     t.take(t.device.frame());
     EXPECT_NEAR(t.rod(2).slide, 0.01, 1e-12) << counts;
     t.device.spin[2] += counts;
@@ -396,13 +396,13 @@ TEST(RodTracker, AnIncrementThatNoRodCanMakeMovesNothing) {
 TEST(RodTracker, HalfOfTheCountsRangeHasNoSign) {
   Tracked t;
   t.take(t.device.frame());
-  t.device.slide[2] += 32'768;  // 4.1 m in 1.9 s: a hand could
+  t.device.slide[2] += 32'768;  // 4.1 m in 1.9 s: possible by hand
   t.take(t.device.frame(1'900'000));
   EXPECT_EQ(t.rod(2).slide, 0);
   EXPECT_EQ(t.counters.impossible, 1u);
 }
 
-// At 1 and at 4 ms a frame, with all the counts of a 5 ms report in one: 3 m/s and 140 rad/s.
+// At 1 and at 4 ms per frame, with all counts of a 5 ms report in one: 3 m/s and 140 rad/s.
 TEST(RodTracker, TheFastestHandsArePossible) {
   for (const std::uint32_t period : {1'000u, 4'000u}) {
     Tracked t;

@@ -1,6 +1,6 @@
-// A sensor on a rod as mechanics and optics have it, and a person's hand on that rod. Nothing of it
-// is taken from what it tests: displacements of the surface are taken through the lens, step by
-// step.
+// A model of a sensor on a rod, from mechanics and optics, and of a person's hand on that rod. It
+// is independent of the code under test: it maps displacements of the surface through the lens step
+// by step.
 #pragma once
 
 #include <cmath>
@@ -14,30 +14,30 @@ namespace cabinet_test {
 
 struct Mount {
   double counts_per_mm = 8;
-  double rod_radius = 0.008;        // [m]
-  double tilt = 0;                  // [rad] about the line of sight
-  double lean = 0;                  // [rad] of the line of sight from the surface's normal
-  double lean_towards = 0;          // [rad] from along the rod
-  double scale = 1;                 // of the counts
-  double eccentricity = 0;          // [m] of the rod's surface from its bearings
-  double towards = 0;               // [rad] angle of the rod at which it is closest to the sensor
-  double optical_distance = 0.005;  // [m] of the lens from the surface; magnification is inverse
+  double rod_radius = 0.008;  // [m]
+  double tilt = 0;            // [rad] rotation about the line of sight
+  double lean = 0;            // [rad] angle of the line of sight to the surface normal
+  double lean_towards = 0;    // [rad] direction of the lean, from along the rod
+  double scale = 1;           // factor of the counts
+  double eccentricity = 0;    // [m] offset of the rod's surface from its bearings
+  double towards = 0;  // [rad] angle of the rod at which its surface is closest to the sensor
+  double optical_distance = 0.005;  // [m] from lens to surface; magnification is inverse to it
   double dead_band = 0;             // [counts / s]
-  double noise = 0;                 // relative, of each report
-  double loss = 0;                  // probability of a report to be lost
-  int report = 5;                   // [ms] between two of them
+  double noise = 0;                 // relative, per report
+  double loss = 0;                  // probability that a report is lost
+  int report = 5;                   // [ms] report period
 
-  // The index mark: a magnet of the angle's width while the rod is at its place, narrower beside
-  // it, and none further away than the reach. Width 0: none.
+  // The index mark: a magnet with this angular width while the rod is at `slide`, narrower beside
+  // it, and zero beyond `reach`. Width 0: no mark.
   struct Mark {
     double angle = 0, width = 0;     // [rad]
-    double hysteresis = 0;           // [rad] by which its switch goes off later than it goes on
+    double hysteresis = 0;           // [rad] delay of switching off relative to switching on
     double slide = 0, reach = 4e-3;  // [m]
   };
   Mark mark{};
 };
 
-// Whether the switch of a mark is on, with the rod here.
+// Whether the switch is on at this pose of the rod.
 inline bool switched_on(const Mount::Mark& mark, bool was_on, double slide, double angle) {
   const double beside = std::abs(slide - mark.slide) / mark.reach;
   const double half = beside < 1 ? 0.5 * mark.width * std::sqrt(1 - beside * beside) : 0;
@@ -49,8 +49,7 @@ struct SurfaceCounts {
   double slide, spin;
 };
 
-// What passes under the sensor while the rod moves a little: taken through the lens, exact in the
-// middle of the motion.
+// Counts for a small motion of the rod, mapped through the lens, exact in the middle of the motion.
 inline SurfaceCounts surface_counts(const Mount& mount, double slide, double angle, double to_slide,
                                     double to_angle) {
   const double middle = 0.5 * (angle + to_angle) - mount.towards;
@@ -67,7 +66,7 @@ inline SurfaceCounts surface_counts(const Mount& mount, double slide, double ang
   return {counts * (c * x + s * y), counts * (c * y - s * x)};
 }
 
-// The truth, and what the sensor says of it.
+// The true pose, and the sensor's counts.
 class SimulatedRod {
  public:
   static constexpr double kStep = 1e-3;  // [s]
@@ -80,7 +79,7 @@ class SimulatedRod {
   SimulatedRod& operator=(const SimulatedRod&) = delete;
 
   double slide = 0, angle = 0;
-  bool under = false;  // its switch is on
+  bool under = false;  // the switch is on
   std::vector<cabinet::CountIncrement> increments;
 
   virtual void step(double to_slide, double to_angle) {
@@ -93,7 +92,7 @@ class SimulatedRod {
     if (++steps_ % mount_.report == 0) report();
   }
 
-  // At the speed of a hand that starts and ends at rest; so many seconds.
+  // Moves at the speed of a hand that starts and ends at rest, for this time.
   void move(double to_slide, double to_angle, double seconds) {
     const double from_slide = slide, from_angle = angle;
     const int n = std::max(1, static_cast<int>(std::lround(seconds / kStep)));
@@ -127,15 +126,16 @@ class SimulatedRod {
 
   Mount mount_;
   std::mt19937 random_;
-  double seen_[2] = {0, 0}, left_[2] = {0, 0};  // [counts] since, and before, the last report
+  // [counts] since the last report, and left before it.
+  double seen_[2] = {0, 0}, left_[2] = {0, 0};
   int steps_ = 0;
 };
 
-// The run that docs/cabinet.md asks for, by a hand that marks to 0.1 mm and 1.5 degrees: with the
-// feet down, strokes to both stops; then at each eighth of a turn there and back; then turns at a
-// stop, both ways.
+// The run described in docs/cabinet.md, by a hand that marks to 0.1 mm and 1.5 degrees: strokes to
+// both stops with the feet down; strokes to and fro at each eighth of a turn; turns at a stop, in
+// both directions.
 struct RunDesc {
-  double reach = 0.1;  // [m] of the rod from the middle to each stop
+  double reach = 0.1;  // [m] of the rod from its centre position to each stop
   double stop_error = 1e-4, angle_error = 0.026;
   int eighths = 8, turns = 5;
 };
@@ -189,7 +189,7 @@ inline cabinet::CalibrationRun calibration_run(SimulatedRod& rod, const RunDesc&
   return run;
 }
 
-// As makers mount it: docs/cabinet.md, "Calibrate".
+// A typical mount: docs/cabinet.md, "Calibrate".
 inline Mount drawn_mount(std::mt19937& random, double counts_per_mm) {
   const auto between = [&](double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random);
@@ -207,7 +207,7 @@ inline Mount drawn_mount(std::mt19937& random, double counts_per_mm) {
   return mount;
 }
 
-// At a near stop, off up to 2 degrees later than on, anywhere around the rod.
+// Near a stop, at any angle, with a hysteresis of up to 2 degrees.
 inline Mount::Mark drawn_mark(std::mt19937& random, double near_stop) {
   const auto between = [&](double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random);
@@ -224,7 +224,7 @@ struct PlayErrors {
   double slide = 0, angle = 0;  // [m], [rad] rms
 };
 
-// A hand that plays for so long, from rest in the middle with the feet down.
+// A hand that plays for this long, starting at rest in the centre with the feet down.
 inline PlayErrors play(const Mount& mount, const cabinet::RodCalibration& calibration,
                        double seconds, std::uint32_t seed) {
   SimulatedRod rod(mount, seed);
@@ -233,7 +233,7 @@ inline PlayErrors play(const Mount& mount, const cabinet::RodCalibration& calibr
   std::size_t read = 0, samples = 0;
   while (static_cast<double>(rod.increments.size()) * SimulatedRod::kStep * mount.report <
          seconds) {
-    // One after the other, so that every compiler draws the same.
+    // In separate statements, so that every compiler draws in the same order.
     const double to_slide = rod.between(-0.1, 0.1), to_angle = rod.between(-1.5, 1.5);
     rod.move(to_slide, to_angle, rod.between(0.08, 0.4));
     for (; read < rod.increments.size(); ++read) {

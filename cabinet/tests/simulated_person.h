@@ -1,4 +1,4 @@
-// A hand that does what a calibration's guide asks, on a simulated rod.
+// A simulated hand that follows the calibration guide, on a simulated rod.
 #pragma once
 
 #include <cmath>
@@ -9,7 +9,7 @@
 
 namespace cabinet_test {
 
-// Reads what the guide asks and does it, as a person would: not quite to the mark.
+// Carries out the guide's requests as a person would, with small errors.
 class Person {
   using Motion = cabinet::CalibrationRequest::Motion;
 
@@ -18,15 +18,15 @@ class Person {
       : guide_(guide), rod_(rod), options_(options) {}
 
   double stop_error = 1e-4, angle_error = 0.026, eighth_error = 0.1;  // [m], [rad], [rad]
-  int turns = 5;                                                      // as many as it counts
-  // Before a step: true, if it has done something of its own.
+  int turns = 5;  // number of turns that it can count
+  // Called before a step; true: it has replaced the step.
   std::function<bool(const cabinet::CalibrationRequest&)> instead;
 
-  // Told of each increment, and of the key that begins the run: whoever else follows it.
+  // Called with each increment, and at the key that starts the run, for other observers.
   std::function<void(const cabinet::CountIncrement&)> on_counts = [](const auto&) {};
   std::function<void()> on_start = [] {};
 
-  // Until the guide is through, or nothing comes of it.
+  // Runs until the guide is finished or makes no progress.
   void follow() {
     int tries = 0;
     for (int last = -1; !guide_.finished() && tries < 5; ++tries) {
@@ -44,7 +44,7 @@ class Person {
       on_counts(rod_.increments[i]);
     }
   }
-  // Until the guide has its next step, a second at most.
+  // Waits until the guide has its next step, at most a second.
   void rest() {
     const int step = guide_.step();
     for (int i = 0; i < 20 && guide_.step() == step; ++i) move(rod_.slide, rod_.angle, 0.05);
@@ -53,7 +53,7 @@ class Person {
     const double side = away ? options_.push_side : -options_.push_side;
     return side * (options_.reach + std::abs(rod_.draw(stop_error)));
   }
-  // The nearest whole number of turns from here by so many forward.
+  // The nearest integer number of turns after a rotation by this many turns forward.
   double feet_down(double by = 0) {
     const double forward = options_.forward_sign * rod_.angle / (2 * M_PI);
     return options_.forward_sign * std::round(forward + by) * 2 * M_PI + rod_.draw(angle_error);
@@ -106,7 +106,7 @@ class Person {
   }
 
  private:
-  // What is drawn for the slide comes before what is drawn for the angle, with every compiler.
+  // Draws for the slide before drawing for the angle, with every compiler.
   template <class Angle>
   void go(double slide, const Angle& angle, double seconds) {
     move(slide, angle(), seconds);

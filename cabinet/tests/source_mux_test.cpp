@@ -70,7 +70,7 @@ TEST(SourceMux, AnIdleOrUnpluggedOwnerKeepsTheRod) {
   b.computer.set(2, -0.1, 0.0);
   b.step();
   b.cabinet.set(2, 0.05, 1.0);
-  b.step(60'000);  // a minute without a motion
+  b.step(60'000);  // a minute without motion
   EXPECT_EQ(b.mux.source_of(2), b.of_cabinet);
   b.cabinet.inputs[2].status = RodStatus::held;
   b.step(1'000);
@@ -84,7 +84,7 @@ TEST(SourceMux, ANewOrderPassesTheRodOn) {
   b.cabinet.set(2, 0, 0, RodStatus::held);
   b.computer.set(2, 0, 0);
   b.step();
-  const int computer_only[] = {b.of_computer, 77, -3};  // what is not there is ignored
+  const int computer_only[] = {b.of_computer, 77, -3};  // ignores indices that do not exist
   b.mux.assign(2, computer_only);
   b.step();
   EXPECT_EQ(b.mux.source_of(2), b.of_computer);
@@ -106,7 +106,7 @@ TEST(SourceMux, ADriverThatGoesLeavesTheRodWhereItIs) {
   EXPECT_EQ(b.mux.rods()[2].slide_rate, 0);
 }
 
-// Every change of driver, with drivers that disagree by all of the slide and many turns.
+// Every change of driver, with drivers that differ by the full slide and many turns.
 TEST(SourceMux, NothingJumpsWhenTheDriverChanges) {
   Bench b;
   b.cabinet.set(2, -0.15, 30);
@@ -118,7 +118,7 @@ TEST(SourceMux, NothingJumpsWhenTheDriverChanges) {
     b.mux.assign(2, orders[change % 6]);
     for (int ms = 0; ms < 37 * (change % 5) + 1; ++ms) {
       const RodInput& out = b.step();
-      // 0.3 m and half a turn fade at most by 1/150 in 1 ms.
+      // 0.3 m and half a turn fade by at most 1/150 in 1 ms.
       ASSERT_LE(std::abs(out.slide - slide), 0.3 / 150) << change;
       ASSERT_LE(std::abs(out.angle - angle), std::numbers::pi / 150) << change;
       slide = out.slide;
@@ -144,21 +144,21 @@ TEST(SourceMux, AHandlePushedToTheStopLosesItsOffset) {
   b.mux.place(2, 0.1, 0);
   b.cabinet.set(2, 0.0, 0);
   b.step();
-  b.cabinet.set(2, 0.15, 0);  // its own stop
+  b.cabinet.set(2, 0.15, 0);  // the handle's own stop
   b.cabinet.inputs[2].slide_rate = 1.0;
   EXPECT_NEAR(b.step().slide, 0.15, 1e-12);
   EXPECT_EQ(b.mux.rods()[2].slide_rate, 0);
   b.cabinet.set(2, 0.0, 0);
-  EXPECT_NEAR(b.step().slide, 0.0, 1e-12);  // back in register
+  EXPECT_NEAR(b.step().slide, 0.0, 1e-12);  // aligned again
 }
 
-// Seen at 0.14 m, and thought to be at 0.17 by now: the rod is at its stop, the handle is not.
+// Measured at 0.14 m, extrapolated to 0.17: the rod is at its stop, the handle is not.
 TEST(SourceMux, APredictionBeyondTheStopTakesNoOffset) {
   Bench b;
   b.cabinet.set(2, 0.17, 0);
   b.cabinet.inputs[2].slide_ahead = 0.03;
   b.step();
-  EXPECT_EQ(b.mux.rods()[2].slide, 0.0);  // where it was: 0.17 is the handle's
+  EXPECT_EQ(b.mux.rods()[2].slide, 0.0);  // its previous position: 0.17 is that of the handle
   b.cabinet.set(2, 0.33, 0);
   b.cabinet.inputs[2].slide_ahead = 0.03;
   EXPECT_NEAR(b.step().slide, 0.15, 1e-12);
@@ -173,7 +173,7 @@ TEST(SourceMux, AnOffsetOnTheComputerFadesButForWholeTurns) {
   b.computer.set(2, -0.05, 0.2);
   b.step();
   b.step();
-  EXPECT_LT(b.mux.rods()[2].slide_rate, -0.8);  // the rate tells of the fade
+  EXPECT_LT(b.mux.rods()[2].slide_rate, -0.8);  // includes the rate of the fade
   b.step(3'000);
   EXPECT_NEAR(b.mux.rods()[2].slide, -0.05, 1e-9);
   EXPECT_NEAR(b.mux.rods()[2].angle, 0.2 + 4 * std::numbers::pi, 1e-9);

@@ -12,11 +12,11 @@ namespace {
 
 constexpr RodMotion kCount{1e-4, 1e-3};
 
-// A hand seen by a sensor that reports every report_us, through frames of 1 ms, the first report at
-// `phase` of the first frame. Positions are counts rounded down.
+// A hand tracked by a sensor that reports every report_us, through frames of 1 ms. The first report
+// is at `phase` of the first frame. Positions are counts rounded down.
 struct Seen {
   StateFilter filter{kCount};
-  std::function<double(double)> angle;  // [rad] of [us]
+  std::function<double(double)> angle;  // [rad] as a function of [us]
   std::int64_t report_us, phase_us;
   std::int64_t now_us = 0;
   std::int64_t due_us = phase_us;
@@ -50,8 +50,8 @@ TEST(StateFilter, LearnsThePeriodOfTheReports) {
   }
 }
 
-// What it lacks of a steady motion is the report's unknown time within a frame, a count, and the
-// braking that it expects.
+// The error for a steady motion: the unknown time of the report within a frame, a count, and the
+// assumed braking.
 TEST(StateFilter, GoesOnBetweenReports) {
   for (const std::int64_t phase : {10, 250, 500, 750, 990}) {
     Seen seen{.angle = steadily, .report_us = 5'000, .phase_us = phase};
@@ -67,7 +67,7 @@ TEST(StateFilter, AReportThatFailsToComeEndsTheMotion) {
   const auto stops = [](double us) { return 50e-6 * std::min(us, 100'400.0); };
   Seen seen{.angle = stops, .report_us = 5'000, .phase_us = 400};
   seen.run_until(100'000);
-  seen.run_until(105'000);  // the report of 100400 is in; the next is due at 105400
+  seen.run_until(105'000);  // the report of 100400 has arrived; the next is due at 105400
   EXPECT_GT(seen.filter.at(seen.now_us).angle_rate, 40);
   seen.run_until(107'000);
   EXPECT_EQ(seen.filter.at(seen.now_us).angle, 0);
@@ -84,7 +84,7 @@ TEST(StateFilter, ASensorReadInEachFrameEndsAMotionAtTheNextFrame) {
   EXPECT_EQ(seen.error(), seen.reported - stops(1e6));
 }
 
-// At 12,000 rad/s^2 from 60 rad/s: the parabola's apex is between two reports.
+// At 12,000 rad/s^2 from 60 rad/s: the apex of the parabola is between two reports.
 TEST(StateFilter, AHandThatBrakesIsNotSeenToTurnRound) {
   const auto brakes = [](double us) {
     const double s = std::clamp(us - 90'000, 0.0, 5'000.0) * 1e-6;
@@ -102,7 +102,7 @@ TEST(StateFilter, AHandThatBrakesIsNotSeenToTurnRound) {
   }
 }
 
-// No frame came for long: the motion ends soon after the report that is missing.
+// No frame arrives for a long time: the motion ends soon after the missing report.
 TEST(StateFilter, WithoutFramesAMotionIsNotPredictedForLong) {
   Seen seen{.angle = steadily, .report_us = 5'000, .phase_us = 400};
   seen.run_until(100'000);

@@ -24,7 +24,7 @@ bool AvrController::due() {
     step_bus();
     if (!MotorsBus::kRunsByItself) return false;
   }
-  if (marks_due_ && !bus_.busy()) {  // marks have what time nobody else wants
+  if (marks_due_ && !bus_.busy()) {  // marks get time that nothing else needs
     marks_due_ = false;
     marks_.poll(ms_);
   } else {
@@ -36,7 +36,8 @@ bool AvrController::due() {
 void AvrController::step_bus() {
   bus_.step(mice_.lines().tick());
   if (bus_.busy()) return;
-  // First: a pulse that waited for its reading begins at once. But none begins before a pulse.
+  // First, so that a pulse that waited for a read starts at once. But no read starts before a
+  // pulse.
   if (marks_.reading() || !haptics_.waits()) marks_.poll(ms_);
   haptics_.poll(ms_);
 }
@@ -45,7 +46,7 @@ uint32_t AvrController::turn(bool host) {
   feed_watchdog();
   after_frame_ = frame_made_;
   frame_made_ = false;
-  // While all mice send, a turn takes half a millisecond, and there is no time between two.
+  // While all mice send, a turn takes half a millisecond, which leaves no time between turns.
   if (MotorsBus::kRunsByItself || !after_frame_) {
     for (uint8_t i = 0; i < MotorsBus::kPulseSteps && bus_.busy(); ++i) step_bus();
   }
@@ -93,7 +94,7 @@ void AvrController::obey(const wire::DeviceCommand& command) {
       haptics_.poll(ms_);
       break;
     case wire::kSettingsCommand:
-      if (!take_settings(command, settings_)) break;  // EEPROM wears
+      if (!take_settings(command, settings_)) break;  // limits EEPROM wear
       store_.save(settings_);
       haptics_.allow(pulses_allowed());
       break;
@@ -115,7 +116,7 @@ bool AvrController::take_question(uint16_t& sequence) {
   if (!asked_ || store_.saving()) return false;
   sequence = question_;
   asked_ = false;
-  frame_made_ = true;  // it takes as long
+  frame_made_ = true;  // takes as long as a frame
   return true;
 }
 

@@ -1,5 +1,5 @@
-// What both AVR boards do besides their link to the PC: mice, motors, settings, LED, watchdog.
-// Frames come out, commands go in.
+// The common part of both AVR boards, without the link to the PC: mice, motors, settings, LED,
+// watchdog. It produces frames and executes commands.
 #ifndef FIRMWARE_APP_AVR_CONTROLLER_H
 #define FIRMWARE_APP_AVR_CONTROLLER_H
 
@@ -14,37 +14,37 @@ namespace firmware {
 
 class AvrController {
  public:
-  // From here on lines are sampled, and the watchdog wants turns.
+  // Starts sampling. From then on, the watchdog requires calls of turn().
   void start();
 
-  // A round of the loop: false until it is time for a turn, of which each step is short. Meanwhile
-  // the motors' bus moves on, or the processor sleeps.
+  // One iteration of the loop: false until turn() is due. Each call is short. Meanwhile it steps
+  // the motors' bus or sleeps.
   bool due();
-  // A turn, 5000 times a second. host: the PC reads; until then mice would fill counters that
-  // nobody does. Returns the time [us].
+  // Runs 5000 times a second. host: the PC reads; until then the mice stay disabled, as nobody
+  // reads their counts. Returns the time [us].
   uint32_t turn(bool host);
 
-  // The turn before this one made a frame. What takes long has a turn of its own, else the edges of
-  // the mice find their ring full: a frame, a command, a bus that does not run by itself.
+  // The previous turn made a frame. Each long task needs a turn of its own, or the ring of mouse
+  // edges overflows: a frame, a command, a bus that needs software steps.
   bool after_frame() const { return after_frame_; }
 
   void obey(const wire::DeviceCommand& command);
-  // An error of the line of commands, told in the next frame.
+  // Counts an error of the command line, for the next frame.
   void count_error();
   void make_frame(uint32_t now_us, wire::DeviceFrame& frame);
-  // The PC has asked for the settings, and they are kept: they go out in the place of the next
-  // frame. True once; sequence: of the question.
+  // The PC has requested the settings, and they are saved: send them instead of the next frame.
+  // True once. sequence: that of the request.
   bool take_question(uint16_t& sequence);
 
   Ps2Lines& lines() { return mice_.lines(); }
   const MouseHost& mice() const { return mice_; }
   const wire::DeviceSettings& settings() const { return settings_; }
   MotorsBus& bus() { return bus_; }
-  bool bus_busy() const { return bus_.busy(); }               // motors and marks
+  bool bus_busy() const { return bus_.busy(); }               // by motors or marks
   uint16_t ms() const { return static_cast<uint16_t>(ms_); }  // since start(), wraps
 
  private:
-  // A mouse's counts come each 5 ms.
+  // A mouse's counts arrive every 5 ms.
   static const uint8_t kMarksMs = 4;
 
   void step_bus();
@@ -62,7 +62,7 @@ class AvrController {
   SettingsStore<Eeprom> store_;
   uint32_t ms_ = 0;
   uint32_t ms_began_us_ = 0;
-  uint8_t errors_ = 0;  // counted in the next frame
+  uint8_t errors_ = 0;  // for the next frame
   uint8_t present_ = 0;
   bool asked_ = false;
   uint16_t question_ = 0;

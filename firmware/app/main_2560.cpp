@@ -1,5 +1,5 @@
-// ATmega2560: eight PS/2 mice in, 250 COBS frames a second out at 1 Mbaud; commands in, for haptics
-// and settings.
+// ATmega2560: reads eight PS/2 mice and sends 250 COBS frames a second at 1 Mbaud. Receives
+// commands for haptics and settings.
 #include <avr/interrupt.h>
 
 #include "app/avr_controller.h"
@@ -9,16 +9,16 @@
 
 namespace {
 
-// A mouse reports every 5 ms; a frame every 4 ms delays none and leaves the line free.
+// A mouse reports every 5 ms. A frame every 4 ms delays none of these and leaves the line free.
 const uint16_t kFrameUs = 4000;
-// For motors' pulses on their bus: a hit is felt the sooner.
+// Maximum delay of a frame for motor pulses on their bus, so that a hit is felt sooner.
 const int32_t kFrameWaitsUs = 1000;
 
 firmware::AvrController g_controller;
 firmware::Uart g_uart;
 firmware::CommandStream g_commands;
 
-// Its USB is a bridge of serial bytes: it can be no gamepad, and says so by an error counted.
+// Its USB port is a serial bridge, so it cannot be a gamepad. It reports this by counting an error.
 bool asks_for_gamepads(const wire::DeviceCommand& command) {
   return command.kind == wire::kStickCommand || (command.switches & wire::kGamepads) != 0;
 }
@@ -40,7 +40,7 @@ void take_commands() {
         } else {
           g_controller.obey(command);
         }
-        return;  // one at a time: the mice wait
+        return;  // one per call, so that the mice are polled in time
       case firmware::CommandStream::kError:
         g_controller.count_error();
         return;
@@ -48,7 +48,8 @@ void take_commands() {
   }
 }
 
-// A frame that finds no room is left out before it is made: what it would count is in the next.
+// Skips a frame for which the UART has no capacity, before making it. The next frame has its
+// counts.
 void report(uint32_t now_us) {
   if (!g_uart.has_room(wire::kDeviceCobsBytes)) return;
   uint8_t bytes[wire::kDeviceFrameBytes], coded[wire::kDeviceCobsBytes];
@@ -70,7 +71,8 @@ ISR(TIMER1_COMPA_vect) {
   g_uart.receive();
 }
 
-// Lets samples through: the flag, which stays set, does not interrupt again before it is done.
+// Re-enables interrupts for sampling. TWINT stays set, but with TWIE off it does not interrupt
+// again.
 ISR(TWI_vect) {
   TWCR = _BV(TWEN);
   sei();
@@ -82,9 +84,9 @@ int main() {
   g_uart.start();
   uint32_t next_us = kFrameUs;
   for (;;) {
-    g_uart.poll();  // a byte each time round: one takes 10 us, two rounds of a sleep 20
+    g_uart.poll();  // a byte per iteration: a byte takes 10 us, two iterations of a sleep 20
     if (!g_controller.due()) {
-      if (g_uart.has_received()) take_commands();  // else they wait for a turn
+      if (g_uart.has_received()) take_commands();  // otherwise they wait for a turn
       continue;
     }
     const uint32_t now_us = g_controller.turn(true);

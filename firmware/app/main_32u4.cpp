@@ -1,5 +1,5 @@
-// ATmega32U4: eight PS/2 mice in, one 64-byte HID report a millisecond out; commands in, for
-// haptics and settings. By a setting four gamepads too.
+// ATmega32U4: reads eight PS/2 mice and sends a 64-byte HID report every millisecond. Receives
+// commands for haptics and settings. A setting adds four gamepads.
 #include <avr/interrupt.h>
 
 #include "app/avr_controller.h"
@@ -15,7 +15,7 @@ firmware::AvrController g_controller;
 firmware::UsbDevice g_usb;
 firmware::SerialString<firmware::kUniqueIdBytes> g_serial;
 firmware::Gamepads g_pads;
-uint8_t g_report[wire::kDeviceReportBytes];  // the bytes behind the frame stay 0
+uint8_t g_report[wire::kDeviceReportBytes];  // the bytes after the frame stay 0
 
 void make_serial() {
   uint8_t id[firmware::kUniqueIdBytes];
@@ -58,7 +58,7 @@ void move_stick(uint8_t rod, uint16_t now_ms) {
   g_pads.move(rod, mice.slide(rod), mice.spin(rod), now_ms);
 }
 
-// Each gamepad at the pace of its mice, one in a millisecond: eight of them leave no more time.
+// Each gamepad at the rate of its mice, one per millisecond: eight mice leave no time for more.
 const uint8_t kMouseReportMs = 5;
 
 void serve_gamepads() {

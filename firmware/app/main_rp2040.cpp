@@ -1,6 +1,6 @@
-// Raspberry Pi Pico: eight SPI motion sensors or PS/2 mice in, one 64-byte HID report a millisecond
-// out, sampled just before the host asks for it; commands in, for haptics and settings. Index marks
-// share the motors' bus. By a setting four gamepads too.
+// Raspberry Pi Pico: reads eight SPI motion sensors or PS/2 mice and sends a 64-byte HID report
+// every millisecond, sampled just before the host polls. Receives commands for haptics and
+// settings. Index marks share the motors' bus. A setting adds four gamepads.
 #include "core/gamepads.h"
 #include "core/haptics.h"
 #include "core/index_marks.h"
@@ -23,8 +23,8 @@
 
 namespace {
 
-const uint16_t kButtonHoldMs = 1000;  // then the boot loader
-const uint32_t kQuietUs = 50;         // nothing else begins so short before a sample
+const uint16_t kButtonHoldMs = 1000;  // after which it enters the boot loader
+const uint32_t kQuietUs = 50;         // before a sample, in which nothing else starts
 
 rp2040::UsbController g_usb;
 rp2040::SensorPins g_sensor_pins;
@@ -34,21 +34,21 @@ firmware::MouseHost g_mice;
 firmware::Haptics g_haptics(g_i2c);
 firmware::IndexMarks g_marks(g_i2c);
 firmware::Gamepads g_pads;
-uint8_t g_pads_moved = 0;  // bit i: gamepad i, since its last report was made
+uint8_t g_pads_moved = 0;  // bit i: gamepad i moved since its last report
 firmware::ReportClock g_clock;
 wire::DeviceSettings g_settings;
-bool g_asked = false;     // by the PC for the settings, in the place of the next frame
-uint16_t g_question = 0;  // its sequence
-alignas(4) uint8_t g_report[wire::kDeviceReportBytes];  // the bytes behind the frame stay 0
+bool g_asked = false;     // the PC has requested the settings, to send instead of the next frame
+uint16_t g_question = 0;  // sequence of that request
+alignas(4) uint8_t g_report[wire::kDeviceReportBytes];  // the bytes after the frame stay 0
 firmware::SerialString<rp2040::kUniqueIdBytes> g_serial;
 
 uint32_t g_ms = 0;
 uint32_t g_ms_began_us = 0;
 uint16_t g_sequence = 0;
-wire::DeviceFrame g_frame;  // the last that was made
-uint8_t g_errors = 0;       // counted in the next frame
+wire::DeviceFrame g_frame;  // the last frame made
+uint8_t g_errors = 0;       // for the next frame
 uint16_t g_button_ms = 0;
-volatile uint8_t g_events = 0;  // interrupts that leave work to the loop
+volatile uint8_t g_events = 0;  // count of interrupts that need work by the loop
 
 void make_serial() {
   uint8_t id[rp2040::kUniqueIdBytes];
@@ -84,7 +84,7 @@ void apply_settings() {
   g_usb.set_gamepads(gamepads_on());
 }
 
-// Once for each sample. While gamepads are off nobody follows the counts.
+// Called once per sample. While gamepads are off, the sticks do not follow the counts.
 void move_sticks() {
   static bool on = false;
   static uint32_t told = 0;
@@ -107,8 +107,8 @@ void move_sticks() {
   g_pads_moved = (1u << firmware::kPads) - 1;
 }
 
-// As soon as the host has taken the reports before: those of now wait a millisecond for it, so that
-// nothing comes between a sample and its frame.
+// Sends each report when the host has taken the previous one. New ones wait up to a millisecond, so
+// that nothing delays the frame after a sample.
 void report_gamepads() {
   for (uint8_t pad = 0; pad < firmware::kPads; ++pad) {
     const uint8_t bit = static_cast<uint8_t>(1u << pad);
@@ -120,10 +120,10 @@ void report_gamepads() {
 }
 
 void report() {
-  if (!g_usb.wants_report()) return;  // what is to be told stays for the report that is sent
+  if (!g_usb.wants_report()) return;  // pending data stays for the next report
   if (g_asked) {
     g_asked = false;
-    wire::DeviceSettings kept = g_settings;  // as they are, if there are none in flash
+    wire::DeviceSettings kept = g_settings;  // fallback if flash holds none
     rp2040::load_settings(kept);
     wire::encode_settings_report(kept, wire::kHasSensors | wire::kCanBeGamepads, g_question,
                                  g_report);
@@ -191,13 +191,13 @@ void pass_time(uint32_t now_us) {
   }
 }
 
-// Nothing stops a motor while flash is written: they have no power.
+// Cuts the motors' power: nothing can stop a motor while flash is written.
 void keep_settings() {
   g_haptics.all_off();
   rp2040::reg(rp2040::kGpioOutClear) = rp2040::bit(rp2040::kMotorsEnable);
   rp2040::save_settings(g_settings);
   g_haptics.made_safe();
-  pass_time(rp2040::micros());  // the sensors are told to start at a time that is now
+  pass_time(rp2040::micros());  // so that the sensors' setup starts at the current time
 }
 
 void obey(const wire::DeviceCommand& command) {
@@ -211,9 +211,9 @@ void obey(const wire::DeviceCommand& command) {
     case wire::kSettingsCommand: {
       const bool others =
           command.resolution != g_settings.resolution || command.ps2 != g_settings.ps2;
-      if (!firmware::take_settings(command, g_settings)) break;  // flash wears
+      if (!firmware::take_settings(command, g_settings)) break;  // limits flash wear
       keep_settings();
-      if (others) set_up_sensors();  // which loses their motion of meanwhile
+      if (others) set_up_sensors();  // loses motion during the setup
       apply_settings();
       break;
     }
@@ -294,11 +294,11 @@ int main() {
     const uint32_t now_us = rp2040::micros();
     pass_time(now_us);
     take_commands();
-    g_marks.poll(g_ms);  // first: a pulse that waited for its reading begins at once
+    g_marks.poll(g_ms);  // first: a pulse that waited for a read starts at once
     g_haptics.poll(g_ms);
     if (g_settings.ps2 != 0 && g_mice.due()) {
       g_mice.poll(now_us);
-      // Enumeration first: the mice would fill counters that nobody reads.
+      // Enumeration first: until then nobody reads the mice's counts.
       g_mice.allow_streaming(g_usb.configured());
     }
     report_gamepads();

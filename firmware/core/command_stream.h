@@ -1,5 +1,5 @@
-// Commands out of a serial line's bytes: COBS, then a 0 (wire/device_command.h). Noise costs the
-// command it falls into, and is counted.
+// Decodes commands from the bytes of a serial line: COBS, terminated by 0 (wire/device_command.h).
+// Noise invalidates the command it falls into and is reported as an error.
 #ifndef FIRMWARE_CORE_COMMAND_STREAM_H
 #define FIRMWARE_CORE_COMMAND_STREAM_H
 
@@ -11,7 +11,7 @@ class CommandStream {
  public:
   enum Event : uint8_t { kNone, kCommand, kError };
 
-  // command is written at kCommand only.
+  // Writes command only if it returns kCommand.
   Event byte(uint8_t value, wire::DeviceCommand& command) {
     if (value != 0) {
       if (size_ < sizeof coded_) {
@@ -26,12 +26,13 @@ class CommandStream {
     size_ = 0;
     spoilt_ = false;
     if (spoilt) return kError;
-    if (size == 0) return kNone;  // whoever begins to send may end first what was on the line
+    // A sender may first send 0 to terminate earlier bytes on the line.
+    if (size == 0) return kNone;
     uint8_t bytes[wire::kDeviceCommandBytes];
     const size_t decoded = wire::cobs_decode(coded_, size, bytes, sizeof bytes);
     return wire::decode_device_command(bytes, decoded, command) ? kCommand : kError;
   }
-  // A byte was lost or damaged: what is under way is no command.
+  // A byte was lost or damaged: the command in progress is invalid.
   void spoil() { spoilt_ = true; }
 
  private:

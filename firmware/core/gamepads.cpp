@@ -4,13 +4,13 @@ namespace firmware {
 
 namespace {
 
-const int16_t kFull = 32767;  // of an axis, either way
-const uint32_t kOne = 65536;  // of a factor
+const int16_t kFull = 32767;  // of an axis, in either direction
+const uint32_t kOne = 65536;  // fixed-point one of a factor
 
-// By player: goalie and defence of team 0, midfield and attack, and the same of team 1.
+// By player: goalkeeper and defence of team 0, midfield and attack, and the same of team 1.
 const uint8_t kLeftRod[kPads] = {0, 3, 7, 4}, kRightRod[kPads] = {1, 5, 6, 2};
 
-// Of the tournament table: from stop to stop, and once around a rod of 16 mm.
+// The tournament table: travel from stop to stop, and circumference of a rod of 16 mm.
 const uint16_t kTravelMm[wire::kDeviceRods] = {540, 393, 252, 152, 152, 252, 393, 540};
 const uint8_t kAroundMm = 50;
 

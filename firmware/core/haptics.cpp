@@ -8,14 +8,14 @@ struct Write {
   uint8_t address, value;
 };
 const uint8_t kPlaybackRegister = 0x02;
-// Awake; open loop, playback unsigned; silent; real-time playback.
+// Leave standby; open loop, unsigned playback data; amplitude 0; real-time playback.
 const Write kSetUp[] = {{0x01, 0x00}, {0x1D, 0xA8}, {kPlaybackRegister, 0}, {0x01, 0x05}};
 const uint8_t kSetUpWrites = sizeof kSetUp / sizeof kSetUp[0];
 
 }  // namespace
 
 void Haptics::pulse(uint8_t rod, uint8_t amplitude, uint16_t duration_ms, uint32_t now_ms) {
-  poll(now_ms);  // the time that has passed is not this pulse's
+  poll(now_ms);  // so that the elapsed time does not count for this pulse
   if (!allowed_ || !safe_ || rod >= kMotors || (present_ & 1u << rod) == 0) return;
   Motor& motor = motors_[rod];
   if (motor.credit < amplitude) return;
@@ -121,7 +121,7 @@ void Haptics::begin_job_of(uint8_t rod, bool setting_up) {
 }
 
 void Haptics::next_write() {
-  const uint8_t at = step_ == 0 ? 0 : step_ - 1;  // of the registers
+  const uint8_t at = step_ == 0 ? 0 : step_ - 1;  // index of the register write
   const Write write = setting_up_ ? kSetUp[at] : Write{kPlaybackRegister, value_};
   const uint8_t bytes[2] = {write.address, write.value};
   if (step_ != 0) {
@@ -136,7 +136,7 @@ void Haptics::transfer_ended(bool good) {
   if (!good) {
     working_ = false;
     present_ = static_cast<uint8_t>(present_ & ~rod_bit_);
-    // A write that failed late may have started it.
+    // A write that failed late may have started the motor.
     if (motors_[rod_].sent != 0 || (!setting_up_ && value_ != 0 && step_ != 0)) safe_ = false;
     want(rod_, 0);
     return;

@@ -1,10 +1,10 @@
-// Eight motors, one a rod: each behind a driver chip of the DRV2605 class, all drivers at one
-// address, so behind a multiplexer of the TCA9548A class. A driver is in real-time playback: its
-// motor runs as its register says until that is written again, so what bounds a pulse is here: its
-// length, and what a motor gets on average.
+// Eight motors, one per rod. Each has a driver chip of the DRV2605 class. All drivers have the same
+// address, so they are behind a multiplexer of the TCA9548A class. A driver is in real-time
+// playback mode: its motor runs at the register's amplitude until the next write. So this class
+// bounds a pulse: its length, and the average power of a motor.
 //
-// Nothing waits: poll() moves one transfer on. A driver that does not acknowledge is absent and is
-// tried again later.
+// Nothing blocks: poll() advances one transfer. A driver that does not acknowledge counts as absent
+// and is tried again later.
 #ifndef FIRMWARE_CORE_HAPTICS_H
 #define FIRMWARE_CORE_HAPTICS_H
 
@@ -18,16 +18,16 @@ static const uint8_t kMotors = wire::kDeviceRods;
 
 class I2cBus {
  public:
-  enum State : uint8_t { kIdle, kBusy, kFailed };  // kFailed: not acknowledged, or the bus is stuck
-  // Begins a write of 1 or 2 bytes. Precondition: state() is not kBusy.
+  enum State : uint8_t { kIdle, kBusy, kFailed };  // kFailed: no acknowledge, or the bus is stuck
+  // Starts a write of 1 or 2 bytes. Precondition: state() is not kBusy.
   virtual void write(uint8_t address, const uint8_t* bytes, uint8_t size) = 0;
-  // Of the last write, and of one that was chained to it.
+  // State of the last transfer and of a write chained to it.
   virtual State state() = 0;
-  // A write that begins by itself where the one that was begun last ends well. False: this bus has
-  // no such thing.
+  // Queues a write that starts automatically if the write in progress succeeds. False: not queued,
+  // for instance because this bus does not support it.
   virtual bool chain(uint8_t, const uint8_t*, uint8_t) { return false; }
 
-  // Who uses the bus has it until the end of its last transfer is seen. False: another has it.
+  // Claims the bus until release(), after the end of the last transfer. False: another user has it.
   bool claim(const void* who) {
     if (user_ != nullptr && user_ != who) return false;
     user_ = who;
@@ -44,9 +44,9 @@ class I2cBus {
 
 class I2cReadBus : public I2cBus {
  public:
-  // Begins a read of one byte; state() is of this too. Precondition: state() is not kBusy.
+  // Starts a read of one byte; state() covers it too. Precondition: state() is not kBusy.
   virtual void read(uint8_t address) = 0;
-  // That was read last. Precondition: state() is kIdle after it.
+  // The byte of the last read. Precondition: state() is kIdle after it.
   virtual uint8_t byte() = 0;
 
  protected:
@@ -59,25 +59,25 @@ class Haptics {
 
   void pulse(uint8_t rod, uint8_t amplitude, uint16_t duration_ms, uint32_t now_ms);
   void all_off();
-  // Off: no pulse is played until it is on again.
+  // False: stops all motors and plays no pulse until true.
   void allow(bool allowed);
-  // At least once a millisecond.
+  // Call at least once a millisecond.
   void poll(uint32_t now_ms);
 
-  // A motor has yet to be told something.
+  // A present motor's register needs a write.
   bool waits() const { return (due_ & present_) != 0; }
 
   uint8_t present() const { return present_; }
-  // False after a driver whose motor runs could not be told to stop: the line that enables the
-  // drivers must go low, for which all are set up anew.
+  // False if a write to a driver failed while its motor may be running: the enable line of the
+  // drivers must go low. All drivers then need a new setup.
   bool safe() const { return safe_; }
   void made_safe();
 
   static constexpr uint8_t kMultiplexer = 0x70, kDriver = 0x5A;
-  static constexpr uint16_t kRetryMs =
-      125;                                 // between attempts, of one absent driver after the other
-  static constexpr uint16_t kFirstMs = 2;  // the same in the first round
-  // A motor at full amplitude for a pulse of the longest kind, then a quarter of that on average.
+  static constexpr uint16_t kRetryMs = 125;  // between attempts; absent drivers are tried in turn
+  static constexpr uint16_t kFirstMs = 2;    // the same, for the first attempt at each driver
+  // Credit for a pulse of full amplitude and maximum length; it refills at a quarter of full
+  // amplitude on average.
   static constexpr uint16_t kMaxCredit = 255u * wire::kMaxPulseMs;
   static constexpr uint16_t kCreditPerMs = 64;
   static_assert(255u * wire::kMaxPulseMs <= 0xFFFF - kCreditPerMs, "16 bits hold it");
@@ -90,7 +90,7 @@ class Haptics {
     uint16_t credit = kMaxCredit;
   };
 
-  // Apart from poll(), so that what most calls do saves no registers for them.
+  // Separate from poll(), so that most calls of poll() save no registers for them.
   void pass_time(uint32_t now_ms) __attribute__((noinline));
   void pass_ms();
   void want(uint8_t rod, uint8_t amplitude);
@@ -102,23 +102,23 @@ class Haptics {
 
   I2cBus& bus_;
   Motor motors_[kMotors];
-  uint8_t stirred_ = 0;  // motors that run or have less than all of their credit, a bit each
-  uint8_t due_ = 0;      // motors whose register has not what is wanted
+  uint8_t stirred_ = 0;  // bit i: motor i runs or has less than full credit
+  uint8_t due_ = 0;      // bit i: register of motor i differs from `wanted`
   uint8_t present_ = 0;
   bool allowed_ = true;
   bool safe_ = true;
   uint32_t now_ms_ = 0;
   bool begun_ = false;
 
-  // The job in hand: the multiplexer, then one register or those of setting up.
+  // The current job: a write to the multiplexer, then one register or all setup registers.
   bool working_ = false;
   bool setting_up_ = false;
   uint8_t rod_ = 0, rod_bit_ = 0;
-  uint8_t value_ = 0;  // that the register gets
-  uint8_t step_ = 0;   // 0: the multiplexer
-  uint8_t probe_ = 0;  // the next absent one to be tried
-  uint8_t first_ = 0;  // where the search for work begins
-  uint8_t tried_ = 0;  // of the first round
+  uint8_t value_ = 0;  // to write to the register
+  uint8_t step_ = 0;   // 0: the multiplexer; n: the n-th register write
+  uint8_t probe_ = 0;  // next absent driver to try
+  uint8_t first_ = 0;  // rod where the search for due motors starts
+  uint8_t tried_ = 0;  // drivers tried so far in the first pass
   uint32_t retry_ms_ = 0;
 };
 

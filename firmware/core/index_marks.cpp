@@ -8,7 +8,7 @@ void IndexMarks::poll(uint32_t now_ms) {
     if (state == I2cBus::kBusy) return;
     reading_ended(state == I2cBus::kIdle, now_ms);
     bus_.release();
-    return;  // others have the bus first
+    return;  // other users of the bus take precedence
   }
   if (static_cast<int32_t>(now_ms - next_ms_) < 0 || !bus_.claim(this)) return;
   next_ms_ = now_ms + read_ms_;

@@ -15,8 +15,7 @@ void MouseHost::poll(uint32_t now_us) {
   }
   take_edges();
   open_gate();
-  // Read after the ring is emptied: a tick older than the newest edge would look like a long
-  // silence.
+  // Read after the ring is empty: a tick older than the newest edge would look like a long silence.
   const uint8_t tick = lines_.tick();
   turn_tick_ = tick;
   note(turn_, links_[turn_].step(tick, now_ms_, gate_open_));

@@ -1,5 +1,5 @@
-// Eight mice and the frame made of them. sample() of lines() belongs to the interrupt, all else to
-// one polling loop.
+// Eight mice and the frame with their counts. The interrupt calls sample() of lines(); one polling
+// loop calls all else.
 #ifndef FIRMWARE_CORE_MOUSE_HOST_H
 #define FIRMWARE_CORE_MOUSE_HOST_H
 
@@ -17,17 +17,17 @@ class MouseHost {
  public:
   MouseHost();
 
-  // It is time for poll(): kTurnTicks samples have passed. Until then the loop may sleep.
+  // Whether poll() is due: kTurnTicks samples have passed. Until then the loop may sleep.
   bool due() const { return static_cast<uint8_t>(lines_.tick() - turn_tick_) >= kTurnTicks; }
-  // Takes in all edges heard and moves one link on. At least every 0.5 ms, so that each link's turn
-  // comes within 4 ms. now_us wraps.
+  // Processes all recorded edges and advances one link. Call at least every 0.5 ms, so that each
+  // link advances within 4 ms. now_us wraps.
   void poll(uint32_t now_us);
 
-  // Mice are enabled, all together, once this is true and each is set up or has been waited for
-  // long enough. A mouse that comes later is enabled at once.
+  // If true, mice are enabled all together once each is set up or kWaitForAllMs have passed. A
+  // mouse that appears later is enabled at once.
   void allow_streaming(bool allowed) { allowed_ = allowed; }
 
-  // Counts since power-on, and what happened since the last call.
+  // Fills a frame with counts since power-on and the events since the last call.
   void make_frame(uint32_t now_us, wire::DeviceFrame& frame);
 
   // Counts since power-on, wrapping.
@@ -37,15 +37,15 @@ class MouseHost {
   Ps2Lines& lines() { return lines_; }
   const MouseLink& link(uint8_t mouse) const { return links_[mouse]; }
 
-  // Mice that are not there at power-on hold the others back for so long: a self-test may take 750
-  // ms.
+  // How long the other mice wait for one that is missing at power-on: a self-test may take 750 ms.
   static const uint16_t kWaitForAllMs = 1500;
-  // 200 us: a sixth of what the ring holds, and a turn for each link every 1.6 ms.
+  // 200 us: a sixth of the ring's capacity, and a step for each link every 1.6 ms.
   static const uint8_t kTurnTicks = 10;
 
  private:
-  // Apart from poll(), so that the compiler has all registers for it; one copy of take_edge() for
-  // each mouse, so that testing a bit takes two cycles: a loop took a tenth of the processor.
+  // Separate from poll(), so that the compiler can use all registers. take_edge() is instantiated
+  // for each mouse, so that testing a bit takes two cycles: a loop took a tenth of the processor
+  // time.
   void take_edges() __attribute__((noinline));
   template <uint8_t MOUSE>
   FIRMWARE_INLINE void take_edge(const Edges& edges);

@@ -9,7 +9,7 @@ const uint8_t kReset = 0xFF, kSetRate = 0xF3, kSetResolution = 0xE8, kStreamMode
 const uint8_t kAck = 0xFA, kResend = 0xFE, kFailed = 0xFC, kSelfTestPassed = 0xAA, kMouseId = 0x00;
 
 const uint8_t kScript[] = {kReset, kSetRate, 200, kSetResolution, 3, kStreamMode, kEnable};
-const uint8_t kAfterReset = 1;  // where a mouse begins that has just reset itself
+const uint8_t kAfterReset = 1;  // where the script starts for a mouse that has just reset itself
 const uint8_t kGateAt = 6;
 const uint8_t kScriptEnd = sizeof kScript;
 
@@ -35,8 +35,8 @@ MouseLink::Event MouseLink::other_bit(uint8_t gap, uint8_t bit, uint16_t now_ms)
   return error();
 }
 
-// One that is absent has nothing to lose: what is heard of it may be the clock of a command that
-// was given up when it had just begun to take it.
+// An absent mouse has nothing to lose. Its edges may be clocks of a command that was abandoned just
+// as the mouse began to receive it.
 MouseLink::Event MouseLink::error() const {
   return state_ == kAbsent ? kNone : kError;
 }
@@ -49,8 +49,8 @@ MouseLink::Event MouseLink::on_byte(uint8_t value, bool good, uint16_t now_ms) {
   if (!good) return kNone;
   const bool asked = state_ == kReply || (state_ == kSend && !lines_.sending(mouse_));
   if (before == kSelfTestPassed && value == kMouseId) {
-    // The end of the self-test that we asked for, or it was plugged in just now and knows nothing
-    // of what it was told before. No answer to a command looks like this.
+    // The end of a requested self-test, or the mouse was just plugged in and has lost its earlier
+    // setup. No response to a command looks like this.
     restart();
   } else if (asked) {
     on_reply(value, now_ms);
@@ -194,7 +194,7 @@ MouseLink::Event MouseLink::tend_stream(uint16_t now_ms) {
 }
 
 MouseLink::Event MouseLink::step(uint8_t tick, uint16_t now_ms, bool gate_open) {
-  // A byte that our holding the clock cut off is no error.
+  // A byte that the host's inhibit cut off is not an error.
   if (state_ != kInhibit && receiver_.sweep(tick) == Ps2Receiver::kFramingError) {
     parser_.lose();
     return error();
@@ -221,9 +221,9 @@ MouseLink::Event MouseLink::step(uint8_t tick, uint16_t now_ms, bool gate_open) 
         state_ = kReply;
         deadline_ms_ = static_cast<uint16_t>(now_ms + kReplyMs);
       } else if (passed(now_ms, deadline_ms_)) {
-        // One that was there just now may be in its self-test: asked once more at the end of that,
-        // it would answer and forget to say that it knows nothing any more. So it is told all
-        // again.
+        // A mouse that was just present may be in its self-test. If the link only requested data
+        // again after that, the mouse would answer and not reveal that it has lost its setup. So it
+        // is set up again.
         if (present_) {
           restart();
         } else {

@@ -1,11 +1,10 @@
-// One mouse from power-on to movements: reset (FF: FA AA 00), rate 200 (F3 C8), 8 counts/mm (E8
-// 03), stream mode (EA), then enable (F4) once the gate opens for all. Runs by itself whenever a
-// mouse is plugged in, and again when it vanishes.
+// One PS/2 mouse from power-on to movements: reset (FF: FA AA 00), rate 200 (F3 C8), 8 counts/mm
+// (E8 03), stream mode (EA), then enable (F4) once the gate opens for all. The sequence runs
+// automatically whenever a mouse is plugged in, and again after it disappears.
 //
-// A mouse at rest sends nothing, so one that is silent is asked for its data (EB): the answer
-// carries the movement since the last packet, hence loses no count, and no answer means that it is
-// gone. One that moves and only says so when it is asked has begun again unheard, and is set up
-// once more.
+// A mouse at rest sends nothing, so the link requests data (EB) from a silent one. The response
+// carries the movement since the last packet, so no count is lost. No response means that the mouse
+// is gone. A mouse that moves but reports only on request has reset unnoticed, and is set up again.
 #ifndef FIRMWARE_CORE_MOUSE_LINK_H
 #define FIRMWARE_CORE_MOUSE_LINK_H
 
@@ -20,10 +19,10 @@ namespace firmware {
 class MouseLink {
  public:
   enum State : uint8_t {
-    kAbsent,   // nobody answers; a reset is tried every kRetryMs
-    kPause,    // the mouse ends its byte before the clock is taken from it
-    kInhibit,  // clock held low
-    kSend,     // the mouse clocks the command out of us
+    kAbsent,   // no answer; a reset is tried every kRetryMs
+    kPause,    // lets the mouse finish its byte before the host inhibits the clock
+    kInhibit,  // host holds the clock low
+    kSend,     // the mouse clocks the command out of the host
     kReply,    // waiting for FA
     kBat,      // waiting for AA 00, the end of its self-test
     kGate,     // set up, waiting to be enabled together with the others
@@ -31,38 +30,38 @@ class MouseLink {
   };
   enum Event : uint8_t {
     kNone,
-    kMovement,  // movement() is new
+    kMovement,  // movement() has a new value
     kResync,
-    kError,  // parity or framing
+    kError,  // parity or framing error
   };
 
   MouseLink(Ps2Lines& lines, uint8_t mouse) : lines_(lines), mouse_(mouse) {}
 
-  // A falling edge of this mouse's clock, in the parts that Ps2Receiver gives it.
+  // Handles a falling edge of this mouse's clock, in the same parts as Ps2Receiver.
   uint8_t gap_before(uint8_t tick) { return receiver_.gap_before(tick); }
   bool data_bit(uint8_t gap, uint8_t bit) { return receiver_.data_bit(gap, bit); }
   Event other_bit(uint8_t gap, uint8_t bit, uint16_t now_ms);
-  // Timeouts and the next command; at least every 4 ms. now_ms wraps.
+  // Handles timeouts and sends the next command; call at least every 4 ms. now_ms wraps.
   Event step(uint8_t tick, uint16_t now_ms, bool gate_open);
 
   uint8_t mouse() const { return mouse_; }
   State state() const { return state_; }
   // Enabled and answering, as far as is known.
   bool present() const { return present_; }
-  // Set up as far as it goes alone.
+  // Set up as far as possible without the others.
   bool waits_at_gate() const { return state_ == kGate; }
   const Movement& movement() const { return parser_.movement(); }
 
   static const uint8_t kInhibitTicks = 6;   // 120 us; the mouse needs at least 100
-  static const uint16_t kSendMs = 20;       // a mouse begins to clock within 15 ms
-  static const uint16_t kReplyMs = 25;      // and answers within 20
+  static const uint16_t kSendMs = 20;       // a mouse starts to clock within 15 ms
+  static const uint16_t kReplyMs = 25;      // a mouse answers within 20 ms
   static const uint16_t kBatMs = 1000;      // self-tests of 300 to 750 ms are usual
   static const uint16_t kRetryMs = 100;     // between resets of an absent mouse
-  static const uint16_t kSilenceMs = 250;   // then a streaming mouse is asked whether it is there
-  static const uint16_t kUnfinishedMs = 5;  // then an unfinished packet is given up
-  static const uint8_t kTries = 3;          // of each command
-  // Answers with movement, and no packet of its own between: of a mouse that streams one in fifty
-  // has some, that of the few milliseconds before the question.
+  static const uint16_t kSilenceMs = 250;   // after which a streaming mouse is checked
+  static const uint16_t kUnfinishedMs = 5;  // after which an incomplete packet is dropped
+  static const uint8_t kTries = 3;          // attempts for each command
+  // Consecutive responses to EB with movement, without a streamed packet in between. One in fifty
+  // responses of a streaming mouse has movement, that of the few milliseconds before the request.
   static const uint8_t kMostAnswers = 3;
 
  private:
@@ -87,16 +86,16 @@ class MouseLink {
   PacketParser parser_;
   State state_ = kAbsent;
   bool present_ = false;
-  bool asking_ = false;     // the command under way is EB, not the script's
-  bool answering_ = false;  // the next packet is the answer to it
-  uint8_t answers_ = 0;     // with movement, since its last packet that was not asked for
+  bool asking_ = false;     // the current command is EB, not one of the script
+  bool answering_ = false;  // the next packet is the response to EB
+  uint8_t answers_ = 0;     // responses with movement since the last streamed packet
   uint8_t script_at_ = 0;
   uint8_t command_ = 0;
   uint8_t tries_ = 0;
   uint8_t last_byte_ = 0;
   uint8_t since_tick_ = 0;
-  uint16_t deadline_ms_ = 0;  // kAbsent: the next attempt
-  uint16_t heard_ms_ = 0;     // last whole packet
+  uint16_t deadline_ms_ = 0;  // in kAbsent: time of the next attempt
+  uint16_t heard_ms_ = 0;     // last complete packet
   uint16_t byte_ms_ = 0;
 };
 

@@ -10,9 +10,9 @@ uint8_t bit_of(uint8_t mouse) {
   return static_cast<uint8_t>(1u << mouse);
 }
 
-// Bit number i of value becomes the mouse's bit in plane i. The other bits belong to mice that may
-// be sending now, so the interrupt is held off for each byte; not for all of them at once, since a
-// mouse that is being answered waits no longer than 30 us.
+// Stores bit i of value as the mouse's bit in plane i. The other bits belong to mice that may be
+// sending now, so each byte is written with the interrupt blocked. It is not blocked for all bytes
+// at once, since a mouse that clocks a bit out of the host waits only 30 us.
 void set_planes(volatile uint8_t* planes, uint8_t count, uint8_t bit, uint16_t value) {
   for (uint8_t i = 0; i < count; ++i) {
     const bool one = (value & 1) != 0;

@@ -1,14 +1,15 @@
-// The interrupt's half of eight PS/2 links: one byte holds the clock of every mouse, another the
-// data.
+// The interrupt side of eight PS/2 links: one byte holds the clocks of all mice, another the data
+// lines.
 //
-// sample() runs every kSampleUs. At 16.7 kHz a clock phase lasts 30 us, so each phase is seen at
-// least once and each falling edge exactly once; data is stable from 5 us before the clock falls
+// sample() runs every kSampleUs. At 16.7 kHz a clock phase lasts 30 us, so sampling sees each phase
+// at least once and each falling edge exactly once. Data is stable from 5 us before the clock falls
 // until 5 us after it rises, so the data read with the first low clock is the bit. Falling edges go
-// into a ring that poll() empties: bits are assembled outside the interrupt.
+// into a ring that the polling loop empties: it assembles the bits outside the interrupt.
 //
-// Sending must answer within the low phase (data is taken when the clock rises), so it is done
-// here. The bits to send lie in planes, the next one of every mouse in planes_[0]: answering is one
-// operation for all mice, and so is moving on, whatever bit each has reached.
+// A sender must drive its data within the low phase (the mouse samples it when the clock rises), so
+// the interrupt sends. The bits to send are stored in bit planes: planes_[0] holds the next bit of
+// every mouse. Driving the lines and advancing are each one operation for all mice, whatever bit
+// each has reached.
 #ifndef FIRMWARE_CORE_PS2_LINES_H
 #define FIRMWARE_CORE_PS2_LINES_H
 
@@ -22,7 +23,8 @@ namespace firmware {
 
 static const uint8_t kMice = 8;
 
-// Longer loses bits at 16.7 kHz; at 16 MHz much shorter leaves no time for anything else.
+// A longer period loses bits at 16.7 kHz. A much shorter one leaves no other processor time at 16
+// MHz.
 static const uint8_t kSampleUs = 20;
 
 struct Edges {
@@ -33,11 +35,11 @@ struct Edges {
 
 class Ps2Lines {
  public:
-  // ---- the interrupt's side
-  // One sample. The clock is read twice, with count_sample() between, and a level counts only when
-  // both agree: a spike shorter than that is no edge. drive(low) is called at once with the data
-  // lines to pull low when they change: a mouse at 16.7 kHz takes its bit 30 us after the edge that
-  // asked for it.
+  // ---- interrupt side
+  // Processes one sample. The clock is read twice, with count_sample() in between. A level counts
+  // only if both agree, which rejects shorter spikes. sample() calls drive(low) at once when the
+  // set of data lines to pull low changes: a mouse at 16.7 kHz samples its bit 30 us after the
+  // requesting edge.
   template <typename Drive>
   FIRMWARE_INLINE void sample(uint8_t clock, uint8_t data, uint8_t clock_again, Drive drive) {
     const uint8_t before = level_;
@@ -56,11 +58,11 @@ class Ps2Lines {
     }
     if (fell != 0) push(fell, data);
   }
-  // Between the two readings of the clock: it has to be done anyway and takes 0.3 us.
+  // Called between the two reads of the clock: it is needed anyway and takes 0.3 us.
   FIRMWARE_INLINE void count_sample() { tick_ = static_cast<uint8_t>(tick_ + 1); }
 
-  // ---- the polling side
-  // The oldest edges not yet taken; false: none.
+  // ---- polling side
+  // Removes the oldest edges; false: none left.
   bool pop(Edges& out) {
     const uint8_t tail = tail_;
     if (tail == head_) return false;
@@ -73,12 +75,13 @@ class Ps2Lines {
   }
   bool empty() const { return tail_ == head_; }
   uint8_t tick() const { return tick_; }
-  // Samples with edges that found the ring full; wraps.
+  // Number of samples with edges that were dropped because the ring was full; wraps.
   uint8_t dropped() const { return dropped_; }
 
-  void inhibit(uint8_t mouse);              // holds the clock low: the mouse must not send
-  void release(uint8_t mouse);              // lets both lines go, whatever was under way
-  void send(uint8_t mouse, uint8_t value);  // from inhibit: request to send, then value bit by bit
+  void inhibit(uint8_t mouse);  // holds the clock low: the mouse must not send
+  void release(uint8_t mouse);  // releases both lines and aborts a transfer in progress
+  // After inhibit(): request to send, then the bits of value.
+  void send(uint8_t mouse, uint8_t value);
   bool sending(uint8_t mouse) const { return (sending_ & (1u << mouse)) != 0; }
   bool acknowledged(uint8_t mouse) const { return (acknowledged_ & (1u << mouse)) != 0; }
 
@@ -86,9 +89,9 @@ class Ps2Lines {
   uint8_t data_low() const { return data_low_; }
 
  private:
-  // The ring is as long as a uint8_t counts, so that an offset wraps by itself. 64 samples with
-  // edges are 1.3 ms of all mice talking; the longest stretch without a poll, making and handing
-  // over a frame, is a quarter of that.
+  // The ring has 256 bytes, so that a uint8_t offset wraps by itself. 64 samples with edges are 1.3
+  // ms in which all mice send. The longest interval without a poll, while a frame is made and sent,
+  // is a quarter of that.
   static const uint8_t kEntry = 4;    // tick, fell, data, unused
   static const uint8_t kPlanes = 10;  // 8 data bits, parity, stop
   static const uint8_t kCounterPlanes = 4;
@@ -109,10 +112,10 @@ class Ps2Lines {
     head_ = next;
   }
 
-  // What follows runs for an answer only, a few hundred times in a mouse's life, but every register
-  // it uses is saved at every sample: so asked_ lies in memory, and addresses are constant.
+  // The functions below run only while sending, a few hundred times per mouse. But every register
+  // they use is saved at every sample. So asked_ is in memory, and addresses are constant.
 
-  // Plane I and those behind it move up by one for the mice asked.
+  // Shifts plane I and the following ones by one bit for the mice in asked_.
   template <uint8_t I>
   FIRMWARE_INLINE void move_planes(Index<I>) {
     planes_[I] = static_cast<uint8_t>(planes_[I] ^ ((planes_[I] ^ planes_[I + 1]) & asked_));
@@ -120,7 +123,7 @@ class Ps2Lines {
   }
   FIRMWARE_INLINE void move_planes(Index<kPlanes - 1>) {}
 
-  // Counts down, a bit of every mouse's counter in each plane. asked_ becomes those that were at 0.
+  // Decrements the counters, stored as bit planes. asked_ keeps the mice whose counter was 0.
   template <uint8_t I>
   FIRMWARE_INLINE void count_down(Index<I>) {
     left_[I] = static_cast<uint8_t>(left_[I] ^ asked_);
@@ -132,25 +135,26 @@ class Ps2Lines {
   FIRMWARE_INLINE void prepare_next(uint8_t data) {
     move_planes(Index<0>());
     count_down(Index<0>());
-    // These had sent all: the data line is now the mouse's acknowledge.
+    // These have sent all bits: the data line now carries the mouse's acknowledge.
     sending_ = static_cast<uint8_t>(sending_ & ~asked_);
     acknowledged_ = static_cast<uint8_t>(acknowledged_ | (asked_ & ~data));
   }
 
-  // Written by the interrupt; by the polling side only while sampling is held.
+  // Written by the interrupt; by the polling side only while it holds sampling.
   volatile uint8_t tick_ = 0;
-  uint8_t level_ = 0xFF;  // the clocks as last believed; low for those we hold: that is no edge
+  // Debounced clock levels; low for inhibited mice, so that inhibiting is no edge.
+  uint8_t level_ = 0xFF;
   volatile uint8_t clock_low_ = 0;
   volatile uint8_t data_low_ = 0;
   volatile uint8_t sending_ = 0;
   volatile uint8_t acknowledged_ = 0;
   volatile uint8_t asked_ = 0;  // mice whose bit is being prepared
   volatile uint8_t planes_[kPlanes] =
-      {};  // bit i of the first: what mouse i gets at its next falling edge
+      {};  // bit i of planes_[0]: what mouse i gets at its next falling edge
   volatile uint8_t left_[kCounterPlanes] =
       {};  // bits left to present, least significant plane first
 
-  // One writer each: head_ the interrupt, tail_ the polling side.
+  // Single writers: head_ the interrupt, tail_ the polling side.
   volatile uint8_t head_ = 0;
   volatile uint8_t tail_ = 0;
   volatile uint8_t dropped_ = 0;

@@ -1,4 +1,4 @@
-// The parity bit makes the ones of a byte and itself odd in number.
+// Odd parity: the number of ones in a byte and its parity bit is odd.
 #ifndef FIRMWARE_CORE_PS2_PARITY_H
 #define FIRMWARE_CORE_PS2_PARITY_H
 

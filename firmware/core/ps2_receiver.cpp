@@ -30,7 +30,7 @@ Ps2Receiver::Event Ps2Receiver::start(uint8_t gap, bool bit) {
     idle_ = false;
   }
   if (count_ == kHunting) {
-    // More than one stray edge: this is a byte whose start was missed, so no packet begins here.
+    // More than one stray edge: the start bit of this byte was missed, so no packet starts here.
     quiet_ = false;
     return kNone;
   }

@@ -1,5 +1,5 @@
-// The host's side of core/sampling.h: one thread, so nothing needs holding; tests read the lines
-// back.
+// core/sampling.h on the PC: one thread, so nothing needs blocking; tests read the lines from
+// Ps2Lines.
 #include "core/sampling.h"
 
 namespace firmware {

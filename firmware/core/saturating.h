@@ -1,4 +1,4 @@
-// Counters of a frame, which stay at their most.
+// Saturating counters of a frame.
 #ifndef FIRMWARE_CORE_SATURATING_H
 #define FIRMWARE_CORE_SATURATING_H
 

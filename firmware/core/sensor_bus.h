@@ -1,5 +1,6 @@
-// Eight motion sensors of the PMW3360 class as the core sees them: clock and data to them shared,
-// a select line and a data line from each of its own, so that all eight answer at the same time.
+// The bus of eight motion sensors of the PMW3360 class. They share the clock and the data line to
+// the sensors. Each has its own select line and data line from the sensor, so that all eight answer
+// at the same time.
 #ifndef FIRMWARE_CORE_SENSOR_BUS_H
 #define FIRMWARE_CORE_SENSOR_BUS_H
 
@@ -8,18 +9,19 @@
 namespace firmware {
 
 static const uint8_t kSensors = 8;
-static const uint8_t kBurstBytes = 6;  // motion, observation, x low and high, y low and high
+static const uint8_t kBurstBytes = 6;  // motion, observation, x low, x high, y low, y high
 
-// out[i]: bit i of each of the 8 rows, row 0 the most significant. rows and out: 8, 4-aligned.
+// out[i]: bit i of each of the 8 rows, row 0 in the most significant bit. rows, out: 8 bytes,
+// 4-aligned.
 void transpose8(const uint8_t* rows, uint8_t* out);
 
-// The calls keep the times that the sensor asks for between them.
+// The functions keep the sensor's required delays between accesses.
 class SensorBus {
  public:
-  // out[8 * byte + bit]: what the sensors answered in this bit, most significant first, sensor i in
-  // bit i. Bits of sensors that are not selected mean nothing. out: 8 * kBurstBytes.
+  // out[8 * byte + bit]: this bit of all sensors' answers, most significant bit first, sensor i in
+  // bit i. Bits of unselected sensors are undefined. out: 8 * kBurstBytes.
   virtual void burst(uint8_t selected, uint8_t* out) = 0;
-  // The register of each selected sensor. out: kSensors, 4-aligned.
+  // Reads the register of each selected sensor. out: kSensors bytes, 4-aligned.
   virtual void read(uint8_t selected, uint8_t address, uint8_t* out) = 0;
   virtual void write(uint8_t selected, uint8_t address, uint8_t value) = 0;
 

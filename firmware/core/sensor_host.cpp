@@ -7,15 +7,15 @@ namespace {
 const uint8_t kProductId = 0x00, kMotion = 0x02, kConfig1 = 0x0F, kConfig2 = 0x10,
               kPowerUpReset = 0x3A, kInverseProductId = 0x3F, kMotionBurst = 0x50;
 const uint8_t kResetValue = 0x5A, kProduct = 0x42;
-const uint8_t kMotionRegisters = 5;  // 02h..06h, read once after a reset
-const uint8_t kSeen = 0x80;          // in the motion byte: the sensor has moved
+const uint8_t kMotionRegisters = 5;  // 02h..06h, to be read once after a reset
+const uint8_t kSeen = 0x80;          // bit of the motion byte: the sensor has moved
 const uint8_t kMaxInchesPerSecond = 250;
 
 bool passed(uint32_t now_ms, uint32_t deadline_ms) {
   return static_cast<int32_t>(now_ms - deadline_ms) >= 0;
 }
 
-// The sensors whose answer is the wanted one.
+// Bit i: sensor i gave the wanted answer.
 uint8_t equal(const uint8_t* answers, uint8_t wanted) {
   uint8_t mask = 0;
   for (uint8_t i = 0; i < kSensors; ++i) {
@@ -40,9 +40,9 @@ void put_word(uint32_t word, uint8_t* bytes) {
 
 }  // namespace
 
-// Bits, then pairs, then nibbles change places across the diagonal, four rows in a word at a time.
+// Swaps bits, then pairs, then nibbles across the diagonal, four rows per word.
 void transpose8(const uint8_t* rows, uint8_t* out) {
-  // Rows 0..3 and 4..7, the first in the most significant byte.
+  // Rows 0..3 and 4..7, the first one in the most significant byte.
   uint32_t high = __builtin_bswap32(word_at(rows)), low = __builtin_bswap32(word_at(rows + 4));
   uint32_t moved = (high ^ high >> 7) & 0x00AA00AAu;
   high ^= moved ^ moved << 7;
@@ -52,7 +52,8 @@ void transpose8(const uint8_t* rows, uint8_t* out) {
   high ^= moved ^ moved << 14;
   moved = (low ^ low >> 14) & 0x0000CCCCu;
   low ^= moved ^ moved << 14;
-  // Columns 7..4 and 3..0, the first in the most significant byte, which the last of out is.
+  // Columns 7..4 and 3..0, the first one in the most significant byte, which is the last byte of
+  // out.
   put_word((high << 4 & 0xF0F0F0F0u) | (low & 0x0F0F0F0Fu), out);
   put_word((high & 0xF0F0F0F0u) | (low >> 4 & 0x0F0F0F0Fu), out + 4);
 }
@@ -74,15 +75,15 @@ void SensorHost::sample(uint8_t elapsed_ms) {
   alignas(4) uint8_t answers[kBurstBytes][kSensors];
   bus_.burst(live_, bits);
   for (uint8_t byte = 0; byte < kBurstBytes; ++byte) transpose8(bits + 8 * byte, answers[byte]);
-  // More than the sensor follows, with a quarter to spare: it has lost track. At the most of 16
-  // bits the delta stands at its limit, and counts are missing.
+  // Motion beyond the sensor's tracking range, with a margin of a quarter: it has lost track. At
+  // the 16-bit limit the delta is saturated and counts are missing.
   const int32_t most = static_cast<int32_t>(kMaxInchesPerSecond) * resolution_ * elapsed_ms / 8 + 8;
   const int32_t limit = most < 32767 ? most : 32767;
   for (uint8_t i = 0; i < kSensors; ++i) {
     const uint8_t mask = static_cast<uint8_t>(1u << i);
     if ((live_ & mask) == 0) continue;
-    // Nobody drives the line; or it is held low, which looks like no motion but for the
-    // observation.
+    // All ones: nothing drives the line. All zeros: the line is held low. That looks like no
+    // motion, but the observation byte is zero too.
     const bool ones = answers[0][i] == 0xFF && answers[1][i] == 0xFF;
     const bool zeros = answers[1][i] == 0 && (observed_ & mask) != 0;
     if (answers[1][i] != 0) observed_ = static_cast<uint8_t>(observed_ | mask);
@@ -121,7 +122,7 @@ void SensorHost::ask(bool suspicious) {
                                       static_cast<uint8_t>(resolution_ - 1)};
   alignas(4) uint8_t answers[kSensors];
   bus_.read(live_, address[question_], answers);
-  bus_.write(live_, kMotionBurst, 0);  // a register that is read ends the burst mode
+  bus_.write(live_, kMotionBurst, 0);  // reading a register ends burst mode
   const uint8_t wrong = static_cast<uint8_t>(live_ & ~equal(answers, wanted[question_]));
   question_ = static_cast<uint8_t>((question_ + 1) % kQuestions);
   if (suspicious || wrong != 0) count_errors(1);
@@ -152,7 +153,7 @@ void SensorHost::set_up(uint32_t now_ms) {
       bus_.read(setting_up_, static_cast<uint8_t>(kMotion + flushed_), answers);
       if (++flushed_ == kMotionRegisters) step_ = kRest;
       break;
-    case kRest:  // no rest modes: a sensor at rest would see the next motion up to 0.5 s late
+    case kRest:  // no rest modes: a sensor in one would detect the next motion up to 0.5 s late
       bus_.write(setting_up_, kConfig2, 0);
       step_ = kResolution;
       break;

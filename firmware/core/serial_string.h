@@ -1,4 +1,4 @@
-// A controller's number as a string descriptor of USB: hexadecimal digits.
+// A controller's serial number as a USB string descriptor, in hexadecimal digits.
 #ifndef FIRMWARE_CORE_SERIAL_STRING_H
 #define FIRMWARE_CORE_SERIAL_STRING_H
 

@@ -1,6 +1,6 @@
-// The settings (wire/device_settings.h) as commands change them, and as they are kept in a
-// controller's flash or EEPROM: their bytes, then u16 CRC. Version 1, which is read too, ends with
-// its CRC behind byte 5: it has no sticks.
+// The settings (wire/device_settings.h): how commands change them, and their format in a
+// controller's flash or EEPROM: the encoded settings, then a u16 CRC. Version 1 can be read too. It
+// has no sticks: its CRC follows byte 5.
 #ifndef FIRMWARE_CORE_SETTINGS_H
 #define FIRMWARE_CORE_SETTINGS_H
 
@@ -10,13 +10,14 @@ namespace firmware {
 
 static const uint8_t kKeptBytes = wire::kDeviceSettingsBytes + 2;
 
-// What a command of settings says, put into them; false: they were so.
+// Applies a settings command. False: nothing changed.
 inline bool take_settings(const wire::DeviceCommand& command, wire::DeviceSettings& settings) {
   if (settings.resolution == command.resolution && settings.brightness == command.brightness &&
       settings.ps2 == command.ps2 && settings.switches == command.switches) {
     return false;
   }
-  if (settings.resolution != command.resolution) {  // what was measured was counts of before
+  // Measured values are in counts of the old resolution.
+  if (settings.resolution != command.resolution) {
     for (wire::StickScale& stick : settings.sticks) stick = wire::StickScale();
     settings.slide_reversed = settings.spin_reversed = 0;
   }
@@ -27,7 +28,7 @@ inline bool take_settings(const wire::DeviceCommand& command, wire::DeviceSettin
   return true;
 }
 
-// The same of a command for a rod's stick.
+// Applies a command for a rod's stick. False: nothing changed.
 inline bool take_stick(const wire::DeviceCommand& command, wire::DeviceSettings& settings) {
   const uint8_t bit = static_cast<uint8_t>(1u << command.rod);
   const auto marked = [bit](uint8_t mask, bool on) {
@@ -56,7 +57,7 @@ inline void encode_kept(const wire::DeviceSettings& settings, uint8_t* out) {
   wire::device_put16(out + wire::kDeviceSettingsBytes, crc);
 }
 
-// False, and settings untouched, unless version, CRC and ranges hold. in: kKeptBytes.
+// False, with settings unchanged, if version, CRC or ranges are invalid. in: kKeptBytes.
 inline bool decode_kept(const uint8_t* in, wire::DeviceSettings& settings) {
   const uint8_t size = in[0] == 1 ? 6 : wire::kDeviceSettingsBytes;
   if (wire::device_get16(in + size) != wire::device_crc16(in, size)) return false;

@@ -1,7 +1,7 @@
-// Settings in a memory whose bytes take milliseconds each to be written, as an AVR's EEPROM: one
-// byte a step, none waited for. The version, byte 0, is erased first and written last, and all is
-// under a CRC: when power fails between, what is read at the next start is the default settings, or
-// those of before.
+// Stores settings in a memory that takes milliseconds to write a byte, such as an AVR's EEPROM: one
+// byte per step, without blocking. The version, byte 0, is erased first and written last, and a CRC
+// covers all bytes. After a power failure during a save, the next start reads the default or the
+// previous settings.
 #ifndef FIRMWARE_CORE_SETTINGS_STORE_H
 #define FIRMWARE_CORE_SETTINGS_STORE_H
 
@@ -10,23 +10,23 @@
 namespace firmware {
 
 // Memory: static bool ready(); uint8_t read(uint8_t at); void write(uint8_t at, uint8_t value),
-// which begins to write. read() and write() only while ready().
+// which starts a write. read() and write() require ready().
 template <typename Memory>
 class SettingsStore {
  public:
-  // False, and settings untouched, if there are none that hold.
+  // False, with settings unchanged, if no valid settings are stored.
   static bool load(wire::DeviceSettings& settings) {
     uint8_t bytes[kKeptBytes];
     for (uint8_t at = 0; at < kKeptBytes; ++at) bytes[at] = Memory::read(at);
     return decode_kept(bytes, settings);
   }
-  // Those of a save under way are given up.
+  // Starts a save and abandons one in progress.
   void save(const wire::DeviceSettings& settings) {
     encode_kept(settings, bytes_);
     at_ = kErase;
   }
   bool saving() const { return at_ != kDone; }
-  // Begins to write the next byte, if one is left and the one before is written.
+  // Starts to write the next byte if the previous one is complete.
   void step() {
     if (at_ == kDone || !Memory::ready()) return;
     if (at_ == kErase) {
@@ -42,7 +42,7 @@ class SettingsStore {
   }
 
  private:
-  static const uint8_t kErase = 0, kDone = 255;  // of at_, besides the bytes behind the version
+  static const uint8_t kErase = 0, kDone = 255;  // values of at_ besides the index of a byte
 
   static void put(uint8_t at, uint8_t value) {
     if (Memory::read(at) != value) Memory::write(at, value);

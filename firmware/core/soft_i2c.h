@@ -1,10 +1,10 @@
-// An I2C master on two open-drain lines, in steps: each gives the clocks of a byte at most, and
-// none waits for a part. A line is pulled low or let go, never driven high. Interrupts may come at
-// any time: they stretch a clock.
+// An I2C controller on two open-drain lines, in steps. Each step gives at most the clocks of one
+// byte, and none waits for a device. A line is pulled low or released, never driven high.
+// Interrupts may occur at any time: they stretch a clock.
 //
-// A part that was cut off while it sent may hold the data line for up to nine clocks: those are
-// given before a transfer, and the bus is ended (UM10204, 3.1.16). A part may stretch the clock for
-// kStretchTicks; then the transfer has failed, and both lines are let go.
+// A device that was interrupted while sending may hold the data line low for up to nine clocks.
+// They are given before a transfer, followed by STOP (UM10204, 3.1.16). A device may stretch the
+// clock for kStretchTicks. After that the transfer fails, and both lines are released.
 #ifndef FIRMWARE_CORE_SOFT_I2C_H
 #define FIRMWARE_CORE_SOFT_I2C_H
 
@@ -12,10 +12,10 @@
 
 namespace firmware {
 
-// Wires: static void clock_low(), clock_free(), data_low(), data_free(); bool clock(), data();
-// void settle(), in which a line that was let go rises by its pull-up, else it counts as held for
-// this step; wait_high(), at least 0.6 us; wait_low(), so that together with what a step does
-// between a clock is low for 1.3 us. The tests measure both.
+// Wires: static void clock_low(), clock_free(), data_low(), data_free(); bool clock(), data(); void
+// settle(): waits until a released line has risen by its pull-up; a line still low counts as held
+// low for this step; wait_high(): at least 0.6 us; wait_low(): together with the other work of a
+// step between two clocks, a low period of 1.3 us. The tests measure both.
 template <typename Wires>
 // NOLINTNEXTLINE(cppcoreguidelines-virtual-class-destructor): final, which it misses of templates
 class SoftI2c final : public I2cReadBus {
@@ -30,7 +30,7 @@ class SoftI2c final : public I2cReadBus {
   State state() override { return state_; }
   bool busy() const { return state_ == kBusy; }
 
-  // tick: of 20 us, wraps; while busy() a step comes at least every 2 ms.
+  // tick: unit 20 us, wraps. Call at least every 2 ms while busy().
   void step(uint8_t tick) {
     if (phase_ != kBit) {
       other_step(tick);
@@ -47,7 +47,7 @@ class SoftI2c final : public I2cReadBus {
     clock_bit(tick);
   }
 
-  static const uint8_t kPulseSteps = 9;  // of a motor, 40 us at most each
+  static const uint8_t kPulseSteps = 9;  // steps of a motor pulse, at most 40 us each
   static const bool kRunsByItself = false;
 
   static const uint8_t kStretchTicks = 50;  // 1 ms
@@ -56,10 +56,10 @@ class SoftI2c final : public I2cReadBus {
  private:
   enum Phase : uint8_t {
     kRest,
-    kBegin,  // both lines must be free
+    kBegin,  // requires both lines high
     kBit,
     kStop,
-    kFree,  // clocks for a part that holds the data line
+    kFree,  // clocks for a device that holds the data line low
   };
 
   void begin(uint8_t first, uint8_t size, bool reading) {
@@ -98,7 +98,7 @@ class SoftI2c final : public I2cReadBus {
     state_ = kFailed;
   }
 
-  // A clock that a part has stretched is high for its time from when it is found high.
+  // The high time of a stretched clock starts when it is first seen high.
   bool raise_clock(uint8_t tick) {
     Wires::clock_free();
     Wires::settle();
@@ -111,9 +111,9 @@ class SoftI2c final : public I2cReadBus {
     if (raise_clock(tick)) end_bit();
   }
 
-  // All but the last that are left of the byte under way, for as long as nobody holds a line:
-  // whoever does is found by the one bit that follows. Eight of them are most of a transfer's time,
-  // so they stay in registers.
+  // Sends the remaining bits of the current byte except the last, as long as no device holds a
+  // line. If one does, the single bit that follows detects it. These bits take most of a transfer's
+  // time, so their state stays in registers.
   void send_bits() {
     uint8_t shift = shift_, bit = bit_;
     bool high = sent_high_;
@@ -139,7 +139,7 @@ class SoftI2c final : public I2cReadBus {
     sent_high_ = high;
   }
 
-  // The same of the byte that the other sends.
+  // Receives the bits of a byte in the same way.
   void take_bits() {
     uint8_t shift = shift_, bit = bit_;
     while (bit < 7) {
@@ -152,13 +152,13 @@ class SoftI2c final : public I2cReadBus {
       shift = static_cast<uint8_t>(shift << 1 | (high ? 1 : 0));
       ++bit;
       Wires::wait_low();
-      Wires::settle();  // less is done meanwhile than where a bit is sent
+      Wires::settle();  // receiving takes fewer instructions than sending a bit
     }
     shift_ = shift;
     bit_ = bit;
   }
 
-  // The clock is high, bit_ on the data line.
+  // Precondition: the clock is high, bit_ is on the data line.
   void end_bit() {
     const bool high = Wires::data();
     Wires::clock_low();
@@ -166,7 +166,7 @@ class SoftI2c final : public I2cReadBus {
       if (taking_) {
         shift_ = static_cast<uint8_t>(shift_ << 1 | (high ? 1 : 0));
       } else if (sent_high_ && !high) {
-        give_up();  // somebody holds it
+        give_up();  // another device holds the data line low
         return;
       }
     }
@@ -174,7 +174,7 @@ class SoftI2c final : public I2cReadBus {
     if (bit_ < 8) {
       present();
     } else if (bit_ == 8) {
-      Wires::data_free();  // for the acknowledge; the one byte that is read gets none
+      Wires::data_free();  // released for the acknowledge; the one byte read is not acknowledged
     } else if (!taking_ && high) {
       failed_ = true;
       stop();
@@ -238,7 +238,7 @@ class SoftI2c final : public I2cReadBus {
       case kStop:
         if (!raise_clock(tick)) break;
         Wires::data_free();
-        if (clocks_ != 0) {  // the bus is free: now the transfer
+        if (clocks_ != 0) {  // the bus is free: start the transfer
           clocks_ = 0;
           phase_ = kBegin;
           break;
@@ -265,18 +265,18 @@ class SoftI2c final : public I2cReadBus {
   State state_ = kIdle;
   Phase phase_ = kRest;
   uint8_t bytes_[2] = {};
-  uint8_t shift_ = 0;  // what is left of the byte under way
-  uint8_t at_ = 0;     // bytes of bytes_, or read ones, that have begun
+  uint8_t shift_ = 0;  // remaining bits of the current byte
+  uint8_t at_ = 0;     // bytes started, of bytes_ or of the read
   uint8_t size_ = 0;
-  uint8_t bit_ = 0;  // 8: the acknowledge
+  uint8_t bit_ = 0;  // 8: acknowledge
   bool reads_ = false;
-  bool taking_ = false;  // the byte under way is the other's
+  bool taking_ = false;  // the device sends the current byte
   bool sent_high_ = false;
   bool failed_ = false;
-  bool freed_ = false;  // clocks were given to free the bus
-  uint8_t clocks_ = 0;  // left of those
+  bool freed_ = false;  // clocks were already given to free the bus
+  uint8_t clocks_ = 0;  // remaining clocks to free the bus
   bool waiting_ = false;
-  uint8_t since_ = 0;  // when the clock was first found low
+  uint8_t since_ = 0;  // tick at which the clock was first seen low
 };
 
 }  // namespace firmware

@@ -1,5 +1,4 @@
-// What the LED says of the controller's state; docs/wiring.md has the table for the person who
-// looks.
+// LED patterns for the controller's state; docs/wiring.md has the table for users.
 #ifndef FIRMWARE_CORE_STATE_LIGHT_H
 #define FIRMWARE_CORE_STATE_LIGHT_H
 
@@ -8,10 +7,10 @@
 namespace firmware {
 
 static const uint8_t kLightTickMs = 100;
-static const uint8_t kLightTicks = 10;  // of a pattern
+static const uint8_t kLightTicks = 10;  // length of a pattern
 
-// The ticks with light, a bit each. Steady: all is well. Five short ones: no host; one: a host, but
-// no sensor; nine: some of the sensors; after a reset by the watchdog two gaps in any of them.
+// Bit i: the LED is on in tick i. Steady: no fault. Five flashes: no host. One: a host, but no
+// sensor. Nine ticks: some sensors missing. After a watchdog reset, each pattern has two gaps.
 inline uint16_t light_pattern(bool host, uint8_t present, bool watchdog_has_reset) {
   const uint16_t pattern = !host ? 0x155 : present == 0 ? 0x001 : present == 0xFF ? 0x3FF : 0x1FF;
   return watchdog_has_reset ? static_cast<uint16_t>(pattern & ~0x088) : pattern;

@@ -20,8 +20,8 @@ constexpr uint8_t high(uint16_t value) {
   return static_cast<uint8_t>(value >> 8);
 }
 
-// pid.codes' numbers for tests and prototypes: a cabinet that is sold needs its own. Two of them:
-// hosts remember what interfaces a product has.
+// pid.codes' IDs for tests and prototypes: a product for sale needs its own. There are two, because
+// hosts cache the interfaces of a product.
 const uint16_t kUsbVendor = 0x1209, kUsbProduct = 0x0001, kGamepadsProduct = 0x0002,
                kUsbRelease = 0x0100;
 
@@ -49,13 +49,13 @@ const uint8_t kReport[] FIRMWARE_FLASH = {0x06, 0x00,
                                           0x95, wire::kDeviceReportBytes,  //   64 of them
                                           0x09, 0x01,
                                           0x81, 0x02,  //   input: data, variable, absolute
-                                          0x09, 0x02,  //   usage: command; as many bytes
+                                          0x09, 0x02,  //   usage: command; same size and count
                                           0x91, 0x02,  //   output: data, variable, absolute
                                           0xC0};
 
-// A full scale of 15 bits: 0 is the middle. Button 1 makes it a gamepad for Linux and SDL, the
-// right stick is where they look for it, and buttons up to Start keep games from asking for
-// another.
+// Axes have a full scale of 15 bits with centre 0. Button 1 makes it a gamepad for Linux and SDL.
+// They expect the right stick on Rx and Ry. Buttons up to Start keep games from asking for another
+// gamepad.
 const uint8_t kPadReport[] FIRMWARE_FLASH = {0x05, 0x01,        // usage page: generic desktop
                                              0x09, 0x05,        // usage: gamepad
                                              0xA1, 0x01,        // collection: application
@@ -73,14 +73,15 @@ const uint8_t kPadReport[] FIRMWARE_FLASH = {0x05, 0x01,        // usage page: g
                                              0x29, 0x0C,        //   to 12
                                              0x15, 0x00,        //
                                              0x25, 0x01,        //
-                                             0x75, 0x01,        //   of a bit
+                                             0x75, 0x01,        //   of 1 bit
                                              0x95, 0x0C,        //   12 of them
                                              0x81, 0x02,        //   input
-                                             0x95, 0x04,        //   and 4 bits
-                                             0x81, 0x03,        //   of nothing
+                                             0x95, 0x04,        //   4 bits
+                                             0x81, 0x03,        //   of padding
                                              0xC0};
 
-const uint8_t kSelfPowered = 0xC0;  // eight sensors need more than a port gives: see docs/wiring.md
+// Eight sensors need more power than a port supplies: see docs/wiring.md.
+const uint8_t kSelfPowered = 0xC0;
 const uint8_t kMilliampsHalved = 50;
 const uint8_t kHid = 3, kInterrupt = 3, kEveryFrame = 1;
 const uint8_t kHeadBytes = 9, kInterfaceBytes = 9, kHidBytes = 9, kEndpointBytes = 7;

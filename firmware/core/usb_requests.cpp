@@ -110,7 +110,7 @@ UsbAnswer UsbRequests::status(const UsbSetup& setup) {
   return send_byte(halted ? 1 : 0, 2, setup);
 }
 
-// kPads: none.
+// Returns kPads if it is none.
 uint8_t UsbRequests::pad_of_endpoint(uint16_t address) const {
   const uint16_t first = 0x80 | kPadEndpoint;
   const bool pad = gamepads_ && address >= first && address < first + kPads;
@@ -159,7 +159,8 @@ UsbAnswer UsbRequests::hid(const UsbSetup& setup) {
       return {UsbAnswer::kTake, nullptr, static_cast<uint8_t>(setup.length), false, false};
     case kGetIdle:
       return send_byte(idle_[setup.index], 1, setup);
-    case kSetIdle:  // accepted; a report goes out whenever there is one, whatever is asked
+    // Accepted, but reports are sent whenever available, regardless of the idle rate.
+    case kSetIdle:
       idle_[setup.index] = static_cast<uint8_t>(setup.value >> 8);
       return done();
   }

@@ -1,5 +1,5 @@
-// What a HID device answers to the control requests of its host, apart from any USB controller: the
-// controller's driver hands in the setup packet and carries out the answer.
+// The responses of a HID device to control requests, independent of the USB controller. The
+// controller's driver passes in the setup packet and carries out the answer.
 #ifndef FIRMWARE_CORE_USB_REQUESTS_H
 #define FIRMWARE_CORE_USB_REQUESTS_H
 
@@ -16,42 +16,42 @@ struct UsbSetup {
   bool to_host() const { return (type & 0x80) != 0; }
 };
 
-// bytes: 8 of a setup packet.
+// bytes: the 8 bytes of a setup packet.
 UsbSetup read_setup(const uint8_t* bytes);
 
 struct UsbAnswer {
   enum Kind : uint8_t {
     kStall,
-    kDone,        // an empty status packet
-    kSend,        // bytes, size of them, in packets; then the host's empty packet
-    kTake,        // the host sends an output report of size bytes, in one packet
-    kConfigure,   // kDone, and all endpoints start again: configured() has changed or was set again
-    kReportHalt,  // kDone, and the report endpoint starts again, or stalls: report_halted()
-    kCommandHalt,  // the same of the command endpoint
-    kPadHalt,      // the same of the endpoint of gamepad number size
+    kDone,         // a zero-length status packet
+    kSend,         // `size` bytes at `bytes`, in packets; then the host's zero-length packet
+    kTake,         // the host sends an output report of `size` bytes in one packet
+    kConfigure,    // kDone, and all endpoints restart: configured() was changed or set again
+    kReportHalt,   // kDone, and the report endpoint restarts or stalls: report_halted()
+    kCommandHalt,  // the same for the command endpoint
+    kPadHalt,      // the same for the endpoint of gamepad `size`
   };
   Kind kind;
   const uint8_t* bytes;
   uint8_t size;
-  bool end_with_empty;  // the host asked for more than the last full packet says
-  bool in_flash;        // bytes are those of a Descriptor
+  bool end_with_empty;  // a zero-length packet must follow a full last packet
+  bool in_flash;        // bytes points to a Descriptor
 };
 
 class UsbRequests {
  public:
-  // serial: a whole string descriptor, null: none. It and the report stay where they are.
+  // descriptor: a complete string descriptor, or null: none. The pointers must stay valid.
   void set_serial(const uint8_t* descriptor) { serial_ = descriptor; }
   void set_report(const uint8_t* report) { report_ = report; }
   void set_pad_report(uint8_t pad, const uint8_t* report) { pad_reports_[pad] = report; }
 
-  // Four gamepads besides. The host must not be attached: it hears of them as it enumerates.
+  // Adds four gamepads. Precondition: not attached to a host, which reads this at enumeration.
   void set_gamepads(bool on) { gamepads_ = on; }
   bool gamepads() const { return gamepads_; }
 
   void on_bus_reset();
   UsbAnswer answer(const UsbSetup& setup);
 
-  // The address that takes effect once the status packet is out; 0: none.
+  // Takes effect after the status packet is sent; 0: none.
   uint8_t new_address() const { return new_address_; }
   void address_taken() { new_address_ = 0; }
   bool configured() const { return configuration_ != 0; }

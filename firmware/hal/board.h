@@ -1,7 +1,7 @@
-// Which pins and peripherals each board gives. docs/wiring.md has the same table for the person
-// with the soldering iron. The 16 lines of the mice are open drain with external pull-ups: PORT
-// stays 0, DDR pulls low. The motors' bus is open drain too, with the weak pull-ups of the
-// micro-controller besides, so that it rests where nothing is attached.
+// Pins and peripherals of each board; docs/wiring.md has the same table for assembly. The 16 lines
+// of the mice are open drain with external pull-ups: PORT stays 0, and DDR pulls low. The motors'
+// bus is open drain too. It also uses the micro-controller's weak pull-ups, so that it stays high
+// when nothing is connected.
 #ifndef FIRMWARE_HAL_BOARD_H
 #define FIRMWARE_HAL_BOARD_H
 
@@ -26,14 +26,14 @@
 #define BOARD_LED_DDR DDRC  // output A of timer 4
 #define BOARD_LED_BIT 7
 #elif defined(__AVR_ATmega2560__)
-// Arduino Mega: pins 22..29 and 37..30, side by side on the double header.
+// Arduino Mega: pins 22..29 and 37..30, adjacent on the double header.
 #define BOARD_CLOCK_PIN PINA
 #define BOARD_CLOCK_PORT PORTA
 #define BOARD_CLOCK_DDR DDRA
 #define BOARD_DATA_PIN PINC
 #define BOARD_DATA_PORT PORTC
 #define BOARD_DATA_DDR DDRC
-// Pins 20 and 21, where the board says SDA and SCL, and 19 beside them; 13 with the board's LED.
+// Pins 20 and 21, labelled SDA and SCL on the board, and 19 beside them; 13 with the board's LED.
 #define BOARD_I2C_PIN PIND
 #define BOARD_I2C_PORT PORTD
 #define BOARD_I2C_DDR DDRD

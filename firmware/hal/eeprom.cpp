@@ -7,7 +7,7 @@ namespace firmware {
 void Eeprom::write(uint8_t at, uint8_t value) {
   EEAR = kFirst + at;
   EEDR = value;
-  // The second must follow within four cycles.
+  // The second write must follow within four cycles.
   cli();
   EECR |= _BV(EEMPE);
   EECR |= _BV(EEPE);

@@ -19,7 +19,8 @@ struct Eeprom {
   static void write(uint8_t at, uint8_t value);
 
  private:
-  // Not the first bytes: a supply that sags may write to where the address register rests.
+  // Not the first bytes: at undervoltage, a stray write may go to the address register's idle
+  // value.
   static const uint16_t kFirst = 16;
 };
 

@@ -1,4 +1,4 @@
-// Who is the master of the motors' bus.
+// Selects the controller of the motors' bus.
 #ifndef FIRMWARE_HAL_MOTORS_BUS_H
 #define FIRMWARE_HAL_MOTORS_BUS_H
 
@@ -14,7 +14,7 @@ namespace firmware {
 #if defined(__AVR_ATmega2560__)
 typedef Twi MotorsBus;
 #else
-typedef SoftI2c<I2cWires> MotorsBus;  // the chip's own pins are the data of two mice
+typedef SoftI2c<I2cWires> MotorsBus;  // the chip's own TWI pins are used for the data of two mice
 #endif
 
 }  // namespace firmware

@@ -7,8 +7,8 @@ namespace firmware {
 
 namespace {
 
-// 8 bits of pulse width at 16 MHz / 64: 977 Hz. The timer must not have the pin at all where it is
-// to be dark: its shortest pulse is not none.
+// 8-bit PWM at 16 MHz / 64: 977 Hz. To turn the LED off, the pin must be disconnected from the
+// timer, whose shortest pulse is not zero.
 #if defined(__AVR_ATmega32U4__)
 void start_led_timer() {
   TC4H = 0;

@@ -1,4 +1,4 @@
-// The line that enables the motors' drivers, and the LED.
+// The enable line of the motors' drivers, and the LED.
 #ifndef FIRMWARE_HAL_OUTPUTS_H
 #define FIRMWARE_HAL_OUTPUTS_H
 
@@ -6,10 +6,10 @@
 
 namespace firmware {
 
-// Motors disabled, LED dark, the motors' bus at rest.
+// Initial state: motors disabled, LED off, the motors' bus idle.
 void start_outputs();
 void enable_motors(bool enabled);
-// 0: dark. The eye sees the root: even steps of brightness are even to it.
+// 0: off. Corrects for the eye, which perceives the square root: equal steps look equal.
 void set_led(uint8_t brightness);
 
 }  // namespace firmware

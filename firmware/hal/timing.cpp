@@ -27,7 +27,7 @@ void drive_lines(uint8_t clock_low, uint8_t data_low) {
 }
 
 void start_sampling() {
-  // Boards differ in what their fuses and boot loaders leave behind: a Teensy 2.0 starts at 2 MHz.
+  // Fuses and boot loaders leave different clocks behind: a Teensy 2.0 starts at 2 MHz.
   clock_prescale_set(clock_div_1);
 
   BOARD_CLOCK_PORT = 0;
@@ -35,7 +35,7 @@ void start_sampling() {
   drive_lines(0, 0);
 
   TCCR3A = 0;
-  TCCR3B = _BV(CS31);  // free running, 0.5 us a count
+  TCCR3B = _BV(CS31);  // free running, 0.5 us per count
   TCCR1A = 0;
   OCR1A = F_CPU / 1000000UL * kSampleUs - 1;
   TCCR1B = _BV(WGM12) | _BV(CS10);

@@ -1,6 +1,6 @@
-// The sampling interrupt and the clock of the polling loop. The application defines the interrupt,
-// in one line, so that the lines' address is a constant in it: through a pointer it would take half
-// as long again.
+// The sampling interrupt and the clock of the polling loop. The application defines the interrupt
+// in one line, so that the address of the lines is a constant. Access through a pointer would take
+// half as long again.
 //   ISR(TIMER1_COMPA_vect) { firmware::sample_lines(g_mice.lines()); }
 #ifndef FIRMWARE_HAL_TIMING_H
 #define FIRMWARE_HAL_TIMING_H
@@ -12,7 +12,7 @@
 
 namespace firmware {
 
-// Lets all lines float and has them sampled every kSampleUs from now on.
+// Lets all lines float and starts to sample them every kSampleUs.
 void start_sampling();
 
 FIRMWARE_INLINE void sample_lines(Ps2Lines& lines) {
@@ -23,10 +23,11 @@ FIRMWARE_INLINE void sample_lines(Ps2Lines& lines) {
   lines.sample(clock, data, clock_again, [](uint8_t low) { BOARD_DATA_DDR = low; });
 }
 
-// Microseconds since start_sampling(), wraps. From the polling loop only, at least every 30 ms.
+// Microseconds since start_sampling(), wraps. Call from the polling loop only, at least every 30
+// ms.
 uint32_t micros();
 
-// Until the next interrupt, at most kSampleUs.
+// Sleeps until the next interrupt, at most kSampleUs.
 void sleep_until_sample();
 
 }  // namespace firmware

@@ -18,7 +18,7 @@ enum Status : uint8_t {
   kWriteTaken = 0x18,
   kByteTaken = 0x28,
   kReadTaken = 0x40,
-  kByteRead = 0x58,  // and not acknowledged: it is the last
+  kByteRead = 0x58,  // received and not acknowledged: the last byte
 };
 
 }  // namespace
@@ -39,7 +39,7 @@ void Twi::read(uint8_t address) {
 
 bool Twi::chain(uint8_t address, const uint8_t* bytes, uint8_t size) {
   if (by_hand_) return false;
-  const SamplingHeld held;  // and its own interrupt
+  const SamplingHeld held;  // also blocks the TWI interrupt
   if (state_ != kBusy) return false;
   next_ = written(address, bytes, size);
   return true;
@@ -57,13 +57,13 @@ void Twi::begin(const Transfer& transfer) {
   at_ = 0;
   timed_ = false;
   state_ = kBusy;
-  _MemoryBarrier();  // all of that is there before the interrupt
+  _MemoryBarrier();  // complete the writes above before the interrupt
   TWSR = 0;
   TWBR = kBitRate;
   TWCR = kGo | _BV(TWSTA);
 }
 
-// Until its end is on the lines.
+// Waits until STOP is on the lines.
 I2cBus::State Twi::state() {
   if (by_hand_) return soft_.state();
   return (TWCR & _BV(TWSTO)) != 0 ? kBusy : state_;
@@ -76,7 +76,7 @@ void Twi::step(uint8_t tick) {
     watch(tick);
   }
   busy_ = state() == kBusy;
-  _MemoryBarrier();  // what is read from here on is of after its end
+  _MemoryBarrier();  // read the data below only after the transfer has ended
 }
 
 void Twi::watch(uint8_t tick) {
@@ -85,9 +85,9 @@ void Twi::watch(uint8_t tick) {
     since_ = tick;
   }
   if (static_cast<uint8_t>(tick - since_) < kTimeoutTicks) return;
-  const SamplingHeld held;  // and its own interrupt
+  const SamplingHeld held;  // also blocks the TWI interrupt
   if (state() != kBusy) return;
-  TWCR = 0;  // both lines are let go
+  TWCR = 0;  // releases both lines
   state_ = kFailed;
 }
 

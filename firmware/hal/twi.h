@@ -1,6 +1,6 @@
-// The ATmega2560's two-wire interface as the master of the motors' bus: bytes go out by themselves,
-// an interrupt of 5 us for each. What is not as it should be, a line that somebody holds, is done
-// by the master in software, which gives a part that was cut off its clocks.
+// The ATmega2560's two-wire interface as the controller of the motors' bus. Transfers run by
+// interrupt, 5 us for each byte. If a device holds a line low, the software controller (SoftI2c)
+// does the transfer, because it can give the clocks that free the bus.
 #ifndef FIRMWARE_HAL_TWI_H
 #define FIRMWARE_HAL_TWI_H
 
@@ -16,10 +16,10 @@ class Twi final : public I2cReadBus {
   void read(uint8_t address) override;
   uint8_t byte() override { return by_hand_ ? soft_.byte() : now_.bytes[0]; }
   State state() override;
-  // A transfer has begun whose end no step has seen.
+  // A transfer was started, and no step has seen its end.
   bool busy() const { return busy_; }
 
-  // tick: of 20 us, wraps; while busy() a step comes at least every 2 ms.
+  // tick: unit 20 us, wraps. Call at least every 2 ms while busy().
   void step(uint8_t tick);
   void on_interrupt();
 
@@ -28,8 +28,8 @@ class Twi final : public I2cReadBus {
 
  private:
   struct Transfer {
-    uint8_t first;  // the address, and whether it is read
-    uint8_t size;   // of what is written
+    uint8_t first;  // address and read bit
+    uint8_t size;   // number of bytes to write
     uint8_t bytes[2];
   };
   static const uint8_t kTimeoutTicks = 50;  // 1 ms; a transfer takes 0.08

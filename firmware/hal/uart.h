@@ -1,8 +1,8 @@
-// UART0 at 1 Mbaud. A frame is copied and goes out byte by byte from poll(): at 250 frames of 48
-// bytes the line is busy an eighth of the time, so no interrupt is needed that could delay the
-// sampling one. Commands are rare and come ten times as fast as the loop goes round, two bytes in
-// the time from one sample to the next, which is what the controller keeps: the sampling interrupt
-// takes them. An interrupt of their own would wait for it, and bytes would be lost.
+// UART0 at 1 Mbaud. A frame is copied and sent byte by byte from poll(). At 250 frames of 48 bytes,
+// the line is busy an eighth of the time, so no interrupt is needed that could delay the sampling
+// one. Commands are rare, but their bytes arrive ten times as fast as the loop iterates. Two bytes
+// arrive in a sample period, which is what the UART buffers: so the sampling interrupt reads them.
+// A separate interrupt would wait for the sampling one, and bytes would be lost.
 #ifndef FIRMWARE_HAL_UART_H
 #define FIRMWARE_HAL_UART_H
 
@@ -23,12 +23,12 @@ class Uart {
   // Precondition: has_room(size).
   void send(const uint8_t* bytes, uint8_t size);
 
-  // The sampling interrupt's, each time.
+  // Called in each sampling interrupt.
   FIRMWARE_INLINE void receive() {
     for (uint8_t i = 0; i < 3 && (UCSR0A & _BV(RXC0)) != 0; ++i) receive_byte();
   }
   bool has_received() const { return received_tail_ != received_head_; }
-  // The oldest byte not yet taken; false: none.
+  // Removes the oldest byte; false: none left.
   bool take(uint8_t& out) {
     const uint8_t tail = received_tail_;
     if (tail == received_head_) return false;
@@ -36,7 +36,7 @@ class Uart {
     received_tail_ = static_cast<uint8_t>(tail + 1);
     return true;
   }
-  // Bytes were lost or damaged since the last call.
+  // Whether bytes were lost or damaged since the last call.
   bool take_lost() {
     if (lost_ == 0) return false;
     lost_ = 0;
@@ -57,15 +57,15 @@ class Uart {
     received_head_ = next;
   }
 
-  static const uint8_t kRing = 128;  // two frames to send
+  static const uint8_t kRing = 128;  // capacity: two frames to send
   static const uint8_t kRingMask = kRing - 1;
 
   uint8_t ring_[kRing] = {};
   uint8_t head_ = 0;
   uint8_t tail_ = 0;
 
-  // One writer each: head the interrupt, tail the polling side. As long as a uint8_t counts: twelve
-  // commands.
+  // Single writers: head the interrupt, tail the polling side. The size matches the range of a
+  // uint8_t: twelve commands.
   volatile uint8_t received_[256] = {};
   volatile uint8_t received_head_ = 0;
   volatile uint8_t received_tail_ = 0;

@@ -1,6 +1,6 @@
-// The number that no other chip of this kind has, of the signature row (10 bytes: lot, wafer and
-// place on it). The data sheet of the ATmega32U4 does not describe them; LUFA and QMK have them as
-// the chip's serial number, and the ATmega328PB's data sheet describes the same bytes.
+// The chip's unique number from the signature row (10 bytes: lot, wafer and position on it). The
+// data sheet of the ATmega32U4 does not describe them. LUFA and QMK use them as the serial number,
+// and the ATmega328PB's data sheet describes the same bytes.
 #ifndef FIRMWARE_HAL_UNIQUE_ID_H
 #define FIRMWARE_HAL_UNIQUE_ID_H
 
@@ -11,7 +11,7 @@ namespace firmware {
 
 static const uint8_t kUniqueIdBytes = 10;
 
-// Before interrupts are on: the row is read within three cycles of asking for it.
+// Call before interrupts are enabled: the row must be read within three cycles of the request.
 inline void read_unique_id(uint8_t* out) {
   const uint8_t kFirst = 0x0E;
   for (uint8_t i = 0; i < kUniqueIdBytes; ++i) out[i] = boot_signature_byte_get(kFirst + i);

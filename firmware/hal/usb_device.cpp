@@ -8,13 +8,13 @@ namespace firmware {
 
 namespace {
 
-// One bank each: two would age a report.
+// One bank each: a second one would make reports older.
 const uint8_t k64Bytes = _BV(EPSIZE1) | _BV(EPSIZE0) | _BV(ALLOC),
               k16Bytes = _BV(EPSIZE0) | _BV(ALLOC);
 const uint8_t kInterruptEndpoint = _BV(EPTYPE1) | _BV(EPTYPE0), kToHost = _BV(EPDIR);
 
-// Flags of UEINTX are cleared by writing 0; writing 1 leaves them. Not so at an endpoint towards
-// the host: there a 1 in the place of RXOUTI throws away what was written (KILLBK).
+// Writing 0 clears a flag of UEINTX; writing 1 leaves it. An IN endpoint is an exception: there a 1
+// in the bit of RXOUTI discards the data written (KILLBK).
 void clear_endpoint_flags(uint8_t flags) {
   UEINTX = static_cast<uint8_t>(~flags);
 }
@@ -22,12 +22,13 @@ void hand_over_report() {
   clear_endpoint_flags(_BV(TXINI) | _BV(FIFOCON) | _BV(RXOUTI));
 }
 
-// Of endpoint 0: what the host reads is an empty packet.
+// On endpoint 0: the host reads a zero-length packet.
 void send_empty_packet() {
   clear_endpoint_flags(_BV(TXINI));
 }
 
-// Of the endpoint chosen by UENUM, which is on. Its data toggle starts again, unless it stalls.
+// On the endpoint selected by UENUM, which must be enabled. Resets its data toggle, unless it
+// stalls.
 void stall_endpoint(bool stalled) {
   UECONX = stalled ? _BV(STALLRQ) | _BV(EPEN) : _BV(STALLRQC) | _BV(RSTDT) | _BV(EPEN);
 }
@@ -46,7 +47,7 @@ void UsbDevice::start(const uint8_t* serial, bool gamepads) {
   requests_.set_gamepads(gamepads);
   gamepads_wanted_ = gamepads;
   polls_ = 0;
-  UDCON = _BV(DETACH);  // a boot loader may have been on the bus
+  UDCON = _BV(DETACH);  // a boot loader may have left it attached
   USBCON = 0;
   UHWCON = _BV(UVREGE);
   USBCON = _BV(USBE) | _BV(FRZCLK);
@@ -117,7 +118,7 @@ void UsbDevice::serve_control() {
   if ((flags & _BV(RXOUTI)) != 0) {
     if (taking_) {
       take_control_packet();
-    } else {  // the host's empty packet: it has what it wanted
+    } else {  // the host's zero-length packet: it has all the data it wanted
       clear_endpoint_flags(_BV(RXOUTI));
       sending_ = nullptr;
     }
@@ -126,7 +127,7 @@ void UsbDevice::serve_control() {
   if ((flags & _BV(TXINI)) == 0) return;
   if (sending_ != nullptr) {
     send_control_packet();
-  } else if (requests_.new_address() != 0) {  // the status packet went out under the old address
+  } else if (requests_.new_address() != 0) {  // the status packet was sent from the old address
     UDADDR = requests_.new_address() | _BV(ADDEN);
     requests_.address_taken();
   }
@@ -175,7 +176,8 @@ void UsbDevice::on_setup() {
 }
 
 void UsbDevice::send_control_packet() {
-  if (left_ == 0 && !end_with_empty_) return;  // all sent: the host's empty packet ends it
+  // All sent: the host's zero-length packet ends the transfer.
+  if (left_ == 0 && !end_with_empty_) return;
   if (left_ == 0) end_with_empty_ = false;
   const uint8_t size = left_ < kControlBytes ? left_ : kControlBytes;
   for (uint8_t i = 0; i < size; ++i, ++sending_) {
@@ -186,14 +188,14 @@ void UsbDevice::send_control_packet() {
 }
 
 void UsbDevice::take_control_packet() {
-  if (command_size_ != 0) return;  // the host waits until the one before is taken
+  if (command_size_ != 0) return;  // the host waits until the previous command is taken
   command_size_ = read_packet(command_);
   taking_ = false;
   clear_endpoint_flags(_BV(RXOUTI));
   send_empty_packet();
 }
 
-// Endpoints get their memory in the order of their numbers.
+// Endpoint memory is allocated in the order of endpoint numbers.
 void UsbDevice::configure_endpoints() {
   report_pending_ = false;
   configure_endpoint(kReportEndpoint, configured(), kToHost, k64Bytes);

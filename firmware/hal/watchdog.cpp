@@ -8,8 +8,8 @@ namespace firmware {
 
 namespace {
 
-// The boot loaders of some boards hide why they were started: before its reset the watchdog
-// interrupts, and leaves a mark in memory that is not cleared at the start.
+// Some boot loaders hide the cause of a reset. So the watchdog first interrupts, before its reset,
+// and sets a flag in memory that is not cleared at start.
 const uint16_t kMark = 0x5744;
 __attribute__((section(".noinit"))) volatile uint16_t g_mark;
 
@@ -18,7 +18,7 @@ __attribute__((section(".noinit"))) volatile uint16_t g_mark;
 bool stop_watchdog() {
   const bool has_reset = g_mark == kMark || (MCUSR & _BV(WDRF)) != 0;
   g_mark = 0;
-  MCUSR = 0;  // else the watchdog cannot be stopped
+  MCUSR = 0;  // otherwise the watchdog cannot be stopped
   wdt_disable();
   return has_reset;
 }
@@ -26,7 +26,8 @@ bool stop_watchdog() {
 void start_watchdog() {
   cli();
   wdt_reset();
-  // 64 ms to its interrupt and as long to its reset; the second within four cycles of the first.
+  // 64 ms to its interrupt, another 64 ms to its reset. The second write must follow within four
+  // cycles.
   WDTCSR = _BV(WDCE) | _BV(WDE);
   WDTCSR = _BV(WDIE) | _BV(WDE) | _BV(WDP1);
   sei();

@@ -1,4 +1,4 @@
-// A program that is stuck begins again after 128 ms.
+// The watchdog restarts a program that hangs for 128 ms.
 #ifndef FIRMWARE_HAL_WATCHDOG_H
 #define FIRMWARE_HAL_WATCHDOG_H
 
@@ -6,8 +6,8 @@
 
 namespace firmware {
 
-// First of all at the start, since after its reset the watchdog still runs, for 16 ms. True: it was
-// the watchdog that has reset us.
+// Call first at start: after a watchdog reset the watchdog still runs, for 16 ms. True: the
+// watchdog caused this reset.
 bool stop_watchdog();
 void start_watchdog();
 inline void feed_watchdog() {

@@ -1,5 +1,4 @@
-// Which pins of a Raspberry Pi Pico do what; docs/wiring.md has the same table for the person with
-// the soldering iron.
+// Pin assignment of a Raspberry Pi Pico; docs/wiring.md has the same table for assembly.
 #ifndef FIRMWARE_RP2040_BOARD_H
 #define FIRMWARE_RP2040_BOARD_H
 
@@ -7,7 +6,7 @@
 
 namespace rp2040 {
 
-// Rod i: the data from its sensor, and its select line; of a PS/2 mouse data and clock.
+// Rod i: data line from its sensor, and its select line. For a PS/2 mouse: data and clock.
 constexpr unsigned kFirstData = 0, kFirstSelect = 8;
 constexpr unsigned kRodPins = 8;
 constexpr unsigned kMotorsEnable = 17, kSensorClock = 18, kSensorData = 19, kI2cData = 20,

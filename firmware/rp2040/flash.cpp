@@ -6,10 +6,10 @@ namespace rp2040 {
 
 namespace {
 
-constexpr uint32_t kSettingsOffset = (2u << 20) - 4096;  // of a Pico's 2 MiB, the last sector
+constexpr uint32_t kSettingsOffset = (2u << 20) - 4096;  // last sector of a Pico's 2 MiB
 constexpr uint32_t kSectorBytes = 4096, kPageBytes = 256;
 constexpr uint8_t kReadUniqueId = 0x4B, kSectorErase = 0x20;
-constexpr uint32_t kUncached = 0x03000000;  // an address in flash + this passes by the cache
+constexpr uint32_t kUncached = 0x03000000;  // offset of the flash alias that bypasses the cache
 
 typedef void (*Simple)();
 typedef void (*Erase)(uint32_t offset, uint32_t count, uint32_t block, uint8_t command);
@@ -19,7 +19,7 @@ void call(char first, char second) {
   reinterpret_cast<Simple>(rom_function(first, second))();
 }
 
-// Between these two the flash takes commands and cannot be read as memory.
+// Between these two calls the flash accepts commands and cannot be read as memory.
 void enter_commands() {
   call('I', 'F');
   call('E', 'X');
@@ -29,7 +29,7 @@ void leave_commands() {
   call('C', 'X');
 }
 
-// The chip's select line by hand: the SSI would raise it whenever the processor is late.
+// Controls the chip select by software: the SSI would release it whenever the processor is late.
 void select_flash(bool selected) {
   constexpr uint32_t kOutputLow = 2 << 8, kOutputHigh = 3 << 8;
   reg(kQspiSelectCtrl) = selected ? kOutputLow : kOutputHigh;
@@ -49,7 +49,7 @@ void read_unique_id(uint8_t* out) {
   enter_commands();
   reg(kSsiEnable) = 0;
   reg(kSsiBaud) = 6;
-  reg(kSsiCtrlr0) = 7 << 16;  // frames of 8 bits, out and in at once
+  reg(kSsiCtrlr0) = 7 << 16;  // frames of 8 bits, transmit and receive
   reg(kSsiSlave) = 1;
   reg(kSsiEnable) = 1;
   select_flash(true);
@@ -57,7 +57,7 @@ void read_unique_id(uint8_t* out) {
   for (uint8_t i = 0; i < 4; ++i) exchange(0);
   for (uint8_t i = 0; i < kUniqueIdBytes; ++i) out[i] = exchange(0);
   select_flash(false);
-  reg(kQspiSelectCtrl) = 0;  // the SSI's again
+  reg(kQspiSelectCtrl) = 0;  // back to the SSI
   leave_commands();
 }
 

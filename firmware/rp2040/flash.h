@@ -1,4 +1,4 @@
-// The flash beside the program: its chip's number, and the sector with the settings.
+// The flash apart from the program: its chip's number, and the sector with the settings.
 #ifndef FIRMWARE_RP2040_FLASH_H
 #define FIRMWARE_RP2040_FLASH_H
 
@@ -10,13 +10,13 @@ namespace rp2040 {
 
 static constexpr uint8_t kUniqueIdBytes = 8;
 
-// The 64 bits that no other flash chip of this kind has. Precondition: nothing is read from flash
-// meanwhile, so no interrupt either.
+// Reads the flash chip's unique 64-bit number. Precondition: nothing reads flash meanwhile, so
+// interrupts must be off too.
 void read_unique_id(uint8_t* out);
 
-// Those that were saved; false, and settings untouched, if there are none that hold.
+// Loads the saved settings. False, with settings unchanged, if none are valid.
 bool load_settings(wire::DeviceSettings& settings);
-// Up to half a second without interrupts.
+// Takes up to half a second with interrupts off.
 void save_settings(const wire::DeviceSettings& settings);
 
 }  // namespace rp2040

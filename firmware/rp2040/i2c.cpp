@@ -12,20 +12,20 @@ constexpr uint32_t kCon = kI2c0, kTarget = kI2c0 + 0x04, kData = kI2c0 + 0x10,
                    kRaw = kI2c0 + 0x34, kClearAbort = kI2c0 + 0x54, kClearStop = kI2c0 + 0x60,
                    kEnable = kI2c0 + 0x6C, kDataHold = kI2c0 + 0x7C, kEnableStatus = kI2c0 + 0x9C,
                    kSpike = kI2c0 + 0xA0;
-constexpr uint32_t kAborted = bit(6), kStopped = bit(9);  // of kRaw
-constexpr uint32_t kRead = bit(8), kStopAfter = bit(9);   // of kData
+constexpr uint32_t kAborted = bit(6), kStopped = bit(9);  // in kRaw
+constexpr uint32_t kRead = bit(8), kStopAfter = bit(9);   // in kData
 constexpr uint32_t kBitCycles = kSystemHz / 400'000;
 constexpr uint32_t kHoldCycles =
-    kSystemHz / 10'000 * 3 / 1000 + 1;  // 300 ns behind the clock's fall
+    kSystemHz / 10'000 * 3 / 1000 + 1;  // 300 ns after the clock's falling edge
 constexpr uint32_t kTimeoutUs = 1000;   // a write takes 75 us
-// The controller ends what it is at first (datasheet 4.3.10.3): 25 us at 400 kHz.
+// Disabling first completes the current byte (datasheet 4.3.10.3): 25 us at 400 kHz.
 constexpr uint32_t kDisableUs = 30;
 constexpr uint8_t kFreeingClocks = 9;
 
 bool is_high(unsigned pin) {
   return (reg(kGpioIn) & bit(pin)) != 0;
 }
-// By hand, open drain: the output is 0, and enabled or not.
+// Open drain by software: the output is 0, either enabled or not.
 void pull_low(unsigned pin) {
   reg(kGpioOeSet) = bit(pin);
   wait_cycles(kBitCycles / 2);
@@ -52,7 +52,8 @@ void I2c::start() {
 
 void I2c::set_up() {
   reset_peripherals(kResetI2c0);
-  reg(kCon) = 1 | 2 << 1 | bit(5) | bit(6);  // controller, fast mode, restart, no target
+  // Controller mode, fast mode, restart enabled, target mode disabled.
+  reg(kCon) = 1 | 2 << 1 | bit(5) | bit(6);
   reg(kHighCount) = kBitCycles * 2 / 5;
   reg(kLowCount) = kBitCycles * 3 / 5;
   reg(kSpike) = 6;  // 48 ns
@@ -60,7 +61,7 @@ void I2c::set_up() {
   reg(kMask) = 0;
 }
 
-// What is written to its registers while it is still enabled is lost.
+// Writes to its registers while it is enabled are lost.
 void I2c::disable() {
   reg(kEnable) = 0;
   const uint32_t began_us = micros();
@@ -98,7 +99,7 @@ void I2c::begin_transfer() {
   disable();
   reg(kTarget) = address_;
   reg(kEnable) = 1;
-  uint32_t cleared = reg(kClearAbort);  // by reading
+  uint32_t cleared = reg(kClearAbort);  // cleared by reading
   cleared = reg(kClearStop);
   (void)cleared;
   if (size_ == 0) reg(kData) = kRead | kStopAfter;

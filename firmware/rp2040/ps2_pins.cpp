@@ -11,7 +11,7 @@ void Ps2Pins::begin(uint8_t mice) {
   const uint32_t lines = static_cast<uint32_t>(mice) << kFirstData | static_cast<uint32_t>(mice)
                                                                          << kFirstSelect;
   reg(kGpioOeClear) = lines;
-  reg(kGpioOutClear) = lines;  // driven, they are low
+  reg(kGpioOutClear) = lines;  // output level 0 when driven
   if (mice == 0) {
     clear_bits(kTimerInterruptEnable, bit(1));
   } else {
@@ -26,14 +26,14 @@ void Ps2Pins::begin(uint8_t mice) {
 void Ps2Pins::sample(firmware::Ps2Lines& lines) {
   reg(kTimerInterrupts) = bit(1);
   next_us_ += firmware::kSampleUs;
-  // After a stop, as for writing to flash, the alarm would lie in the past.
+  // After an interruption, such as a write to flash, the alarm would be in the past.
   if (static_cast<int32_t>(next_us_ - micros()) < 2) next_us_ = micros() + 2;
   reg(kTimerAlarm1) = next_us_;
-  // Where no mouse is wired the lines are as at rest.
+  // Lines without a mouse read as idle, high.
   const uint32_t others = static_cast<uint8_t>(~mice_);
   const uint32_t first = reg(kGpioIn);
   lines.count_sample();
-  wait_cycles(30);  // a spike shorter than a quarter of a microsecond is no edge
+  wait_cycles(30);  // rejects spikes shorter than a quarter of a microsecond
   const uint32_t second = reg(kGpioIn);
   lines.sample(static_cast<uint8_t>(first >> kFirstSelect | others),
                static_cast<uint8_t>(first >> kFirstData | others),
@@ -55,7 +55,7 @@ void Ps2Pins::drive_clock(uint8_t low) {
 
 namespace firmware {
 
-// The polling loop holds nothing else when it calls these.
+// The polling loop does not nest these calls.
 void hold_sampling() {
   rp2040::hold_interrupts();
 }

@@ -1,7 +1,7 @@
-// PS/2 mice on the pins of board.h: what core/sampling.h asks of a board, and the interrupt that
-// samples all lines. The same core samples on the AVR; here it takes a twentieth of the processor,
-// so that no PIO program is needed, and a bit that a mouse asks for is answered in the sample that
-// sees its clock fall.
+// PS/2 mice on the pins of board.h: implements core/sampling.h and the interrupt that samples all
+// lines, with the same core as on the AVR. It takes a twentieth of the processor time, so no PIO
+// program is needed. A bit that a mouse clocks out is driven in the sample that sees the clock
+// fall.
 #ifndef FIRMWARE_RP2040_PS2_PINS_H
 #define FIRMWARE_RP2040_PS2_PINS_H
 
@@ -15,9 +15,9 @@ namespace rp2040 {
 
 class Ps2Pins {
  public:
-  // mice: rods that have one: their lines float from now on, and are sampled every kSampleUs.
+  // mice: rods with a mouse. Releases their lines and samples them every kSampleUs.
   static void begin(uint8_t mice);
-  // The interrupt of the timer's second alarm.
+  // The interrupt of timer alarm 1.
   static void sample(firmware::Ps2Lines& lines);
   static void drive_data(uint8_t low);
   static void drive_clock(uint8_t low);

@@ -1,6 +1,6 @@
-// The registers of the RP2040 that this firmware uses, named as its datasheet names them (sections
-// 2.2, 2.9 to 2.19, 4.1 to 4.10). Each peripheral of the APB and AHB has three aliases that change
-// single bits: at + 0x1000 those written are flipped, at + 0x2000 set, at + 0x3000 cleared.
+// The registers of the RP2040 that this firmware uses, named as in its datasheet (sections 2.2, 2.9
+// to 2.19, 4.1 to 4.10). Each peripheral on APB and AHB has three aliases for atomic access to
+// single bits: writing 1s at + 0x1000 toggles them, at + 0x2000 sets them, at + 0x3000 clears them.
 #ifndef FIRMWARE_RP2040_REGISTERS_H
 #define FIRMWARE_RP2040_REGISTERS_H
 

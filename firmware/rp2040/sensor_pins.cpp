@@ -10,15 +10,15 @@ namespace {
 using firmware::kBurstBytes;
 using firmware::kSensors;
 
-// Times of the PMW3360's datasheet.
-constexpr uint32_t kReadDelayUs = 160;     // tSRAD: from an address to its data
-constexpr uint32_t kBurstDelayUs = 35;     // tSRAD_MOTBR: the same of a burst
-constexpr uint32_t kWriteHoldUs = 35;      // tSCLK-NCS of a write
+// Timing of the PMW3360's datasheet.
+constexpr uint32_t kReadDelayUs = 160;     // tSRAD: from address to data
+constexpr uint32_t kBurstDelayUs = 35;     // tSRAD_MOTBR: the same for a burst
+constexpr uint32_t kWriteHoldUs = 35;      // tSCLK-NCS for a write
 constexpr uint8_t kAfterWriteUs = 180;     // tSWW, tSWR
 constexpr uint8_t kAfterReadUs = 20;       // tSRW, tSRR
 constexpr uint32_t kSelectCycles = 18;     // tNCS-SCLK: 120 ns
 constexpr uint32_t kBurstExitCycles = 66;  // tBEXIT: 500 ns
-// Half a period at 2 MHz are 31.25 cycles; the rest of a half is what the loop does.
+// Half a period at 2 MHz is 31.25 cycles; the loop's instructions take the rest.
 constexpr uint32_t kLowCycles = 30, kHighCycles = 27;
 
 constexpr uint8_t kMotionBurst = 0x50, kWrite = 0x80;
@@ -34,7 +34,7 @@ inline __attribute__((always_inline)) void send(uint32_t value) {
   }
 }
 
-// What the data lines are before each rising edge: sensors change them at the falling one.
+// Reads the data lines before each rising edge: sensors change them at the falling edge.
 inline __attribute__((always_inline)) void receive(uint8_t* rows, uint32_t count) {
 #pragma GCC unroll 1
   for (uint32_t i = 0; i < count; ++i) {

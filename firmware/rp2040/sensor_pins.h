@@ -1,5 +1,5 @@
-// The sensors' bus on the pins of board.h: mode 3, most significant bit first, driven by the
-// program, since no peripheral takes in eight data lines at the same time.
+// The sensors' bus on the pins of board.h: SPI mode 3, most significant bit first, bit-banged,
+// since no peripheral reads eight data lines at the same time.
 #ifndef FIRMWARE_RP2040_SENSOR_PINS_H
 #define FIRMWARE_RP2040_SENSOR_PINS_H
 
@@ -9,7 +9,7 @@ namespace rp2040 {
 
 class SensorPins : public firmware::SensorBus {
  public:
-  // used: rods that have a sensor: their select lines are driven.
+  // used: rods with a sensor. Drives their select lines.
   void begin(uint8_t used);
   void burst(uint8_t selected, uint8_t* out) override;
   void read(uint8_t selected, uint8_t address, uint8_t* out) override;
@@ -20,8 +20,8 @@ class SensorPins : public firmware::SensorBus {
   void release(uint8_t selected);
   void rest_since_register();
 
-  uint32_t register_us_ = 0;  // when the last access to a register ended
-  uint8_t rest_us_ = 0;       // before the next may begin
+  uint32_t register_us_ = 0;  // end of the last register access
+  uint8_t rest_us_ = 0;       // required delay before the next access
 };
 
 }  // namespace rp2040

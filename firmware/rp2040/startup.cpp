@@ -1,5 +1,5 @@
-// From the second stage to main(): the program copied to RAM, its variables cleared, its
-// constructors run. The vector table lies at the start of RAM.
+// From the second-stage boot loader to main(): copies the program to RAM, clears its variables and
+// runs its constructors. The vector table is at the start of RAM.
 #include "rp2040/registers.h"
 
 extern "C" {
@@ -14,8 +14,8 @@ void timer1_interrupt();
 void usb_interrupt();
 void i2c0_interrupt();
 
-// The only code that runs from flash. It calls nothing, so that the compiler's memcpy is not asked
-// for before it is there.
+// The only code that runs from flash. It calls nothing: the compiler must not insert a call of
+// memcpy before memcpy is in RAM.
 __attribute__((section(".copy_program"), noreturn, used,
                optimize("no-tree-loop-distribute-patterns"))) void
 copy_program() {
@@ -30,7 +30,7 @@ copy_program() {
   }
 }
 
-// A fault, or an interrupt that nobody asked for: the watchdog ends it.
+// Handles faults and unexpected interrupts: waits for the watchdog's reset.
 void unexpected() {
   for (;;) {
   }

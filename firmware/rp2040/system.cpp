@@ -8,22 +8,24 @@ namespace {
 
 constexpr uint32_t kUsedPeripherals = kResetI2c0 | kResetIoBank0 | kResetPadsBank0 | kResetPllSys |
                                       kResetPllUsb | kResetPwm | kResetTimer | kResetUsb;
-constexpr uint32_t kScratchMagic = 0x57444F47;  // in scratch 0: scratch 1 counts resets
+// In scratch 0 if scratch 1 holds the number of resets.
+constexpr uint32_t kScratchMagic = 0x57444F47;
 
 void start_crystal() {
   reg(kXosc) = 0xAA0;      // 1 to 15 MHz
-  reg(kXoscStartup) = 47;  // times 256 cycles: 1 ms
+  reg(kXoscStartup) = 47;  // unit 256 cycles: 1 ms
   reg(kXosc) = 0xFAB << 12 | 0xAA0;
   while ((reg(kXoscStatus) & bit(31)) == 0) {
   }
 }
 
-// 12 MHz times feedback, divided by both: within 750 to 1600 MHz between.
+// Output: 12 MHz * feedback / (divide1 * divide2). The VCO, 12 MHz * feedback, must be within 750
+// to 1600 MHz.
 void start_pll(uint32_t base, uint32_t feedback, uint32_t divide1, uint32_t divide2) {
   constexpr uint32_t kPower = 0x04, kFeedback = 0x08, kDividers = 0x0C;
   reg(base) = 1;
   reg(base + kFeedback) = feedback;
-  clear_bits(base + kPower, bit(0) | bit(5));  // the PLL and its oscillator
+  clear_bits(base + kPower, bit(0) | bit(5));  // the PLL and its VCO
   while ((reg(base) & bit(31)) == 0) {
   }
   reg(base + kDividers) = divide1 << 16 | divide2 << 12;
@@ -31,21 +33,21 @@ void start_pll(uint32_t base, uint32_t feedback, uint32_t divide1, uint32_t divi
 }
 
 void start_clocks() {
-  reg(kClkRefCtrl) = 2;  // the crystal
+  reg(kClkRefCtrl) = 2;  // crystal
   while ((reg(kClkRefSelected) & bit(2)) == 0) {
   }
-  reg(kClkSysCtrl) = 0;  // that, while its PLL starts
+  reg(kClkSysCtrl) = 0;  // crystal, while the system PLL starts
   while ((reg(kClkSysSelected) & bit(0)) == 0) {
   }
   start_pll(kPllSys, 125, 6, 2);
   start_pll(kPllUsb, 100, 5, 5);
-  reg(kClkSysCtrl) = 0 << 5;      // behind the PLL ...
-  reg(kClkSysCtrl) = 0 << 5 | 1;  // ... and to it
+  reg(kClkSysCtrl) = 0 << 5;      // auxiliary source: the system PLL
+  reg(kClkSysCtrl) = 0 << 5 | 1;  // then switch to the auxiliary source
   while ((reg(kClkSysSelected) & bit(1)) == 0) {
   }
-  reg(kClkPeriCtrl) = bit(11);       // as the system
-  reg(kClkUsbCtrl) = bit(11);        // the USB PLL
-  reg(kWatchdogTick) = bit(9) | 12;  // the timer's and the watchdog's microsecond
+  reg(kClkPeriCtrl) = bit(11);       // from the system clock
+  reg(kClkUsbCtrl) = bit(11);        // from the USB PLL
+  reg(kWatchdogTick) = bit(9) | 12;  // 1 us tick of timer and watchdog
 }
 
 void set_up_pin(unsigned pin, uint32_t function, bool pull_up) {
@@ -55,20 +57,21 @@ void set_up_pin(unsigned pin, uint32_t function, bool pull_up) {
 
 void start_pins() {
   for (unsigned i = 0; i < kRodPins; ++i) {
-    set_up_pin(kFirstData + i, kFunctionSio, true);  // ones where no sensor drives the line
+    // Pull-up: reads 1 where no sensor drives the line.
+    set_up_pin(kFirstData + i, kFunctionSio, true);
     set_up_pin(kFirstSelect + i, kFunctionSio, true);
   }
   set_up_pin(kButton, kFunctionSio, true);
   set_up_pin(kI2cData, kFunctionI2c, true);
   set_up_pin(kI2cClock, kFunctionI2c, true);
-  reg(kGpioOutSet) = bit(kSensorClock) | bit(kSensorData);  // the clock rests high
+  reg(kGpioOutSet) = bit(kSensorClock) | bit(kSensorData);  // clock idle high
   reg(kGpioOutClear) = bit(kMotorsEnable);
   const unsigned outputs[] = {kSensorClock, kSensorData, kMotorsEnable};
   for (const unsigned pin : outputs) {
     set_up_pin(pin, kFunctionSio, false);
     reg(kGpioOeSet) = bit(pin);
   }
-  constexpr uint32_t kLedSlice = kPwm + 0x14 * ((kLed / 2) % 8);  // channel B of it: odd pins
+  constexpr uint32_t kLedSlice = kPwm + 0x14 * ((kLed / 2) % 8);  // uses channel B: odd pins
   reg(kLedSlice + 0x04) = 16 << 4;                                // 125 MHz / 16 / 65025: 120 Hz
   reg(kLedSlice + 0x0C) = 0;
   reg(kLedSlice + 0x10) = 255 * 255 - 1;
@@ -102,24 +105,24 @@ void sleep_until(uint32_t at_us) {
 void sleep_until_event(uint32_t at_us, const volatile uint8_t& events, uint8_t seen) {
   hold_interrupts();
   reg(kTimerAlarm0) = at_us;
-  // An interrupt that comes now ends the sleep at once, and is served once they are allowed.
+  // An interrupt at this point ends the sleep at once and is served when interrupts are enabled.
   if (events == seen && static_cast<int32_t>(micros() - at_us) < 0) asm volatile("wfi");
   allow_interrupts();
 }
 
 void wait_us(uint32_t duration_us) {
-  sleep_until(micros() + duration_us + 1);  // the microsecond that has begun does not count
+  sleep_until(micros() + duration_us + 1);  // the current microsecond has already started
 }
 
 void start_watchdog() {
-  // All but the two oscillators begin anew.
+  // Resets everything except the two oscillators.
   reg(kPsmWatchdogSelect) = 0x1FFFC;
   feed_watchdog();
   set_bits(kWatchdogCtrl, bit(30));
 }
 
 void feed_watchdog(uint32_t for_us) {
-  reg(kWatchdogLoad) = 2 * for_us;  // it counts down twice a microsecond (erratum RP2040-E1)
+  reg(kWatchdogLoad) = 2 * for_us;  // counts down twice per microsecond (erratum RP2040-E1)
 }
 
 uint32_t watchdog_resets() {
@@ -134,12 +137,13 @@ uint32_t watchdog_resets() {
   return reg(kWatchdogScratch0 + 4);
 }
 
-// Of the ROM (datasheet 2.8.3): at 14h where its table of functions is, at 18h a function that
-// finds an entry of it.
+// Boot ROM (datasheet 2.8.3): 14h holds the address of its function table, 18h that of a function
+// that looks up an entry.
 void* rom_function(char first, char second) {
   typedef void* (*Find)(const uint16_t*, uint32_t);
   uint32_t table_at = 0x14, find_at = 0x18;
-  asm volatile("" : "+r"(table_at), "+r"(find_at));  // else the compiler warns of low addresses
+  // Prevents a compiler warning about low addresses.
+  asm volatile("" : "+r"(table_at), "+r"(find_at));
   const uint16_t* table = reinterpret_cast<const uint16_t*>(
       static_cast<uint32_t>(*reinterpret_cast<const uint16_t*>(table_at)));
   const Find find =
@@ -156,7 +160,7 @@ void enter_boot_loader() {
 
 void set_led(uint8_t brightness) {
   constexpr uint32_t kCompare = kPwm + 0x14 * ((kLed / 2) % 8) + 0x0C;
-  // The eye sees the root: the square is even steps to it.
+  // The eye perceives the square root of the intensity, so squaring gives equal steps.
   reg(kCompare) = static_cast<uint32_t>(brightness) * brightness << 16;
 }
 
@@ -166,7 +170,7 @@ bool button_pressed() {
 
 }  // namespace rp2040
 
-// The alarm that sleep_until() waits for has nothing else to do.
+// The alarm only wakes sleep_until().
 extern "C" void timer0_interrupt() {
   rp2040::reg(rp2040::kTimerInterrupts) = rp2040::bit(0);
 }

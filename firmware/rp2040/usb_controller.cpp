@@ -10,17 +10,17 @@ namespace {
 using firmware::UsbAnswer;
 using firmware::UsbSetup;
 
-// The memory that program and controller share.
+// Dual-port memory shared by program and controller.
 constexpr uint32_t kReportControl = kUsbMemory + 0x08, kCommandControl = kUsbMemory + 0x0C,
                    kControlIn = kUsbMemory + 0x80, kControlOut = kUsbMemory + 0x84,
                    kReportIn = kUsbMemory + 0x88, kCommandOut = kUsbMemory + 0x8C,
                    kControlBuffer = 0x100, kReportBuffer = 0x180, kCommandBuffer = 0x1C0,
-                   kPadBuffer = 0x200;  // of the first gamepad, the others 64 bytes each behind it
+                   kPadBuffer = 0x200;  // of the first gamepad; the others follow at 64 bytes each
 constexpr uint32_t kMemoryBytes = 4096;
 
-// Of an endpoint's control.
+// Bits of an endpoint control register.
 constexpr uint32_t kEndpointOn = bit(31), kInterruptEachBuffer = bit(29), kInterruptType = 3 << 26;
-// Of a buffer's control.
+// Bits of a buffer control register.
 constexpr uint32_t kFull = bit(15), kData1 = bit(13), kStall = bit(11), kAvailable = bit(10);
 
 constexpr uint32_t kSetupReceived = bit(17), kBusReset = bit(19);  // SIE_STATUS
@@ -44,7 +44,7 @@ volatile uint32_t* memory(uint32_t offset) {
   return &reg(kUsbMemory + offset);
 }
 
-// The controller has a clock of its own: "available" comes some of its cycles after all else.
+// The controller runs on its own clock: "available" must be set some of its cycles after the rest.
 void give_buffer(uint32_t control, uint32_t value) {
   reg(control) = value;
   wait_cycles(12);
@@ -69,13 +69,13 @@ void UsbController::start(const uint8_t* serial, bool gamepads) {
   requests_.set_gamepads(gamepads);
   gamepads_wanted_ = gamepads;
   for (uint32_t i = 0; i < kMemoryBytes; i += 4) *memory(i) = 0;
-  reg(kUsbMuxing) = bit(0) | bit(3);  // the controller's own PHY, attached by software
-  reg(kUsbPower) = bit(2) | bit(3);   // powered: nobody measures
+  reg(kUsbMuxing) = bit(0) | bit(3);  // the controller's own PHY, connected by software
+  reg(kUsbPower) = bit(2) | bit(3);   // forces VBUS detection: no pin senses VBUS
   reg(kUsbMainCtrl) = 1;
-  reg(kUsbSieCtrl) = bit(29);  // an interrupt for each buffer of endpoint 0
+  reg(kUsbSieCtrl) = bit(29);                             // interrupt for each buffer of endpoint 0
   reg(kUsbInterruptEnable) = bit(4) | bit(12) | bit(16);  // buffers, bus reset, setup
   reg(kNvicEnable) = bit(kIrqUsb);
-  set_bits(kUsbSieCtrl, kPullUp);  // here I am
+  set_bits(kUsbSieCtrl, kPullUp);  // attach
   attached_ = true;
 }
 
@@ -104,7 +104,7 @@ void UsbController::detach() {
 
 void UsbController::on_interrupt() {
   const uint32_t status = reg(kUsbSieStatus);
-  // The report first: when it was taken is measured.
+  // The report first: the time when it was taken is measured.
   const uint32_t buffers = reg(kUsbBuffStatus);
   if ((buffers & kReportDone) != 0) {
     taken_us_ = micros();
@@ -112,7 +112,8 @@ void UsbController::on_interrupt() {
     report_taken_ = true;
     report_pending_ = false;
   }
-  for (uint8_t pad = 0; pad < firmware::kPads; ++pad) {  // before what may halt or restart them
+  // Before code that may halt or restart them.
+  for (uint8_t pad = 0; pad < firmware::kPads; ++pad) {
     if ((buffers & pad_done(pad)) == 0) continue;
     reg(kUsbBuffStatus) = pad_done(pad);
     pads_ready_ = static_cast<uint8_t>(pads_ready_ | 1u << pad);
@@ -160,7 +161,7 @@ void UsbController::on_setup() {
   const UsbAnswer answer = requests_.answer(firmware::read_setup(bytes));
   switch (answer.kind) {
     case UsbAnswer::kStall:
-      reg(kUsbStallArm) = 3;  // both directions; the next setup packet ends it
+      reg(kUsbStallArm) = 3;  // both directions; the next setup packet clears it
       reg(kControlIn) = kStall;
       reg(kControlOut) = kStall;
       break;
@@ -206,7 +207,7 @@ void UsbController::send_control_packet() {
 }
 
 void UsbController::on_control_sent() {
-  if (requests_.new_address() != 0) {  // the status packet went out under the old one
+  if (requests_.new_address() != 0) {  // the status packet was sent from the old address
     reg(kUsbAddress) = requests_.new_address();
     requests_.address_taken();
   }
@@ -217,7 +218,7 @@ void UsbController::on_control_sent() {
     return;
   }
   sending_ = nullptr;
-  give_buffer(kControlOut, kData1);  // the host's empty packet
+  give_buffer(kControlOut, kData1);  // the host's zero-length status packet
 }
 
 void UsbController::on_control_received() {
@@ -269,14 +270,14 @@ uint8_t UsbController::take_dropped() {
 
 namespace {
 
-// What was waiting to be sent is thrown away. done: its bit of BUFF_STATUS.
+// Discards data waiting to be sent. done: its bit in BUFF_STATUS.
 void abort_buffer(uint32_t control, uint32_t done) {
   if ((reg(control) & kAvailable) == 0) return;
   set_bits(kUsbAbort, done);
   for (uint32_t tries = 0; tries < 1000 && (reg(kUsbAbortDone) & done) == 0; ++tries) {
   }
 }
-// Its buffer is set as it shall be.
+// Call when the buffer control has its new value.
 void end_abort(uint32_t done) {
   reg(kUsbAbortDone) = done;
   clear_bits(kUsbAbort, done);
@@ -284,7 +285,7 @@ void end_abort(uint32_t done) {
 
 }  // namespace
 
-// Begins with DATA0, empty.
+// Restarts with DATA0 and an empty buffer.
 void UsbController::restart_reports() {
   abort_buffer(kReportIn, kReportDone);
   report_data1_ = false;
@@ -310,7 +311,7 @@ void UsbController::restart_pad(uint8_t pad) {
   end_abort(pad_done(pad));
 }
 
-// Begins with DATA0.
+// Restarts with DATA0.
 void UsbController::restart_commands() {
   command_data1_ = false;
   reg(kCommandControl) =

@@ -1,4 +1,4 @@
-// What the tests of the firmware in simavr share: waiting for events, moving all mice, reading
+// Shared parts of the firmware tests in simavr: waiting for events, moving all mice, reading
 // frames.
 #pragma once
 
@@ -59,7 +59,7 @@ class Cabinet {
     return frames;
   }
 
-  // Until done() holds; fails the test after limit_ms.
+  // Advances until done() holds; fails the test after limit_ms.
   bool advance_until(const std::function<bool()>& done, int limit_ms) {
     for (int ms = 0; ms < limit_ms; ++ms) {
       if (done()) return true;
@@ -68,8 +68,7 @@ class Cabinet {
     return done();
   }
 
-  // Until a frame says that just the mice of the mask are there, and none of them is still
-  // enabling.
+  // Advances until a frame reports exactly the mice of the mask, and none is still being enabled.
   bool wait_for_present(unsigned mask, int limit_ms = 3000) {
     return advance_until(
         [&] {
@@ -79,7 +78,7 @@ class Cabinet {
         limit_ms);
   }
 
-  // Until all movement has been sent, and a frame after it has arrived.
+  // Advances until all movement has been sent and a later frame has arrived.
   bool settle() {
     const bool settled = advance_until(
         [&] {
@@ -129,7 +128,7 @@ class Cabinet {
   wire::DeviceFrame last_{};
 };
 
-// Where the mice should be, as the frame counts: 16 bits that wrap.
+// Expected counts of the mice in the frame's format: 16 bits that wrap.
 struct Moved {
   std::array<std::uint16_t, kMice> slide{}, spin{};
 

@@ -1,4 +1,4 @@
-// The real .elf of each board in simavr, with eight mice on its pins.
+// The actual .elf of each board in simavr, with eight mice on its pins.
 #include <algorithm>
 #include <cstdio>
 #include <ctime>
@@ -111,7 +111,7 @@ struct Load {
   int seconds;
 };
 class UnderFullLoad : public testing::TestWithParam<Load> {};
-// The slowest clocks keep the lines busy longest, the fastest leave least time for each bit.
+// The slowest clocks keep the lines busy longest; the fastest leave the least time for each bit.
 INSTANTIATE_TEST_SUITE_P(
     Loads, UnderFullLoad,
     testing::Values(Load{Board::mega32u4, 12'500, 10}, Load{Board::mega2560, 12'500, 10},

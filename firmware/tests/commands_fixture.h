@@ -1,5 +1,5 @@
-// What the tests of commands in simavr share: commands on each board's line, and what the motors
-// did.
+// Shared parts of the command tests in simavr: commands on each board's line, and the motors'
+// state.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@ inline std::string name_of(Board board) {
   return board == Board::mega32u4 ? "Mega32u4" : "Mega2560";
 }
 
-// Clocks over all of the standard's range, each with jitter of its own.
+// Clocks over the standard's full range, each with its own jitter.
 inline CabinetOptions mixed_mice() {
   CabinetOptions options;
   for (std::size_t i = 0; i < kMice; ++i) {
@@ -56,7 +56,7 @@ inline CommandBytes bytes_of(const wire::DeviceCommand& command) {
   return bytes;
 }
 
-// A board with motors, which takes commands as its line carries them.
+// A board with motors; it encodes commands for the board's line.
 class MotorCabinet : public Cabinet {
  public:
   explicit MotorCabinet(Board board, const CabinetOptions& options = {})
@@ -75,7 +75,7 @@ class MotorCabinet : public Cabinet {
   }
   void send(const wire::DeviceCommand& command) { send_bytes(bytes_of(command)); }
 
-  // Power-on until all mice and all drivers are set up.
+  // Advances from power-on until all mice and drivers are set up.
   bool start() {
     if (!wait_for_present(0xFF)) return false;
     const bool set_up = advance_until(
@@ -92,7 +92,7 @@ class MotorCabinet : public Cabinet {
     return set_up;
   }
 
-  // When the rod's playback register last got this value, from a time on.
+  // Time of the first write of this value to the rod's playback register at or after from_us.
   std::optional<std::uint64_t> written_us(int rod, int value, std::uint64_t from_us) {
     for (const MotorBus::Write& write : sim.motors().writes()) {
       if (write.rod == rod && write.address == 2 && write.value == value &&
@@ -102,7 +102,7 @@ class MotorCabinet : public Cabinet {
     return std::nullopt;
   }
 
-  // What no firmware may do to the bus or the EEPROM.
+  // Checks for misuse of the bus and the EEPROM.
   void expect_no_fault() {
     EXPECT_EQ(sim.motors().violations(), std::vector<std::string>{});
     EXPECT_FALSE(sim.drove_high());
@@ -114,7 +114,7 @@ class MotorCabinet : public Cabinet {
   Board board_;
 };
 
-// All mice move all the time, by counts drawn with a fixed seed.
+// Moves all mice all the time, by counts drawn with a fixed seed.
 class Shaker {
  public:
   void step(CabinetSim& sim) {

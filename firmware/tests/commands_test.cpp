@@ -1,5 +1,5 @@
-// Commands from the PC to the real .elf of each board in simavr: pulses for simulated motors on its
-// bus, settings into its EEPROM.
+// Commands from the PC to the actual .elf of each board in simavr: pulses for simulated motors on
+// its bus, settings in its EEPROM.
 #include "commands_fixture.h"
 
 #include <cstdio>
@@ -25,7 +25,7 @@ TEST_P(Commands, AllDriversAreSetUpForRealTimePlaybackSilentAndEnabled) {
   cabinet.expect_no_fault();
 }
 
-// Goal: 2 ms from the command to the motor.
+// Requirement: 2 ms from the command to the motor.
 TEST_P(Commands, APulseBeginsWithin2MsWithAllMiceMovingAndEndsInTime) {
   for (const CabinetOptions& mice : {CabinetOptions{}, mixed_mice()}) {
     MotorCabinet cabinet(GetParam(), mice);
@@ -47,7 +47,8 @@ TEST_P(Commands, APulseBeginsWithin2MsWithAllMiceMovingAndEndsInTime) {
     }
     std::printf("%s: from a command to its write at most %llu us\n", name_of(GetParam()).c_str(),
                 static_cast<unsigned long long>(longest_us));
-    EXPECT_LE(longest_us, 2000u);  // measured 1352 and 1114; of 1600 with marks too 1583 and 1365
+    // Measured 1352 and 1114; over 1600 commands with marks too, 1583 and 1365.
+    EXPECT_LE(longest_us, 2000u);
     cabinet.settle();
     EXPECT_EQ(cabinet.take().errors(), 0u);
     expect_counts(cabinet.last(), shaker.moved);
@@ -70,7 +71,7 @@ TEST_P(Commands, EightAtOnceAllArrive) {
   }
   std::printf("%s: eight commands at once, all written %lld us after the last was sent\n",
               name_of(GetParam()).c_str(), static_cast<long long>(last_us - sent_us));
-  // The 2560 takes 0.25 ms on its bus for each: what comes last has waited for the others.
+  // The 2560 takes 0.25 ms of its bus for each pulse: the last one has waited for the others.
   EXPECT_LE(last_us, sent_us + 2100);  // measured 831 and 2023
   EXPECT_EQ(cabinet.take().errors(), 0u);
   cabinet.expect_no_fault();
@@ -169,7 +170,7 @@ TEST_P(NothingAttached, FramesAndCountsGoOn) {
   expect_counts(cabinet.last(), shaker.moved);
 }
 
-// A pulse reaches its motor although a part of the bus does this.
+// A pulse reaches its motor despite this fault of a device on the bus.
 template <class Hinder>
 void expect_a_pulse_in_spite_of(Board board, const Hinder& hinder) {
   MotorCabinet cabinet(board);
@@ -196,7 +197,7 @@ TEST_P(Commands, ADriverThatVanishesWhileItsMotorRunsHasTheSupplyOfAllSwitchedOf
   cabinet.sim.advance_us(8'000);
   ASSERT_EQ(cabinet.sim.motors().running(2), 120);
   cabinet.sim.motors().attached = 0xFB;
-  // It is off for a millisecond.
+  // Power is off for a millisecond.
   const auto within_ms = [&](bool enabled, int ms) {
     for (int i = 0; i < 10 * ms && cabinet.sim.motors_enabled() != enabled; ++i) {
       cabinet.sim.advance_us(100);
@@ -207,7 +208,7 @@ TEST_P(Commands, ADriverThatVanishesWhileItsMotorRunsHasTheSupplyOfAllSwitchedOf
   EXPECT_TRUE(within_ms(true, 10));
 }
 
-// How much of a processor is left with everything going on at once.
+// Idle fraction of the processor with all activity at once.
 TEST_P(Commands, EightMiceAndAPulseEach10MsLeaveTimeAndLoseNothing) {
   MotorCabinet cabinet(GetParam(), mixed_mice());
   ASSERT_TRUE(cabinet.start());
@@ -232,7 +233,7 @@ TEST_P(Commands, EightMiceAndAPulseEach10MsLeaveTimeAndLoseNothing) {
   cabinet.expect_no_fault();
 }
 
-// More than the PC ever sends: frames may come late, counts may not be lost.
+// More than the PC ever sends: frames may be late, but counts may not be lost.
 TEST_P(Commands, AHundredAndFortyPulsesASecondAndSettingsBesidesLoseNoCount) {
   CabinetOptions fastest = mixed_mice();
   for (MouseOptions& mouse : fastest.mice) mouse.clock_hz = 16'700;
@@ -277,7 +278,7 @@ TEST_P(Commands, TheSettingsAreToldInThePlaceOfOneFrameAndNoCountIsLost) {
   };
   for (const int brightness : {64, 200, 0}) {
     if (brightness != 64) cabinet.send(settings_command(brightness, brightness == 200));
-    shake(300);  // they are kept by then
+    shake(300);  // saved by then
     cabinet.take();
     cabinet.send(tell);
     ++tell.sequence;
@@ -302,7 +303,8 @@ TEST_P(Commands, TheSettingsAreToldInThePlaceOfOneFrameAndNoCountIsLost) {
   expect_counts(cabinet.last(), shaker.moved);
 }
 
-// What is told is what the board starts with when its power fails in that moment.
+// The reported settings are those with which the board would start after a power failure at that
+// time.
 TEST_P(Commands, SettingsAreToldOnceTheyAreKept) {
   MotorCabinet cabinet(GetParam());
   ASSERT_TRUE(cabinet.start());
@@ -367,7 +369,7 @@ TEST(SerialCommands, NoiseCostsTheCommandItFallsIntoAndNoOther) {
   std::array<std::uint8_t, 40> all = noise;
   std::replace(all.begin(), all.end(), std::uint8_t{0}, std::uint8_t{0x33});
   cabinet.sim.send(all);
-  cabinet.send(pulse_command(1, 50, 100));  // ends the noise
+  cabinet.send(pulse_command(1, 50, 100));  // terminates the noise
   cabinet.send(pulse_command(2, 51, 100));
   cabinet.sim.advance_us(20'000);
   EXPECT_EQ(cabinet.sim.motors().running(1), 0);

@@ -13,7 +13,7 @@ struct Sticks {
   int x, y, rx, ry, buttons;
 };
 
-// Rod 0 is the left hand's and rod 1 the right hand's of the first player; all counts are of a
+// Rod 0 belongs to the left hand and rod 1 to the right hand of the first player. Counts are for a
 // travel of 1000 and a turn of 400, unless a test says otherwise.
 struct GamepadsTest : testing::Test {
   Gamepads pads;
@@ -33,12 +33,12 @@ struct GamepadsTest : testing::Test {
     pads.begin();
     pass(1);
   }
-  // Each millisecond brings the counts, which do not change meanwhile.
+  // Every millisecond delivers the counts, which do not change meanwhile.
   void pass(int ms) {
     for (; ms > 0; --ms, ++now_ms)
       for (std::uint8_t rod = 0; rod < 8; ++rod) pads.move(rod, slide[rod], spin[rod], now_ms);
   }
-  // Slowly enough that no button is pressed.
+  // Slow enough to press no button.
   void move(std::size_t rod, int slid, int spun) {
     constexpr int kSteps = 40;
     for (int i = 0; i < kSteps; ++i) {
@@ -73,7 +73,7 @@ TEST_F(GamepadsTest, BeginInTheMiddleWithNothingPressedWhateverTheCounts) {
   }
 }
 
-// The players stand with their own goal to the left, so the left hand has the rod nearer to it.
+// Each player has the own goal to the left, so the left hand has the rod closer to it.
 TEST_F(GamepadsTest, EachRodIsTheStickOfTheHandThatHoldsIt) {
   struct Place {
     std::size_t rod;
@@ -115,7 +115,7 @@ TEST_F(GamepadsTest, TheSpinFollowsTheAngleToAQuarterTurnAndBackAndJumpsNowhere)
       spin[0] = static_cast<std::uint16_t>(spin[0] + way);
       pass(2);
       const int x = read(0).x;
-      // The triangle of which the sine with the same zeros and ends is the smooth form.
+      // The expected triangle wave has the zeros and extremes of a sine.
       const double angle = 2 * M_PI * counts / 400;
       const double wanted = way * std::asin(std::sin(angle)) / (M_PI / 2) * 32767;
       ASSERT_NEAR(x, wanted, 4) << counts;
@@ -144,7 +144,7 @@ TEST_F(GamepadsTest, ARodThatNobodyHoldsHangsAndOneThatTremblesDoesNot) {
   EXPECT_NEAR(read(0).x, 16384, 100) << "from where it hangs";
 }
 
-// 25 rad/s is a shot, not an aiming.
+// 25 rad/s is a shot, not aiming.
 TEST_F(GamepadsTest, AFastTurnEitherWayPressesTheButtonOfItsHandLongEnoughForAnyGame) {
   for (const int way : {1, -1}) {
     begin();
@@ -197,7 +197,7 @@ TEST_F(GamepadsTest, WhatTheHostHasIsNotToldAgainUntilItIsForgotten) {
   EXPECT_NE(pads.report(2), nullptr);
 }
 
-// Of the smallest and the largest travel and turn, and any counts: never past an end.
+// Min and max travel and turn, and any counts: never beyond the range.
 TEST_F(GamepadsTest, NoCountsLeadOutOfRange) {
   std::mt19937 random(65);
   for (const std::uint16_t counts :
@@ -221,11 +221,11 @@ TEST_F(GamepadsTest, NoCountsLeadOutOfRange) {
 TEST_F(GamepadsTest, WithoutMeasuredScalesTheTravelIsThatOfTheTable) {
   settings = wire::DeviceSettings();
   begin();
-  move(0, 540 * 8 / 4, 0);  // a goalie's quarter of 540 mm, at 8 counts/mm
+  move(0, 540 * 8 / 4, 0);  // a quarter of the goalkeeper's 540 mm, at 8 counts/mm
   EXPECT_NEAR(read(0).y, -16384, 100);
   move(1, -393 * 8 / 2, 0);
   EXPECT_NEAR(read(0).ry, 32767, 100);
-  move(1, 0, 100);  // of the 400 around a rod of 16 mm
+  move(1, 0, 100);  // of 400 counts around a rod of 16 mm
   EXPECT_NEAR(read(0).rx, 32767, 300);
 }
 

@@ -1,5 +1,5 @@
-// The rods as gamepads: the ATmega32U4's own USB against a simulated host that reads the report
-// descriptors by itself. The ATmega2560 has no USB of its own.
+// The rods as gamepads: the ATmega32U4's own USB controller with a simulated host that parses the
+// report descriptors itself. The ATmega2560 has no USB of its own.
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -31,7 +31,7 @@ int product(const CabinetSim& sim) {
   return device[10] | device[11] << 8;
 }
 
-// A 32U4 whose gamepads are read as Linux reads them: values by interface and event code.
+// A 32U4 whose gamepads are read as by Linux: values by interface and event code.
 class PadCabinet : public MotorCabinet {
  public:
   explicit PadCabinet(const CabinetOptions& options = {})
@@ -117,7 +117,8 @@ TEST_F(GamepadsOf32u4, TheConfigurationFitsTheChip) {
   EXPECT_LE(memory, 832u);
 }
 
-// One application an interface: Linux makes one device of all of the same kind in one.
+// One application per interface: Linux merges all of the same kind in one interface into one
+// device.
 TEST_F(GamepadsOf32u4, EachIsAGamepadOfTwoSticksForLinux) {
   ASSERT_EQ(cabinet.descriptions().size(), 4u);
   for (const auto& [interface, description] : cabinet.descriptions()) {
@@ -178,7 +179,7 @@ TEST_F(GamepadsOf32u4, AShotPressesItsButton) {
   EXPECT_EQ(cabinet.value(1, BTN_GAMEPAD + 1), 0);
 }
 
-// Other games open the gamepads and nothing else.
+// Other games open only the gamepads.
 TEST_F(GamepadsOf32u4, AreReadByAGameThatDoesNotKnowTheFrames) {
   cabinet.send(stick_command(0, 800, 400));
   cabinet.sim.advance_us(20'000);
@@ -237,7 +238,7 @@ TEST_F(GamepadsOf32u4, TheWayBackIsTheSameCommandAndNoCountIsLostOnEitherWay) {
   EXPECT_EQ(cabinet.sim.usb_violations(), std::vector<std::string>{});
 }
 
-// The page sends by the endpoint; a program may use a control transfer, whose end the host shall
+// The page sends to the endpoint; a program may use a control transfer, whose end the host must
 // see.
 TEST_F(GamepadsOf32u4, ASwitchByAControlTransferEndsThatFirst) {
   std::array<std::uint8_t, 8> setup{0x21, 9, 0, 2, 0, 0, 64, 0};
@@ -270,7 +271,7 @@ TEST_F(GamepadsOf32u4, SwitchAndScalesOutliveThePowerAndOtherSettingsDoNotEnumer
 }
 
 TEST_F(GamepadsOf32u4, AWatchdogResetLeavesThemGamepads) {
-  cabinet.sim.advance_us(300'000);  // until they are kept
+  cabinet.sim.advance_us(300'000);  // until saved
   const int before = cabinet.sim.usb_enumerations();
   cabinet.sim.stick_program(false);
   ASSERT_TRUE(cabinet.advance_until([&] { return cabinet.sim.usb_enumerations() > before; }, 2000));
@@ -281,8 +282,8 @@ TEST_F(GamepadsOf32u4, AWatchdogResetLeavesThemGamepads) {
 class GamepadsUnderLoad : public testing::TestWithParam<std::uint32_t> {};
 INSTANTIATE_TEST_SUITE_P(Clocks, GamepadsUnderLoad, testing::Values(10'000u, 12'500u, 16'700u));
 
-// Eight mice that move, at 200 reports a second each, and index marks; then 100 pulses a second
-// besides.
+// Eight mice that move, at 200 reports a second each, and index marks; then also 100 pulses a
+// second.
 TEST_P(GamepadsUnderLoad, NoCountIsLostFramesKeepTheirRateAndGamepadsThatOfTheMice) {
   CabinetOptions options;
   for (std::size_t i = 0; i < kMice; ++i) {

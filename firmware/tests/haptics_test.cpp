@@ -7,13 +7,13 @@
 namespace firmware {
 namespace {
 
-// Each write takes one poll; drivers that are not attached do not acknowledge.
+// Each write takes one poll; missing drivers do not acknowledge.
 struct Bus final : I2cBus {
   std::uint8_t attached = 0xFF, channel = 0;
   std::array<std::uint8_t, kMotors> running{};
   State state_ = kIdle;
   bool stuck = false;
-  bool chains = false;  // takes a second write with the first
+  bool chains = false;  // supports a chained second write
 
   bool chain(std::uint8_t address, const std::uint8_t* bytes, std::uint8_t size) override {
     if (!chains) return false;

@@ -1,4 +1,4 @@
-// The core on the PC: eight simulated mice on wires that the core samples and drives, without any
+// The core on the PC: eight simulated mice on wires that the core samples and drives, without a
 // micro-controller. Sampling and polling happen when the board would do them.
 #pragma once
 
@@ -59,7 +59,7 @@ class HostRig {
 
   firmware::MouseHost host;
   std::array<SimMouse, firmware::kMice> mice;
-  // Called with time and wires of mouse 0 whenever one of them changes, from either side.
+  // Called with the time and wires of mouse 0 whenever one of them changes, from either side.
   std::function<void(std::uint64_t ns, bool clock, bool data)> on_wires;
 
  private:

@@ -5,7 +5,7 @@
 namespace firmware {
 namespace {
 
-// An expander, and drivers that take what they are told. A transfer takes `polls` looks at state().
+// An expander, and drivers that accept every write. A transfer takes `polls` calls of state().
 struct Bus final : I2cReadBus {
   bool attached = true, multiplexer = true;
   std::uint8_t pins = 0xFF;
@@ -85,8 +85,8 @@ TEST(IndexMarks, AreGoneWithTheirExpanderAndBackWithIt) {
   EXPECT_EQ(rig.marks.under(), 0xFF);
 }
 
-// However long a transfer takes up to most of a millisecond, neither begins one while the other's
-// runs, nor takes its end for its own; and both get their turn.
+// For any transfer time up to most of a millisecond, neither starts one during the other's, nor
+// takes the other's end for its own; and both are served.
 TEST(IndexMarks, ShareTheBusWithTheMotors) {
   for (const int polls : {1, 2, 3, 5}) {
     Rig rig;
@@ -104,11 +104,12 @@ TEST(IndexMarks, ShareTheBusWithTheMotors) {
     EXPECT_TRUE(rig.haptics.safe());
     EXPECT_EQ(rig.marks.under(), 1) << polls;
     EXPECT_GT(rig.bus.reads, 50) << polls;
-    EXPECT_GE(rig.bus.writes, 390) << polls;  // a pulse begins and ends by two each; the last is on
+    // Two writes start a pulse and two end it; the last is still on.
+    EXPECT_GE(rig.bus.writes, 390) << polls;
   }
 }
 
-// The index marks fail, the motors do not: each takes its own answers only.
+// The index marks fail, the motors do not: each gets only its own answers.
 TEST(IndexMarks, WithoutAnExpanderTheMotorsAreWell) {
   Rig rig;
   rig.bus.attached = false;

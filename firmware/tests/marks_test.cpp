@@ -1,5 +1,5 @@
-// Index marks on the AVR boards: Hall switches at an expander that shares the motors' bus, read by
-// the real .elf of each board in simavr.
+// Index marks on the AVR boards: Hall switches on an expander that shares the motors' bus, read by
+// the actual .elf of each board in simavr.
 #include "commands_fixture.h"
 
 #include <cstdio>
@@ -7,11 +7,11 @@
 namespace firmware_sim {
 namespace {
 
-constexpr int kReadMs = 4;  // between readings
+constexpr int kReadMs = 4;  // between reads
 
 class Marks : public testing::TestWithParam<Board> {
  protected:
-  // A frame each millisecond, or each four.
+  // A frame every millisecond, or every four.
   int frame_ms() const { return GetParam() == Board::mega32u4 ? 1 : 4; }
   void expect_frames_for(MotorCabinet& cabinet, int ms, std::uint8_t marks) {
     cabinet.take();
@@ -24,12 +24,12 @@ class Marks : public testing::TestWithParam<Board> {
 INSTANTIATE_TEST_SUITE_P(Boards, Marks, testing::Values(Board::mega32u4, Board::mega2560),
                          [](const auto& chosen) { return name_of(chosen.param); });
 
-// As an expander has it: a pin is low while its magnet is near.
+// The expander's byte: a pin is low while its magnet is near.
 void show(MotorCabinet& cabinet, unsigned under) {
   cabinet.sim.motors().expander = static_cast<std::uint8_t>(~under);
 }
 
-// From one reading on: how many, and the longest time from one to the next.
+// From the first read on: the number of reads and the max time between two.
 struct Readings {
   std::size_t count = 0;
   double longest_ms = 0;
@@ -48,7 +48,7 @@ TEST_P(Marks, AreInAFrameWithinAReadingAndAFrameAfterTheyChanged) {
   MotorCabinet cabinet(GetParam());
   show(cabinet, 0);
   ASSERT_TRUE(cabinet.start());
-  cabinet.sim.advance_us(200'000);  // the mice are calm
+  cabinet.sim.advance_us(200'000);  // the mice are at rest
   std::mt19937 random(5);
   std::uint64_t longest_us = 0;
   for (int i = 0; i < 60; ++i) {
@@ -97,7 +97,7 @@ TEST_P(Marks, APulseStillBeginsWithin2MsWithAllMiceMoving) {
   cabinet.expect_no_fault();
 }
 
-// What is left of a processor, how often it looks at the switches, and that nothing is lost.
+// Idle fraction of the processor, read interval of the switches, and no lost counts.
 TEST_P(Marks, AreReadBesideEightMovingMiceAndPlayingMotors) {
   for (const int pulse_ms : {0, 10}) {
     MotorCabinet cabinet(GetParam(), mixed_mice());

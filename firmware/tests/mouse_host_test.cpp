@@ -1,4 +1,4 @@
-// The core against simulated mice, on the PC.
+// The core with simulated mice, on the PC.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ void settle(HostRig& rig) {
 class AtEachClock : public testing::TestWithParam<std::uint32_t> {};
 INSTANTIATE_TEST_SUITE_P(Hertz, AtEachClock, testing::Values(10'000u, 12'500u, 14'300u, 16'700u));
 
-// The reset that it was asked for is given up while it takes it.
+// The reset command is abandoned while the mouse receives it.
 TEST(BringUp, AMouseThatWakesWhileItIsAskedIsNoLineError) {
   for (std::uint32_t ms = 360; ms < 400; ++ms) {
     MouseOptions options;
@@ -84,7 +84,7 @@ TEST(BringUp, TakesTheSelfTestAfterPowerOnForTheReset) {
 
 TEST(BringUp, EnablesAllMiceTogetherAndNotBeforeStreamingIsAllowed) {
   HostRig rig;
-  for (std::size_t i = 0; i < 8; ++i) {  // each is ready at another time
+  for (std::size_t i = 0; i < 8; ++i) {  // each becomes ready at a different time
     MouseOptions options;
     options.self_test_ms = static_cast<std::uint32_t>(300 + 50 * i);
     rig.mice[i].set_options(options);
@@ -133,7 +133,7 @@ TEST(HotPlug, AVanishedMouseIsNoticedAndItsCountsStand) {
   EXPECT_EQ(rig.frame().spin[3], static_cast<std::uint16_t>(-77));
 }
 
-// How long it takes until a mouse is enabled again whose plug has jumped, while its rod moves.
+// Time until a mouse is enabled again after a loose contact, while its rod moves.
 int ms_to_enabled(HostRig& rig, const MouseOptions& options, bool announced) {
   SimMouse& mouse = rig.mice[3];
   mouse.set_options(options);
@@ -149,9 +149,9 @@ int ms_to_enabled(HostRig& rig, const MouseOptions& options, bool announced) {
   return 2000;
 }
 
-// It ends its self-test while the host asks whether it is there: an answer would make it forget to
-// say that it has begun again. The shortest self-tests are of 300 ms, and the host asks 250 ms
-// after the last packet.
+// The self-test ends while the host requests data: by answering, the mouse would no longer announce
+// that it has reset. The shortest self-tests take 300 ms, and the host requests data 250 ms after
+// the last packet.
 TEST(HotPlug, AMouseIsEnabledAgainWheneverItsSelfTestEnds) {
   HostRig rig;
   ASSERT_TRUE(all_present(rig));
@@ -174,7 +174,7 @@ TEST(HotPlug, AMouseIsEnabledAgainWheneverItsSelfTestEnds) {
 
 TEST(HotPlug, AMouseThatMovesOnlyWhenAskedIsSetUpAgainAndThatIsCounted) {
   MouseOptions options;
-  options.self_test_ms = 100;  // unheard: before it is asked at all
+  options.self_test_ms = 100;  // ends unnoticed, before the host requests data
   options.counts_disabled = true;
   HostRig rig;
   ASSERT_TRUE(all_present(rig));
@@ -220,7 +220,7 @@ TEST(HotPlug, AMousePluggedInAgainAtTheGateIsSetUpAgain) {
 }
 
 TEST(Streaming, AskingASilentMouseLosesNoCount) {
-  // Movement that begins at every moment around the question, which comes each 250 ms.
+  // Movement that starts at every time around the request, which comes every 250 ms.
   MouseOptions options;
   options.forgets_cut_packets = true;
   HostRig rig(options);
@@ -277,7 +277,7 @@ TEST(Streaming, AWrongParityIsCountedAndCostsThatPacketOnly) {
   EXPECT_EQ(rig.frame().quality, 0);
 }
 
-// Spoils one bit of a packet, each in turn: it is counted, and the next packet is whole.
+// Corrupts each bit of a packet in turn: it is counted, and the next packet is intact.
 template <class Spoil>
 void expect_to_cost_one_packet(const Spoil& spoil) {
   for (int bit = 0; bit <= 10; ++bit) {

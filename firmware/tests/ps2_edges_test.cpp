@@ -1,5 +1,5 @@
-// The receiver and the parser on traces of clock and data (data/*.edges), sampled as the board
-// does, at every phase of the sampler against the trace.
+// The receiver and the parser on traces of clock and data (data/*.edges), sampled as on the board,
+// at every phase of the sampler relative to the trace.
 #include <gtest/gtest.h>
 
 #include <algorithm>

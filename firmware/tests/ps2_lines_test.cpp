@@ -38,7 +38,7 @@ TEST(Ps2Lines, ASpikeSeenByOneReadingOnlyIsNoEdge) {
   sample(lines, 0xFE, 0xFF, 0xFF);
   sample(lines, 0xFF);
   EXPECT_TRUE(lines.empty());
-  // Nor does a spike upwards end a low phase.
+  // Nor does an upward spike end a low phase.
   sample(lines, 0xFE);
   sample(lines, 0xFF, 0xFF, 0xFE);
   sample(lines, 0xFE);
@@ -70,7 +70,8 @@ TEST(Ps2Lines, OurOwnHoldingOfTheClockIsNoEdge) {
   EXPECT_TRUE(lines.empty());
 }
 
-// What a mouse reads as it clocks value out of us, eleven times; the other mice's clocks rest.
+// Returns what a mouse reads as it clocks value out of the host, eleven times; the other clocks are
+// idle.
 struct Taken {
   std::vector<bool> bits;
   bool acknowledged;

@@ -1,5 +1,5 @@
-// Records what a simulated mouse puts on its wires: firmware_record_edges DIRECTORY writes the
-// files recorded_*.edges, which ps2_edges_test reads.
+// Records the wires of a simulated mouse: firmware_record_edges DIRECTORY writes the files
+// recorded_*.edges, which ps2_edges_test reads.
 #include <cstdio>
 #include <fstream>
 #include <string>

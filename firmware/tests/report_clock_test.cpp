@@ -8,14 +8,14 @@
 namespace firmware {
 namespace {
 
-// A host that asks each millisecond, and a program that samples when the clock says so.
+// A host that polls every millisecond, and a program that samples when the clock is due.
 struct Play {
   ReportClock clock;
   std::uint32_t work_us = 80;
-  int late = 0;           // the host asked and nothing was ready
-  std::uint32_t age = 0;  // of the oldest report taken, from its sample's beginning
+  int late = 0;           // polls of the host without a report ready
+  std::uint32_t age = 0;  // of the oldest report taken, from the start of its sample
 
-  // The tokens of so many milliseconds; jitter(): what each differs from its place.
+  // Runs the polls of this many milliseconds. jitter(): deviation of each from its nominal time.
   void run(int tokens, std::uint32_t& token_us, const std::function<int()>& jitter) {
     late = 0;
     age = 0;

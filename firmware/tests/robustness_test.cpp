@@ -1,4 +1,4 @@
-// Settings in EEPROM, the watchdog and the LED of the real .elf of each board in simavr.
+// Settings in EEPROM, the watchdog and the LED of the actual .elf of each board in simavr.
 #include <cstdio>
 
 #include "commands_fixture.h"
@@ -12,9 +12,9 @@ class OnBoard : public testing::TestWithParam<Board> {};
 INSTANTIATE_TEST_SUITE_P(Boards, OnBoard, testing::Values(Board::mega32u4, Board::mega2560),
                          [](const auto& chosen) { return name_of(chosen.param); });
 
-constexpr std::uint64_t kSavedUs = 300'000;  // 42 bytes of 3.4 ms, and what else the loop does
+constexpr std::uint64_t kSavedUs = 300'000;  // 42 bytes of 3.4 ms, plus the loop's other work
 
-// Ticks of 100 ms with light, of ten, and the brightest width.
+// Number of ticks of 100 ms with light, out of ten, and the max pulse width.
 struct Light {
   int lit = 0;
   std::uint8_t width = 0;
@@ -69,7 +69,7 @@ TEST_P(OnBoard, SavingSettingsKeepsFramesAndCountsGoing) {
   cabinet.expect_no_fault();
 }
 
-// Brightness 200 is saved, then 100, and power fails after each byte of it.
+// Saves brightness 200, then 100, with a power failure after each byte of it.
 TEST_P(OnBoard, PowerThatFailsWhileSavingLeavesTheOldTheNewOrTheDefaultSettings) {
   MotorCabinet cabinet(GetParam());
   ASSERT_TRUE(cabinet.start());

@@ -22,7 +22,7 @@ TEST(Transpose8, IsATurnedMatrix) {
   }
 }
 
-// Sensors that answer at once; time and electricity are those of the simulated board's tests.
+// Sensors that answer at once; timing and electrical behaviour are covered by the simulated board.
 struct Bus final : SensorBus {
   struct Sensor {
     bool there = true;
@@ -53,7 +53,8 @@ struct Bus final : SensorBus {
         bytes[i].fill(0xFF);
         continue;
       }
-      if (sensor.bursts && sensor.held_low) sensor.x = sensor.y = 0;  // told, and not heard
+      // Sent by the sensor, but not received.
+      if (sensor.bursts && sensor.held_low) sensor.x = sensor.y = 0;
       if (!sensor.bursts || sensor.held_low) continue;
       const auto x = static_cast<std::uint16_t>(sensor.x), y = static_cast<std::uint16_t>(sensor.y);
       bytes[i] = {static_cast<std::uint8_t>(sensor.x != 0 || sensor.y != 0 ? 0x80 : 0),
@@ -139,7 +140,7 @@ TEST(SensorHost, CountsAreCumulativeAndWrap) {
 TEST(SensorHost, WhatIsLargerThanASensorFollowsIsFlaggedUntilItWasTold) {
   Rig rig;
   rig.run(100);
-  rig.bus.sensors[0].x = 600;  // 25 counts a ms for each 100 counts/inch, and a quarter: 625 + 8
+  rig.bus.sensors[0].x = 600;  // 25 counts/ms for each 100 counts/inch, plus a quarter: 625 + 8
   rig.run(1);
   EXPECT_EQ(rig.frame().overflow, 0);
   rig.bus.sensors[0].x = -633;
@@ -170,7 +171,7 @@ TEST(SensorHost, AllOnesAreNoMotion) {
   EXPECT_EQ(frame.quality, 0);
 }
 
-// All zeros are a sensor that has not moved, but for the processes that it says to run.
+// All zeros are valid for a sensor without motion, except for the flag that its processes run.
 TEST(SensorHost, CountsThatALineHeldLowSwallowsAreAnError) {
   Rig rig;
   rig.run(100);
@@ -186,7 +187,7 @@ TEST(SensorHost, CountsThatALineHeldLowSwallowsAreAnError) {
   }
 }
 
-// If ever there is one.
+// In case such a sensor exists.
 TEST(SensorHost, ASensorThatNeverSaysThatItsProcessesRunIsBelieved) {
   Rig rig;
   for (Bus::Sensor& sensor : rig.bus.sensors) sensor.observation = 0;

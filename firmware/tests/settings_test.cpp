@@ -50,7 +50,7 @@ TEST(Settings, ComeBackAndEverySingleBitFlipIsRefused) {
   }
 }
 
-// As controllers of before kept them: bytes of theirs, with their own CRC.
+// As stored by earlier controllers: the old bytes with their CRC.
 TEST(Settings, ThoseOfVersion1AreReadAndHaveNoSticks) {
   std::uint8_t bytes[kKeptBytes];
   for (auto& byte : bytes) byte = 0xFF;
@@ -65,7 +65,7 @@ TEST(Settings, ThoseOfVersion1AreReadAndHaveNoSticks) {
   EXPECT_EQ(settings.switches, wire::kPulsesOff);
   for (const wire::StickScale& stick : settings.sticks)
     EXPECT_TRUE(same(stick, wire::StickScale()));
-  bytes[4] = 2;  // a switch that version 1 had not
+  bytes[4] = 2;  // a switch that version 1 did not have
   wire::device_put16(bytes + 6, wire::device_crc16(bytes, 6));
   EXPECT_FALSE(decode_kept(bytes, settings));
 }
@@ -112,7 +112,7 @@ TEST(Settings, ACommandForAStickChangesThatRodAloneAndSaysWhetherItDid) {
   EXPECT_TRUE(take_settings(command, settings));
   EXPECT_EQ(settings.switches, wire::kGamepads);
   EXPECT_EQ(settings.slide_reversed, 0x08);
-  // What was measured was in counts of the resolution of before.
+  // The measured values were in counts of the old resolution.
   EXPECT_TRUE(take_stick(stick_command(5, 900, 300, 0), settings));
   command.resolution = static_cast<std::uint8_t>(settings.resolution + 1);
   EXPECT_TRUE(take_settings(command, settings));
@@ -129,7 +129,7 @@ TEST(Settings, AnErasedSectorHasNone) {
   EXPECT_EQ(settings.resolution, 20);
 }
 
-// A memory that takes some polls for each byte, and loses its supply after so many.
+// A memory that takes some polls for each byte, and loses power after a given number of bytes.
 struct Memory {
   static inline std::array<std::uint8_t, kKeptBytes> bytes;
   static inline int busy, writes, supplied_writes;
@@ -182,7 +182,7 @@ TEST(SettingsStore, WhatIsSavedIsLoadedAndSavedAgainIsNotWritten) {
   EXPECT_TRUE(same(settings, wanted));
 }
 
-// All pairs out of a few settings, power lost after each number of bytes: never a mixture.
+// All pairs of a few settings, with power lost after each number of bytes: never a mixture.
 TEST(SettingsStore, PowerLostWhileSavingLeavesOldNewOrNone) {
   const wire::DeviceSettings some[] = {settings_with(20, 64, 0, 0), settings_with(20, 65, 0, 0),
                                        settings_with(60, 200, 0xFF, wire::kPulsesOff),

@@ -15,13 +15,13 @@ using firmware_sim::MotorBus;
 constexpr std::uint64_t kEdgeNs = 130, kSettleNs = 300, kHighNs = 600, kLowNs = 1050,
                         kStepNs = 1500, kTickNs = 20'000;
 
-// The parts, and what a master pulls low; time passes by what it does.
+// The devices, and the lines that a controller pulls low; its actions advance the time.
 struct Bench {
   MotorBus bus;
   std::uint64_t now_ns = 1'000'000;
   bool clock_low = false, data_low = false;
 
-  // What the parts do by themselves they do at its time.
+  // Runs the devices' own events at their times.
   void pass(std::uint64_t ns) {
     const std::uint64_t end = now_ns + ns;
     while (bus.next_event_ns() && *bus.next_event_ns() <= end) {
@@ -62,12 +62,13 @@ struct SoftI2cTest : testing::Test {
 
   void SetUp() override { g_bench = &bench; }
 
-  // Steps until the transfer has ended; how many.
+  // Runs steps until the transfer has ended; returns their number.
   int run(int limit = 2000) {
     int steps = 0;
     while (master.busy() && steps < limit) {
       bench.pass(kStepNs);
-      bench.bus.drive(bench.now_ns, bench.clock_low, bench.data_low);  // held or let go since
+      // May have been held or released.
+      bench.bus.drive(bench.now_ns, bench.clock_low, bench.data_low);
       master.step(static_cast<std::uint8_t>(bench.now_ns / kTickNs));
       ++steps;
     }
@@ -146,7 +147,7 @@ TEST_F(SoftI2cTest, AStretchedClockIsWaitedForBelowAMillisecond) {
   EXPECT_FALSE(bench.clock_low || bench.data_low);
 }
 
-// Wherever between two looks at it the clock is let go.
+// For a clock release at any time between two steps.
 TEST_F(SoftI2cTest, AStretchedClockIsHighForItsTimeToo) {
   for (std::uint32_t us = 1; us < 40; ++us) {
     bench.bus.stretch_us = us;
@@ -167,8 +168,8 @@ TEST_F(SoftI2cTest, AClockThatIsHeldForEverIsAFailureAfterAMillisecond) {
   EXPECT_FALSE(bench.clock_low || bench.data_low);
 }
 
-// Whoever holds the data line from any edge on: the transfer ends, well or badly, and the next one
-// is good.
+// A device holds the data line from any edge on: the transfer ends, with or without success, and
+// the next one succeeds.
 TEST_F(SoftI2cTest, AHoldAtAnyMomentEndsAndTheNextTransferIsGood) {
   for (int at = 0; at < 12; ++at) {
     const std::uint8_t bytes[2] = {0x02, 0xFF};

@@ -22,7 +22,7 @@ TEST_F(Usb, SaysThatItIsTheCabinet) {
   EXPECT_EQ(device[10] | device[11] << 8, 0x0001);
 }
 
-// Its number is what the calibration of a cabinet is kept by.
+// The serial number identifies a cabinet's calibration.
 TEST_F(Usb, EachChipHasASerialNumberOfItsOwn) {
   EXPECT_EQ(cabinet.sim.device_descriptor()[16], 3);
   const auto text = [](const std::vector<std::uint8_t>& descriptor) {

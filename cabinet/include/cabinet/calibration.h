@@ -1,4 +1,4 @@
-// From a sensor's counts to metres and radians, for each rod, read from a JSON file.
+// The calibration of each rod, read from a JSON file: converts sensor counts to metres and radians.
 #pragma once
 
 #include <array>
@@ -11,13 +11,13 @@
 
 namespace cabinet {
 
-constexpr double kRodRadius = 0.008;  // [m] of the table's rods, on which the sensors look
+constexpr double kRodRadius = 0.008;  // [m] of the table's rods, whose surface the sensors track
 
-// A magnet on the rod that passes under a switch once a turn. Turning forward the switch is on from
-// angle - width / 2 + lag to angle + width / 2 + lag, turning back the same with - lag: a switch
-// goes on nearer to the magnet than it goes off.
+// A magnet on the rod that passes a switch once per revolution. Turning forward, the switch is on
+// from angle - width / 2 + lag to angle + width / 2 + lag. Turning back, the same with -lag. The
+// lag is the hysteresis of the switch: it turns on closer to the magnet than it turns off.
 struct IndexMark {
-  double angle;    // [rad] of its middle, from feet straight down
+  double angle;    // [rad] of its centre, from feet straight down
   double width;    // [rad]
   double lag = 0;  // [rad]
 };
@@ -25,51 +25,54 @@ struct IndexMark {
 // An increment of the counts c = (slide, spin) moves the rod by
 //   d_slide = (1 + slide_gain . (cos angle, sin angle)) m[0] . c
 //   d_angle = (1 + spin_gain  . (cos angle, sin angle)) m[1] . c
-// with the angle in the middle of the increment. Off-diagonal terms of m undo a sensor that is
-// mounted askew. The gains undo an eccentric rod, whose surface comes closer to the sensor and
-// moves away once a turn: the sensor counts more of a surface that is closer, and a point further
-// from the axis moves more in a turn. The dead band undoes what a sensor loses of a slow motion.
+// with the angle at the middle of the increment. Off-diagonal terms of m correct a sensor that is
+// mounted at a skewed angle. The gains correct an eccentric rod. Its surface approaches and recedes
+// from the sensor once per revolution. The sensor counts more for a closer surface, and a point
+// farther from the axis moves more per revolution. The dead band corrects counts that a sensor
+// loses in slow motion.
 struct RodCalibration {
   double m[2][2];                 // [m / count], [rad / count]
-  double slide_gain[2] = {0, 0};  // of angle 0 (feet down) and of a quarter turn
+  double slide_gain[2] = {0, 0};  // coefficients of cos(angle), sin(angle)
   double spin_gain[2] = {0, 0};
-  double dead_band = 0;  // [counts / s] seen of no motion, and lacking of any that is faster
-  std::optional<IndexMark> index{};  // none: the rod has none that is known
+  // [counts / s] that the sensor misses: slower motion reads as none, faster as less.
+  double dead_band = 0;
+  std::optional<IndexMark> index{};  // empty: no known index mark
 };
 
 struct RodMotion {
   double slide, angle;  // [m], [rad]
 };
 
-// Takes the counts of one rod through its calibration.
+// Converts the counts of one rod to motion by its calibration.
 class RodIntegrator {
  public:
   explicit RodIntegrator(const RodCalibration& calibration) : calibration_(calibration) {}
 
-  // seconds: since the call before; angle: of the rod before the increment [rad].
+  // seconds: time since the previous call. angle: rod angle before the increment [rad].
   RodMotion add(double slide_counts, double spin_counts, double seconds, double angle);
 
  private:
   RodCalibration calibration_;
-  double still_[2] = {0, 0};  // [s] since either axis had a count
+  double still_[2] = {0, 0};  // [s] since the last count of each axis
 };
 
 struct Calibration {
   std::array<RodCalibration, kRods> rods;
-  std::string serial;  // of the controller whose sensors these are; empty: not known
-  std::string made;    // when its last rod was calibrated, 2026-11-22T23:59:59Z; empty: not known
+  std::string serial;  // of the controller with these sensors; empty: unknown
+  std::string made;    // when the last rod was calibrated, as 2026-11-22T23:59:59Z; empty: unknown
 };
 
-// Sensors mounted square, at so many counts a millimetre, on rods of the diameter [m].
+// For square-mounted sensors of this resolution, on rods of this diameter [m].
 Calibration nominal_calibration(double counts_per_mm = 8.0, double rod_diameter = 2 * kRodRadius);
 
-// Errors are one sentence: file, what is wrong, what to do. Refused: missing, empty, not JSON, not
-// 8 rods, not finite, rows (all but) parallel, or a scale more than 4 times off any known sensor.
+// An error is one sentence: the file, what is wrong, what to do. Rejects a file that is missing,
+// empty or not JSON, and values for other than 8 rods, non-finite values, (nearly) parallel rows,
+// and a scale more than a factor of 4 from that of any known sensor.
 tl::expected<Calibration, std::string> load_calibration(const std::string& path);
-// The same from text; name stands for the file in the sentence.
+// The same from text. The error names the file as `name`.
 tl::expected<Calibration, std::string> parse_calibration(std::string_view json,
                                                          const std::string& name);
-// Refuses what load would refuse. The file is replaced whole or not at all.
+// Rejects what load_calibration rejects. Replaces the file atomically.
 tl::expected<void, std::string> save_calibration(const Calibration& calibration,
                                                  const std::string& path);
 

@@ -1,4 +1,5 @@
-// A source that may be plugged in, out and in again, and what a person is to be told of it.
+// An input source that may be plugged in and unplugged at any time, with a state to report to the
+// person.
 #pragma once
 
 #include <cstddef>
@@ -8,26 +9,27 @@
 
 namespace cabinet {
 
-constexpr std::size_t kMostPacket = 65;  // bytes of one to a device: a HID report and its number
+// [bytes] of a packet to a device: report ID and HID report.
+constexpr std::size_t kMostPacket = 65;
 
-// What the descriptor shows of the device. A person is told something else for each.
+// State of the device as seen from its descriptor. The message to the person differs for each.
 enum class DeviceState : std::uint8_t {
-  missing,  // not open: it is not there, or hung up
-  refused,  // not open, though it is there: open_error() says why
-  silent,   // open, but no byte comes
-  garbled,  // open, bytes come, but no frame among them is taken
-  live,     // frames come, or a recording waits for the time of its next one
+  missing,  // not open: not connected, or hung up
+  refused,  // connected, but opening it failed: see open_error()
+  silent,   // open, but no byte arrives
+  garbled,  // open, bytes arrive, but none form a valid frame
+  live,     // frames arrive, or a recording waits for its next one
   over,     // a recording, played to its end
 };
 
-// Of a device that is not open, by errno of the last attempt; 0: it was open and hung up.
+// State of a device that is not open, from errno of the last attempt; 0: it was open and hung up.
 DeviceState state_of_error(int error);
 
 class Device : public InputSource {
  public:
-  // As of the last poll.
+  // As of the last poll().
   virtual DeviceState state() const = 0;
-  virtual int open_error() const = 0;  // errno of the last attempt to open it, if that failed
+  virtual int open_error() const = 0;  // errno if the last attempt to open the device failed
   virtual const RodCounts& counts() const = 0;
   bool connected() const { return state() == DeviceState::live; }
 };

@@ -1,4 +1,4 @@
-// Haptic pulses to a cabinet's controller, as packets against the way of its frames.
+// Sends haptic pulses to a cabinet's controller, as packets from host to device.
 #pragma once
 
 #include <cstddef>
@@ -13,12 +13,11 @@
 
 namespace cabinet {
 
-// The packet that tells a controller of a pulse; the bytes written to out, 0: none. What it looks
-// like is the device command's to say.
+// Encodes a pulse as a packet for a controller. Returns the number of bytes written to out; 0:
+// none.
 using HapticEncoder = std::function<std::size_t(const HapticPulse&, std::span<std::byte> out)>;
 
-// The motors of one controller: pulses as packets against the way of its frames. device must
-// outlive it.
+// The motors of one controller. Sends each pulse as a packet. device must outlive this object.
 class DeviceHaptics final : public HapticSink {
  public:
   DeviceHaptics(DeviceSource& device, HapticEncoder encode)
@@ -26,7 +25,7 @@ class DeviceHaptics final : public HapticSink {
   void pulse(const HapticPulse& pulse) override;
   const DeviceSource& device() const { return device_; }
   std::uint64_t sent() const { return sent_; }
-  std::uint64_t unsent() const { return unsent_; }  // nothing attached, or its line was full
+  std::uint64_t unsent() const { return unsent_; }  // not connected, or its line was full
 
  private:
   DeviceSource& device_;
@@ -34,11 +33,11 @@ class DeviceHaptics final : public HapticSink {
   std::uint64_t sent_ = 0, unsent_ = 0;
 };
 
-// The command of wire/device_command.h, as a line of this framing carries it.
+// Encodes the command of wire/device_command.h for a line of this framing.
 HapticEncoder command_encoder(DeviceFraming framing);
 
-// The motors of all controllers: each pulse to those that have its rod at this time. They must
-// outlive it.
+// The motors of all controllers: sends each pulse to those that currently have the rod. The devices
+// must outlive this object.
 class CabinetHaptics final : public HapticSink {
  public:
   void add(DeviceSource& device);

@@ -27,34 +27,35 @@ struct DeviceOptions {
   std::string name = "cabinet";
   DeviceFraming framing = DeviceFraming::cobs;
   Calibration calibration = nominal_calibration();
-  // |slide| never passes it [m]; 0: no limit. Pushing a handle to its stop then takes out any
+  // slide| is clamped to it [m]; 0: no limit. With a limit, moving a handle to its stop removes
   // drift.
   std::array<double, kRods> slide_limit{};
-  std::int64_t silence_us = 50'000;  // no frame for so long: the rods hold
-  std::int64_t reopen_us = 200'000;  // between attempts to open a device that went away
-  bool opener_sets_line = false;     // a tty comes as raw 1 Mbaud already
-  // When bytes last came on the line that is open, on the clock that is handed to poll() [us].
-  // None: only known to lie between two polls.
+  std::int64_t silence_us = 50'000;  // without a frame for this long, rods become held
+  std::int64_t reopen_us = 200'000;  // between attempts to open a disconnected device
+  bool opener_sets_line = false;     // the opener has already set a tty to raw 1 Mbaud
+  // When bytes last arrived on the open line, on the clock passed to poll() [us]. Null: arrival is
+  // only known to lie between two polls.
   std::function<std::int64_t()> arrived_us;
-  // Sends a packet to the descriptor from another thread, where write(2) would wait, as at hidraw;
-  // false: not now. None: nothing is sent to such a device.
+  // Sends a packet to the descriptor from another thread, for descriptors whose write(2) blocks,
+  // such as hidraw. Returns false if it cannot send now. Null: such a device gets no packets.
   std::function<bool(int, std::span<const std::byte>)> send_apart;
-  // Of the device that the opener has just opened; null: as before. Called from poll(), so it never
-  // waits. None: the one above.
+  // The calibration of the device that the opener has just opened; a null result keeps the previous
+  // one. Called from poll(): it must not block. Null: `calibration` is always used.
   std::function<const Calibration*()> calibration_of_open;
 };
 
-// Opens the device and returns the descriptor, which then belongs to the source, or -1 and errno
-// (it is tried again). What it is shows from the descriptor: a tty is set to raw 1 Mbaud, a regular
-// file is a recording (either framing, seen from its bytes), paced by the micro-controller's clock
-// and played once. It is made non-blocking. Called from poll(): it must not wait.
+// Opens the device and returns its descriptor, which the source then owns, or -1 and errno (the
+// source tries again). The source detects the type from the descriptor: it sets a tty to raw 1
+// Mbaud. A regular file is a recording (either framing, detected from its bytes), paced by the
+// micro-controller's clock and played once. The source makes the descriptor non-blocking. Called
+// from poll(): it must not block.
 using DeviceOpener = std::function<int()>;
-// Takes the descriptor back, from poll() too and under the same rule. None: close(2).
+// Takes the descriptor back. Called from poll(): it must not block. Null: close(2).
 using DeviceCloser = std::function<void(int)>;
 
-// A rod is absent until its mouse was first heard; from then on live or held. Positions start at 0
-// and only ever change by the sensors' increments: after a pause, a replug or a restart of the
-// micro-controller they go on from where they were held. One thread at a time.
+// A rod is absent until its mouse first reports; then it is live or held. Positions start at 0 and
+// change only by the sensors' increments. After a pause, a reconnection or a restart of the
+// micro-controller they continue from the held position. One thread at a time.
 class DeviceSource final : public Device {
  public:
   DeviceSource(DeviceOptions options, DeviceOpener open, DeviceCloser close = {});
@@ -67,15 +68,17 @@ class DeviceSource final : public Device {
   DeviceState state() const override;
   int open_error() const override;
   const RodCounts& counts() const override;
-  // Called from poll() with each frame that is accepted: the raw counts. None: no longer.
+  // The observer is called from poll() with the raw counts of each accepted frame. Null: removes
+  // it.
   void observe(std::function<void(const wire::DeviceFrame&)> observer);
-  // A packet against the way of the frames, such as a haptic pulse (cabinet/haptics.h), as it is on
-  // the line; at hidraw, whose write(2) waits for the USB transfer, by DeviceOptions::send_apart.
-  // Never waits and never sends a part of one: false where nothing is attached, where the line has
-  // no room for all of it, and at a recording. Between polls, on their thread.
+  // Sends a packet from host to device, such as a haptic pulse (cabinet/haptics.h), already encoded
+  // for the line. A hidraw node, whose write(2) waits for the USB transfer, uses
+  // DeviceOptions::send_apart. Never blocks and never sends part of a packet. Returns false if
+  // nothing is connected, if the line cannot take the complete packet, and for a recording. Call it
+  // between polls, on their thread.
   bool send(std::span<const std::byte> packet);
   DeviceFraming framing() const;
-  // For the latency test: the micro-controller's clock of the last accepted frame [us].
+  // The micro-controller's time of the last accepted frame [us], for the latency test.
   std::uint32_t last_frame_time_us() const;
 
  private:
@@ -83,18 +86,20 @@ class DeviceSource final : public Device {
   std::unique_ptr<Impl> impl_;
 };
 
-// "serial:/dev/ttyACM0", "hid:/dev/hidraw0" or "file:recording.bin"; an unknown scheme is an error
-// sentence, and so are a recording that is missing, a path that is no device and one that may not
-// be read. A device that is not there yet is not an error.
+// An address is "serial:/dev/ttyACM0", "hid:/dev/hidraw0" or "file:recording.bin". An unknown
+// scheme, a missing recording, a path that is not a device and one that is not readable give an
+// error sentence. A device that is not connected yet is not an error.
 //
-// why_no_device() is the sentence alone, or empty, before there is a calibration.
+// why_no_device() returns only the sentence, or empty. It needs no calibration.
 //
-// poll() of the source never waits: a device is opened, set up and closed on a thread of its own,
-// and found within two attempts, 200 ms; a recording (64 MiB at most, 6 hours) is read whole here.
+// poll() of the source never blocks: a separate thread opens, configures and closes the device. It
+// finds a device within two attempts, 200 ms. open_device() reads a complete recording (at most 64
+// MiB, 6 hours).
 std::string why_no_device(const std::string& address);
 //
-// find: the calibration of the controller that is there, looked for whenever one is plugged in, so
-// that it may be another; nothing: as before. On the thread that opens: it may wait.
+// find: looks up the calibration of the connected controller whenever one is plugged in, as it may
+// be a different one. An empty result keeps the previous calibration. Runs on the opening thread:
+// it may block.
 using CalibrationFinder = std::function<std::optional<Calibration>()>;
 tl::expected<std::unique_ptr<DeviceSource>, std::string> open_device(
     const std::string& address, const Calibration& calibration,

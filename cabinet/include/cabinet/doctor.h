@@ -1,4 +1,5 @@
-// What is connected to this machine that can move rods, how well it does, and what to do about it.
+// Diagnoses the devices of this machine that can move rods: which are connected, how well they
+// work, and how to fix them.
 #pragma once
 
 #include <array>
@@ -14,42 +15,42 @@ namespace cabinet {
 
 enum class DeviceKind : std::uint8_t { hid_controller, serial_controller, mouse, gamepad };
 
-// How a rod did while nobody was to touch it.
+// State of a rod while nobody was supposed to touch it.
 struct RodCheck {
   RodStatus status = RodStatus::absent;
-  double slide_range = 0, angle_range = 0;  // how far it moved [m], [rad]
+  double slide_range = 0, angle_range = 0;  // extent of its motion [m], [rad]
 };
 
 struct FoundDevice {
   DeviceKind kind = DeviceKind::mouse;
-  std::string path;            // of its node below dev, or as it was named
-  std::string name;            // what it calls itself: a stranger's words
-  std::string usb_id, serial;  // of a controller, as it tells over USB; empty: not told
-  bool named = false;          // by DoctorOptions::devices
-  bool listens = true;         // false: a serial line that is not known as ours, and not opened
-  bool calibrated = false;     // of a controller: a file is named, or kept for it
-  std::string calibration_conflict;  // empty, or that this file is another controller's
-  int error = 0;                     // errno of opening it to read; 0: it may be read
-  // Of one that was listened to:
+  std::string path;                  // of its node below `dev`, or as given in DoctorOptions
+  std::string name;                  // as the device reports it: untrusted text
+  std::string usb_id, serial;        // of a controller, as reported over USB; empty: not reported
+  bool named = false;                // listed in DoctorOptions::devices
+  bool listens = true;               // false: a serial line not known as ours, so not opened
+  bool calibrated = false;           // of a controller: its file is given, or stored for it
+  std::string calibration_conflict;  // empty, or: the file belongs to another controller
+  int error = 0;                     // errno of opening it for reading; 0: readable
+  // Results of listening to it:
   DeviceState state = DeviceState::missing;
-  double seconds = 0;  // of a controller: from its first frame on
+  double seconds = 0;  // of a controller: since its first frame
   SourceCounters counters;
-  std::array<RodCheck, kRods> rods{};     // of a mouse, the first: a rod in its hand
-  double reports_per_s = 0;               // of a mouse or gamepad, while it moved; 0: it did not
-  double stick_peak = 0, stick_rest = 0;  // off the middle, of a stick's full way; rest: at the end
+  std::array<RodCheck, kRods> rods{};  // of a mouse, the first entry: as a hand mouse
+  double reports_per_s = 0;            // of a mouse or gamepad, while it moved; 0: it did not move
+  double stick_peak = 0, stick_rest = 0;  // deflection, fraction of full; rest: at the end
 };
 
 struct CalibrationCheck {
-  std::string device;  // the address of the controller that it is kept for; empty: it was named
+  std::string device;  // address of the controller that it is stored for; empty: given by path
   std::string path;
-  std::string error;  // a sentence without its full stop; empty: it is well
-  double days = 0;    // since it was made, by what it says, else by the file's time
+  std::string error;  // a sentence without its full stop; empty: valid
+  double days = 0;    // since it was made, by its own date, else by the file's time
 };
 
 struct Trouble {
   std::string device;  // its path, or empty
   std::string what;    // a sentence without its full stop
-  std::string cure;    // what to do, likewise
+  std::string cure;    // what to do, a sentence without its full stop
 };
 
 struct Diagnosis {
@@ -67,21 +68,22 @@ tl::expected<DoctorAddress, std::string> parse_doctor_address(const std::string&
 
 struct DoctorOptions {
   std::string dev = "/dev", sys = "/sys";
-  std::vector<DoctorAddress> devices;  // to be looked at beside those that are known as ours
-  std::string calibration;             // a file for all controllers, or empty: each its own
-  std::string calibrations;  // the folder of those that are kept (cabinet/controller.h), or empty
+  std::vector<DoctorAddress> devices;  // examined in addition to those known as ours
+  std::string calibration;             // a file for all controllers; empty: each its own
+  std::string calibrations;  // folder of stored calibrations (cabinet/controller.h), or empty
   double seconds = 2;        // for each controller, and for mice and gamepads together
-  std::int64_t now_s = 0;    // time of day, for the calibration's age
-  // Waits for the next poll and returns its time on a monotonic clock [us]. None: each millisecond.
+  std::int64_t now_s = 0;    // time of day, to compute the age of a calibration
+  // Waits for the next poll and returns its time on a monotonic clock [us]. Null: every
+  // millisecond.
   std::function<std::int64_t()> next_poll;
 };
 
-// Listens to controllers, each by itself, for options.seconds from its first frame on; waits for
-// that frame for as long and 3 s more (a board may restart when it is opened). Then to all mice and
+// Listens to each controller in turn for options.seconds from its first frame. Waits for that frame
+// for the same time plus 3 s (a board may restart when it is opened). Then listens to all mice and
 // gamepads at once.
 Diagnosis examine(const DoctorOptions& options);
 
-// For a person: every trouble with its cure. For a program: one JSON object.
+// Text lists each trouble with its cure for a person. JSON is one object for a program.
 std::string diagnosis_text(const Diagnosis& diagnosis);
 std::string diagnosis_json(const Diagnosis& diagnosis);
 

@@ -1,13 +1,15 @@
-// One person at a window: a mouse (slide and spin of the active rod), keys and the wheel (choice of
-// rod), or a gamepad, turned into RodInputs. It knows no window: events are handed in.
+// Converts the input of one person at a window to RodInputs: a mouse (slide and spin of the active
+// rod), keys and the wheel (choice of rod), or a gamepad. It does not depend on a window: the
+// caller passes events in.
 //
-// All rods of the person are live; only the active one moves by the hand's motion, the others stay
-// where the hand left them.
-// - Mouse: relative, both axes positions.
-// - Keys: slide by a rate that ramps up; spin is a flick: held back it cocks the feet, held forward
-//   it strikes, let go it hangs the men straight down again.
-// - Gamepad: left stick slides by rate (position would let go of the rod with the stick); right
-//   stick up and down is the angle itself, so that pulling back and snapping forward is a shot.
+// All rods of the person are live. The input moves only the active rod; the others stay where they
+// were left.
+// - Mouse: relative, both axes are positions.
+// - Keys: slide by a rate that ramps up. Spin is a flick: the backward key cocks the feet, the
+//   forward key shoots, and releasing returns the men to straight down.
+// - Gamepad: the left stick sets the slide rate (with position control, the rod would return with
+//   the released stick). The right stick's vertical axis is the angle, so that pulling back and
+//   snapping forward is a shot.
 #pragma once
 
 #include <array>
@@ -19,17 +21,17 @@
 
 namespace cabinet {
 
-constexpr float kStickDeadZone = 0.12f;  // of a worn stick, of its full way
+constexpr float kStickDeadZone = 0.12f;  // fraction of full deflection, for a worn stick
 
-// What a key does that is let go before the hand is polled: as if held for a person's shortest tap,
-// 30 ms, of the ramp that held keys have [m].
+// Slide of a key that is pressed and released between two polls [m]: that of a held key, on its
+// ramp, for a person's shortest tap, 30 ms.
 inline constexpr double kTapSlide = 0.0054;
-// Of a full flick by key or stick, either way [rad]: the ball is struck at 0.
+// Angle of a full flick by key or stick, in either direction [rad]. The men hit the ball at 0.
 inline constexpr double kSwing = 1.4;
 
 struct HandOptions {
-  std::array<int, 4> rods{0, 1, 3, 5};              // of this person's team, own goal outwards
-  std::array<bool, 4> has{true, true, true, true};  // those of them that the person plays
+  std::array<int, 4> rods{0, 1, 3, 5};  // of this person's team, from the own goal outwards
+  std::array<bool, 4> has{true, true, true, true};  // which of them the person plays
   std::array<double, 4> slide_limit{};              // |slide| <= this [m]
   double slide_sign = 1.0;  // mouse to the right / stick up: +slide times this
   double angle_sign = 1.0;  // mouse forward swings the feet forward
@@ -38,11 +40,11 @@ struct HandOptions {
 };
 
 // State of a gamepad's two sticks and shoulder buttons. Axes -1..1, right and up positive (GLFW and
-// Linux give up as negative: turn it round). Either axis of the left stick slides, the larger wins.
-// right_x does nothing.
+// Linux report up as negative: the caller inverts it). Either axis of the left stick slides; the
+// larger one applies. right_x has no effect.
 struct PadState {
   float left_x = 0, left_y = 0, right_x = 0, right_y = 0;
-  bool previous_rod = false, next_rod = false;  // shoulder buttons, as held
+  bool previous_rod = false, next_rod = false;  // shoulder buttons, pressed or not
 };
 
 class Hand final : public InputSource {
@@ -50,21 +52,21 @@ class Hand final : public InputSource {
   explicit Hand(const HandOptions& options);
 
   void mouse_moved(double right_px, double forward_px);
-  void choose(int line);  // 0..3, own goal outwards; others, and those it has not, are ignored
-  void cycle(int steps);  // wheel: +1 outwards among those it has, wraps at neither end
+  void choose(int line);  // 0..3 from the own goal outwards; ignores others and those not played
+  void cycle(int steps);  // wheel: +1 is the next one outwards; does not wrap at either end
   void key_axis(double slide, double spin);  // held keys, each -1, 0, 1
-  // Keys that were pressed and let go between two polls, how often, with their sign: each moves the
-  // rod by kTapSlide; any spin swings the feet to kSwing for one poll.
+  // Signed counts of keys that were pressed and released between two polls. Each slide tap moves
+  // the rod by kTapSlide. Any spin tap swings the feet to kSwing for one poll.
   void key_taps(int slide, int spin);
   void pad(const PadState& state);
-  // Where the rods really are (from the snapshot; call it with each): taken over once, until this
-  // hand first moves the rod, so that nothing jumps. Later calls are ignored: the rod then follows
-  // the hand, not the hand the rod. release() makes the next ones count again.
+  // Sets the true pose of a rod (call it with each snapshot). It applies only until this hand first
+  // moves the rod, so that nothing jumps; then the rod follows the hand, and later calls are
+  // ignored. release() makes calls apply again.
   void adopt(int rod, double slide, double angle);
   void release();
-  // Something else has moved a rod of this hand: it goes on from there.
+  // Something else has moved a rod of this hand: continue from this pose.
   void place(int rod, double slide, double angle);
-  // Keys or a stick hold a swing, or the active rod turns as a strike does.
+  // Keys or a stick hold a swing, or the active rod turns as fast as in a shot.
   bool strikes() const;
 
   int active_line() const;  // 0..3
@@ -77,11 +79,11 @@ class Hand final : public InputSource {
 
  private:
   struct Line {
-    double slide = 0, angle = 0;            // where the hand wants it
+    double slide = 0, angle = 0;            // target pose
     double sent_slide = 0, sent_angle = 0;  // at the last poll
-    bool moved = false;                     // by this hand: adopt() is over
-    bool swinging = false;  // keys or the stick hold the angle, or it returns from that
-    double rest_angle = 0;  // the turn at which the men hang straight down
+    bool moved = false;                     // this hand has moved it: adopt() is ignored
+    bool swinging = false;  // keys or the stick control the angle, or it returns from that
+    double rest_angle = 0;  // angle at which the men hang straight down
     RateFilter rate;
   };
   void slide_by(Line& line, double metres, double limit);

@@ -1,10 +1,10 @@
-// Rates from increments that come in bursts.
+// Estimates rates from increments that arrive in bursts.
 //
-// A PS/2 mouse reports every 5 ms, a frame leaves every 1 or 4 ms: most frames bring no counts, one
-// brings those of 5 ms. So a rate is taken between increments, not between frames:
+// A PS/2 mouse reports every 5 ms, and a frame is sent every 1 or 4 ms: most frames have no counts,
+// one has those of 5 ms. So the filter takes rates between increments, not between frames:
 //   instant = increment / (time since the last increment),   rate += kGain (instant - rate)
-// and stands until the next one, or falls to zero when none has come for hold_us. Measured on a
-// steady motion through 4 ms frames: within 23 % of the truth, exact through 1 ms ones
+// The rate holds until the next increment, or becomes zero after hold_us without one. Measured on a
+// steady motion through 4 ms frames: within 23 % of the true rate; exact through 1 ms frames
 // (cabinet/tests/rod_tracker_test.cpp).
 #pragma once
 
@@ -14,13 +14,13 @@ namespace cabinet {
 
 class RateFilter {
  public:
-  // report_us: what one report spans, for the first increment after a rest.
+  // report_us: time spanned by one report, used for the first increment after rest.
   RateFilter(std::int64_t report_us, std::int64_t hold_us)
       : report_us_(report_us), hold_us_(hold_us) {}
 
-  // time_us is of the device's own clock and does not fall.
+  // time_us: on the device's own clock, non-decreasing.
   void update(double d_slide, double d_angle, std::int64_t time_us);
-  void rest();  // rates are zero, the next increment is the first
+  void rest();  // sets rates to zero; the next increment counts as the first
 
   double slide_rate() const { return slide_rate_; }  // [m/s]
   double angle_rate() const { return angle_rate_; }  // [rad/s]

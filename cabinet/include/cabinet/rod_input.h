@@ -1,4 +1,4 @@
-// Where rods come from: every device, however different, ends as the latest RodInput of each rod.
+// Input of the rods: every device delivers the latest RodInput of each rod.
 #pragma once
 
 #include <array>
@@ -11,9 +11,9 @@ namespace cabinet {
 inline constexpr int kRods = 8;
 
 enum class RodStatus : std::uint8_t {
-  absent,  // nobody drives this rod
-  live,    // fresh
-  held,    // its device fell silent or was unplugged: the last position stands, rates are zero
+  absent,  // no source drives this rod
+  live,    // current
+  held,    // its device is silent or unplugged: keeps the last position, rates are zero
 };
 
 struct RodInput {
@@ -21,35 +21,36 @@ struct RodInput {
   double angle = 0.0;        // about the rod [rad], unbounded
   double slide_rate = 0.0;   // [m/s]
   double angle_rate = 0.0;   // [rad/s]
-  std::int64_t time_us = 0;  // when it was received, on the clock handed to poll()
+  std::int64_t time_us = 0;  // time of reception, on the clock passed to poll()
   RodStatus status = RodStatus::absent;
-  // Of slide and angle, what no report has said yet: the motion since the last one, by its rate.
+  // Predicted part of slide and angle: the motion since the last report, extrapolated from its
+  // rate.
   double slide_ahead = 0.0;  // [m]
   double angle_ahead = 0.0;  // [rad]
-  bool angle_known = false;  // from feet straight down; else from wherever the rod was
+  bool angle_known = false;  // relative to feet straight down; else to the initial angle
 };
 using RodInputs = std::array<RodInput, kRods>;
 
-// What a rod's sensor has counted since its device was first heard, before calibration. Of what
-// came while the device was away, and of what no rod can do, nothing.
+// Raw counts of a rod's sensor since the first report of its device. Excludes counts from while the
+// device was disconnected, and increments that are impossible for a rod.
 struct RodCount {
   std::int64_t slide = 0, spin = 0;  // [counts]
 };
 using RodCounts = std::array<RodCount, kRods>;
 
-// Counted, never asserted: bytes from a device are a stranger's.
+// Errors in device data are counted, never asserted: the bytes are untrusted.
 struct SourceCounters {
   std::uint64_t frames = 0;       // accepted
   std::uint64_t bad = 0;          // wrong length, CRC, version or range
   std::uint64_t lost = 0;         // gaps in the sequence
   std::uint64_t stale = 0;        // older than one already accepted
   std::uint64_t reopened = 0;     // times the device came back
-  std::uint64_t overflows = 0;    // reports in which a sensor said it had moved too far to tell
-  std::uint64_t impossible = 0;   // increments of a rod that no rod can make: dropped
+  std::uint64_t overflows = 0;    // reports with the sensor's overflow flag set
+  std::uint64_t impossible = 0;   // increments too fast for a rod: dropped
   std::uint64_t line_errors = 0;  // parity and framing errors between sensor and micro-controller
-  // From the arrival at this machine to the poll that takes it in, where that is known [us].
+  // From arrival at this machine to the poll that reads it, where known [us].
   std::uint64_t stamped = 0, latency_sum_us = 0, latency_max_us = 0;
-  // Passes of each rod's index mark more than a quarter turn from where the counts have it.
+  // Passes of each rod's index mark more than a quarter turn from the angle by the counts.
   std::array<std::uint64_t, kRods> index_disagreements{};
 
   void add_latency(std::int64_t us) {
@@ -81,7 +82,7 @@ struct SourceCounters {
 class InputSource {
  public:
   virtual ~InputSource() = default;
-  // Takes in all that has arrived. Never blocks. now_us: a monotonic clock [us], handed in.
+  // Reads all input that has arrived. Never blocks. now_us: time on a monotonic clock [us].
   virtual void poll(std::int64_t now_us) = 0;
   virtual const RodInputs& rods() const = 0;
   virtual const SourceCounters& counters() const = 0;

@@ -1,12 +1,12 @@
-// Who drives each rod: for every rod an ordered list of sources, the first that has the rod drives
-// it.
+// Selects the driver of each rod: every rod has an ordered list of sources, and the first one that
+// owns the rod drives it.
 //
-// Ownership, not activity: a source has a rod while its status is live or held. So an idle or
-// unplugged person's rod holds and is never given to the next in the list behind the person's back;
-// only `absent` (never there, or given up) or a new assign() passes a rod on.
+// Ownership, not activity, decides: a source owns a rod while its status is live or held. So the
+// rod of an idle or unplugged person stays held and does not pass to the next source in the list.
+// Only `absent` (never connected, or given up) or a new assign() passes a rod on.
 //
-// Nothing jumps when the driver changes: the difference between where the rod is and where the new
-// driver says it is becomes an offset on top of that driver. Rods start at slide 0 and angle 0.
+// Nothing jumps when the driver changes: the difference between the rod's pose and the new driver's
+// pose becomes an offset added to that driver. Rods start at slide 0 and angle 0.
 #pragma once
 
 #include <array>
@@ -19,30 +19,32 @@
 
 namespace cabinet {
 
-// What a source's positions mean, and so what becomes of the offset.
+// The reference of a source's positions, which determines how its offset changes.
 enum class Origin : std::uint8_t {
-  relative,  // a handle with sensors: only its motion means anything; the offset stays, but that of
-             // an angle which an index mark has made known
-  absolute,  // knows the table (computer player, client that sees snapshots): the offset fades
+  // A handle with sensors: only motion is meaningful; the offset stays, except that of an angle
+  // which an index mark has made known.
+  relative,
+  absolute,  // knows the table (computer player, client with snapshots): the offset fades
 };
 
 class SourceMux final : public InputSource {
  public:
   static constexpr int kNobody = -1;
 
-  // slide_limit: |slide| <= this on every rod [m]. A driver that pushes beyond it loses its offset.
+  // slide_limit: |slide| <= this on every rod [m]. A driver that goes beyond it loses its offset.
   explicit SourceMux(const std::array<double, kRods>& slide_limit);
 
-  // Its index, from 0. The source must outlive the mux. No source is ever removed: leave it out of
-  // assign() instead.
+  // Returns the index of the source, from 0. The source must outlive the mux. Sources are never
+  // removed: leave one out of assign() instead.
   int add(InputSource& source, Origin origin);
-  // The sources that may drive the rod, the most wanted first; indices that do not exist are
-  // ignored. Empty: nobody.
+  // The sources that may drive the rod, in descending priority. Ignores indices that do not exist.
+  // Empty: no source.
   void assign(int rod, std::span<const int> order);
-  // Says where the rod really is (a match was restored): output and driver continue from there.
+  // Sets the true pose of a rod (a match was restored): output and driver continue from there.
   void place(int rod, double slide, double angle);
 
-  // Polls every source once, then picks. While nobody drives a rod it stays, absent, at zero rates.
+  // Polls every source once, then selects the drivers. A rod without a driver is absent and stays
+  // in place with zero rates.
   void poll(std::int64_t now_us) override;
   const RodInputs& rods() const override { return rods_; }
   const SourceCounters& counters() const override { return counters_; }  // sums
@@ -60,7 +62,7 @@ class SourceMux final : public InputSource {
     std::vector<int> order;
     int driver = kNobody;
     double slide_offset = 0;
-    double angle_offset = 0;  // fades to whole turns
+    double angle_offset = 0;  // fades to a multiple of 2 pi
   };
   int pick(int rod) const;
   void take_over(int rod, int driver);

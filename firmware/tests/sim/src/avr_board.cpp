@@ -19,9 +19,8 @@ namespace firmware_sim {
 
 namespace {
 
-constexpr std::uint8_t kPaint =
-    0xC5;  // RAM before the firmware runs, to see how deep the stack went
-constexpr std::uint32_t kDataSpace = 0x800000;  // where avr-gcc's symbols place RAM
+constexpr std::uint8_t kPaint = 0xC5;  // fills RAM before the start, to measure the stack depth
+constexpr std::uint32_t kDataSpace = 0x800000;  // address of RAM in avr-gcc's symbols
 
 void log_errors(avr_t*, const int level, const char* format, std::va_list arguments) {
   if (level <= LOG_ERROR) std::vfprintf(stderr, format, arguments);
@@ -55,17 +54,17 @@ struct Elf {
   }
 };
 
-// simavr hands these callbacks nothing but its avr_t.
+// simavr passes only its avr_t to these callbacks.
 thread_local std::unordered_map<avr_t*, AvrBoard*> g_boards;
 
 // The same in both chips.
 constexpr std::uint16_t kEepromControl = 0x3F, kFlashControl = 0x57;
-constexpr std::uint8_t kEepromWrite = 2, kEepromMasterWrite = 4;  // of the first
-constexpr std::uint8_t kReadSignature = 0x21;                     // of the second
+constexpr std::uint8_t kEepromWrite = 2, kEepromMasterWrite = 4;  // bits of the first
+constexpr std::uint8_t kReadSignature = 0x21;                     // value of the second
 constexpr std::uint64_t kEepromUs = 3400;
-constexpr std::uint8_t kReceived = 0x80;  // of the serial line's status
+constexpr std::uint8_t kReceived = 0x80;  // in the status of the serial line
 constexpr std::uint16_t kWatchdogControl = 0x60;
-constexpr std::uint8_t kWatchdogInterrupts = 0x40;  // of that
+constexpr std::uint8_t kWatchdogInterrupts = 0x40;  // in kWatchdogControl
 constexpr std::uint8_t kWatchdogVector = 12;
 constexpr std::uint64_t kWatchdogServedUs = 10'000;
 constexpr std::array<std::uint8_t, 2> kJumpToItself{0xFF, 0xCF};
@@ -91,7 +90,7 @@ AvrBoard::AvrBoard(const std::string& elf_path, const char* mcu, char clock_port
   avr_load_firmware(avr_, &elf.firmware);
   avr_->frequency = kHz;
   avr_->sleep = sleep;
-  // Otherwise simavr looks at its timers after every instruction.
+  // Otherwise simavr checks its timers after every instruction.
   avr_->run_cycle_limit = kHz / 1000;
   g_boards[avr_] = this;
   chip_reset_ = avr_->reset;
@@ -160,7 +159,7 @@ void AvrBoard::pull_up(avr_ioport_t* port, std::uint8_t mask) {
 }
 
 void AvrBoard::set_line(avr_ioport_t* port, int bit, bool high) {
-  // simavr falls back on pull_value whenever the firmware writes the direction of any pin.
+  // simavr uses pull_value whenever the firmware writes the direction of any pin.
   const unsigned mask = 1u << bit;
   const unsigned value = port->external.pull_value;
   port->external.pull_value = static_cast<unsigned char>(high ? value | mask : value & ~mask);
@@ -197,7 +196,7 @@ void AvrBoard::after_reset() {
     stuck_at_.reset();
   }
   eeprom_busy_ = false;
-  // simavr clears what is read from pins too.
+  // simavr also clears the values read from pins.
   for (avr_io_t* io = avr_->io_port; io != nullptr; io = io->next) {
     if (std::strcmp(io->kind, "port") != 0) continue;
     const auto* port = reinterpret_cast<const avr_ioport_t*>(io);
@@ -219,7 +218,7 @@ std::vector<std::uint8_t> AvrBoard::eeprom() const {
   return bytes;
 }
 
-// simavr writes a byte at once; this comes after it, and shows the chip busy for as long as it is.
+// simavr writes a byte at once. This runs after it and keeps the chip busy for the real write time.
 void AvrBoard::on_eeprom(avr_t* avr, avr_io_addr_t, std::uint8_t value, void* parameter) {
   auto& board = *static_cast<AvrBoard*>(parameter);
   if (board.eeprom_busy_) {
@@ -238,8 +237,8 @@ avr_cycle_count_t AvrBoard::on_eeprom_written(avr_t* avr, avr_cycle_count_t, voi
   return 0;
 }
 
-// An interrupt of the watchdog that is not served before its next time-out is a reset; simavr would
-// interrupt for ever.
+// If a watchdog interrupt is not served before the next time-out, the chip resets; simavr would
+// repeat the interrupt forever.
 void AvrBoard::on_watchdog_interrupt(avr_irq_t*, std::uint32_t value, void* parameter) {
   if (value == 0) return;
   avr_cycle_timer_register(static_cast<AvrBoard*>(parameter)->avr_,
@@ -251,8 +250,8 @@ avr_cycle_count_t AvrBoard::on_watchdog_not_served(avr_t* avr, avr_cycle_count_t
   return 0;
 }
 
-// What is in the receiver is there to be read; simavr would show each byte for as long as it takes
-// on the line after the one before was read.
+// Received bytes can be read at once; simavr would delay each by its time on the line after the
+// previous read.
 std::uint8_t AvrBoard::on_serial_status_read(avr_t* avr, avr_io_addr_t address, void* parameter) {
   auto& board = *static_cast<AvrBoard*>(parameter);
   (void)board.chip_reads_serial_status_(avr, address, board.uart_);
@@ -262,8 +261,7 @@ std::uint8_t AvrBoard::on_serial_status_read(avr_t* avr, avr_io_addr_t address, 
   return status;
 }
 
-// For the next load from flash, which must come within three cycles, the signature row is in its
-// place.
+// The signature row replaces flash for the next load from it, which must come within three cycles.
 void AvrBoard::on_flash_control(avr_t* avr, avr_io_addr_t, std::uint8_t value, void* parameter) {
   auto& board = *static_cast<AvrBoard*>(parameter);
   if (value != kReadSignature || board.flash_behind_signature_) return;

@@ -1,6 +1,6 @@
-// simavr behind a C++ face: one micro-controller with its firmware, two ports as open-drain buses,
-// and what simavr lacks: an EEPROM that takes its time, the signature row, pins that stay as they
-// are through a reset.
+// A C++ interface to simavr: one micro-controller with its firmware, two ports as open-drain buses,
+// and features that simavr lacks: EEPROM write time, the signature row, pins that keep their levels
+// through a reset.
 #pragma once
 
 #include <simavr/sim_avr.h>
@@ -33,13 +33,13 @@ class AvrBoard {
   std::uint64_t cycle() const { return avr_->cycle; }
   void run_until(std::uint64_t cycle);
 
-  // What the outside lets be high, and what the firmware pulls low.
+  // Lines that external devices leave high, and lines that the firmware pulls low.
   void set_clock(int bit, bool high) { set_line(clock_, bit, high); }
   void set_data(int bit, bool high) { set_line(data_, bit, high); }
   std::uint8_t clock_pulled() const { return pulled(clock_); }
   std::uint8_t data_pulled() const { return pulled(data_); }
 
-  // Any port, and lines of it that are pulled up outside.
+  // Any port, with the lines that are pulled up externally.
   avr_ioport_t* find_port(char name);
   void pull_up(avr_ioport_t* port, std::uint8_t mask);
   void set_line(avr_ioport_t* port, int bit, bool high);
@@ -53,15 +53,15 @@ class AvrBoard {
   void set_eeprom(const std::vector<std::uint8_t>& bytes);
   std::vector<std::uint8_t> eeprom() const;
   std::uint64_t eeprom_writes() const { return eeprom_writes_; }
-  bool eeprom_misused() const { return eeprom_misused_; }  // spoken to while it was writing
+  bool eeprom_misused() const { return eeprom_misused_; }  // accessed during a write
 
   std::array<std::uint8_t, 32> signature_row{};
 
-  // ---- resets by the watchdog
-  // A jump to itself where the program is; the reset mends it.
+  // ---- watchdog resets
+  // Puts a jump to itself at the program counter; the reset restores the code.
   void stick(bool interrupts_off);
   int resets() const { return resets_; }
-  // simavr forgets all that was to be done at a time: called after each reset.
+  // simavr drops all pending timers at a reset: called after each one.
   std::function<void()> on_reset;
 
   std::uint64_t slept_cycles() const { return slept_; }

@@ -23,7 +23,7 @@ std::string firmware_elf(Board board) {
 
 namespace {
 
-// Of firmware/hal/board.h, and where the timer of the LED has its registers.
+// Pins of firmware/hal/board.h, and register addresses of the LED's timer.
 struct BoardPins {
   const char* mcu;
   char clock_port, data_port;
@@ -35,7 +35,7 @@ struct BoardPins {
 };
 constexpr BoardPins kMega32u4{"atmega32u4", 'B', 'D', 'F', 1, 0, 'C', 6, 0xC0, 0xCF};
 constexpr BoardPins kMega2560{"atmega2560", 'A', 'C', 'D', 0, 1, 'D', 2, 0x44, 0x47};
-constexpr std::uint8_t kLedConnected = 0x80;  // of led_control
+constexpr std::uint8_t kLedConnected = 0x80;  // in led_control
 constexpr std::uint64_t kSerialByteUs = 11;   // simavr's byte has 11 bits
 
 const BoardPins& pins_of(Board board) {
@@ -199,7 +199,7 @@ struct CabinetSim::Impl {
 
   static avr_cycle_count_t on_send_serial(avr_t* avr, avr_cycle_count_t, void* parameter) {
     auto& cabinet = *static_cast<Impl*>(parameter);
-    // The chip holds two bytes besides the one that is coming in.
+    // The chip buffers two bytes besides the one being received.
     const auto& waiting = cabinet.board.uart('0')->input;
     if ((waiting.write + uart_fifo_fifo_size - waiting.read) % uart_fifo_fifo_size > 2) {
       ++cabinet.overruns;
@@ -254,8 +254,9 @@ CabinetSim::CabinetSim(Board board, const CabinetOptions& options)
 CabinetSim::~CabinetSim() = default;
 
 void CabinetSim::advance_us(std::uint64_t us) {
-  for (Impl::Socket& socket : impl_->sockets) impl_->show(socket);  // plugged or unplugged since
-  Impl::on_motors(nullptr, 0, impl_.get());                         // held or let go since
+  // May have been plugged or unplugged.
+  for (Impl::Socket& socket : impl_->sockets) impl_->show(socket);
+  Impl::on_motors(nullptr, 0, impl_.get());  // may have been held or released
   impl_->board.run_until((now_us() + us) * AvrBoard::kCyclesPerUs);
 }
 
@@ -386,7 +387,7 @@ std::uint32_t CabinetSim::serial_baud() const {
   const avr_uart_t* uart = impl_->board.uart('0');
   if (uart == nullptr || uart->cycles_per_byte == 0) return 0;
   constexpr std::uint64_t kBitsCounted =
-      11;  // simavr's: start, 8 data, parity whether used or not, stop
+      11;  // simavr's count: start, 8 data, parity whether used or not, stop
   return static_cast<std::uint32_t>(AvrBoard::kHz * kBitsCounted / uart->cycles_per_byte);
 }
 

@@ -4,7 +4,7 @@ namespace firmware_sim {
 
 namespace {
 
-// Registers of the data sheet, and bits of them.
+// Registers and bits of the data sheet.
 constexpr std::uint16_t kUdcon = 0xE0, kUeintx = 0xE8, kUenum = 0xE9, kUeconx = 0xEB,
                         kUecfg0x = 0xEC, kUecfg1x = 0xED, kUedatx = 0xF1;
 constexpr std::uint8_t kDetach = 1;                                   // UDCON

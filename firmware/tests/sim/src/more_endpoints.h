@@ -1,5 +1,5 @@
-// Endpoints 5 and 6 of the ATmega32U4, which simavr has not, and the moment at which the firmware
-// leaves the bus, which it does not tell.
+// Endpoints 5 and 6 of the ATmega32U4, which simavr lacks, and a notification when the firmware
+// detaches from the bus, which simavr does not give.
 #pragma once
 
 #include <simavr/sim_avr.h>
@@ -14,31 +14,31 @@
 
 namespace firmware_sim {
 
-// Interrupt endpoints to the host, of one bank.
+// Interrupt IN endpoints with one bank.
 class MoreEndpoints {
  public:
   static constexpr int kFirst = 5, kCount = 2;
 
-  // Stands before simavr's own registers from now on.
+  // Intercepts simavr's own registers from now on.
   explicit MoreEndpoints(avr_t* avr);
   MoreEndpoints(const MoreEndpoints&) = delete;
   MoreEndpoints& operator=(const MoreEndpoints&) = delete;
 
   std::function<void()> on_detach;
-  void reset();  // of the bus, or the chip
-  // Of the host, from an endpoint that is one of these.
+  void reset();  // of the bus or the chip
+  // A host's read from one of these endpoints.
   UsbBus::Answer read(int endpoint, std::vector<std::uint8_t>& out);
-  // What the data sheet forbids.
+  // Violations of the data sheet.
   const std::vector<std::string>& violations() const { return violations_; }
 
  private:
   struct Endpoint {
     bool enabled = false, allocated = false, stalled = false;
-    bool free = false;  // the bank is the program's
+    bool free = false;  // the program owns the bank
     std::size_t size = 0;
     std::vector<std::uint8_t> bank;
   };
-  // simavr's, of one register.
+  // simavr's handlers of one register.
   struct Chip {
     avr_io_write_t write = nullptr;
     void* write_parameter = nullptr;

@@ -4,7 +4,7 @@ namespace firmware_sim {
 
 namespace {
 
-// Fast mode, at least [ns].
+// Min times of fast mode [ns].
 constexpr std::uint64_t kHigh = 600, kLow = 1300, kDataSetup = 100, kStartHold = 600,
                         kStartSetup = 600, kStopSetup = 600, kBusFree = 1300;
 
@@ -18,7 +18,7 @@ void MotorBus::drive(std::uint64_t now_ns, bool clock_low, bool data_low) {
   if (stretched_until_ns_ && *stretched_until_ns_ <= now_ns) stretched_until_ns_.reset();
   master_clock_low_ = clock_low;
   master_data_low_ = data_low;
-  // What a part answers to an edge may change the wires again.
+  // A device's response to an edge may change the wires again.
   while (take_step(now_ns, clock_low, data_low)) {
   }
 }
@@ -41,7 +41,7 @@ bool MotorBus::take_step(std::uint64_t now_ns, bool clock_low, bool data_low) {
 }
 
 void MotorBus::on_start(std::uint64_t now_ns) {
-  if (!master_data_low_) return;  // a part that holds the line speaks to nobody
+  if (!master_data_low_) return;  // a device that holds the line is not being addressed
   require(now_ns - rose_ns_ >= kStartSetup, "START too soon after the clock rose", now_ns);
   require(stop_ns_ == 0 || now_ns - stop_ns_ >= kBusFree, "START too soon after STOP", now_ns);
   start_ns_ = now_ns;
@@ -67,7 +67,7 @@ void MotorBus::on_rise(std::uint64_t now_ns) {
   ++clocks_;
   if (!active_ || !begun_) return;
   if (bit_ < 8 && !sends_) shift_ = static_cast<std::uint8_t>(shift_ << 1 | (data_ ? 1 : 0));
-  if (bit_ == 8 && sends_ && data_) part_ = Part::none;  // not acknowledged: enough
+  if (bit_ == 8 && sends_ && data_) part_ = Part::none;  // not acknowledged: stop sending
 }
 
 void MotorBus::on_fall(std::uint64_t now_ns) {
@@ -83,7 +83,7 @@ void MotorBus::on_fall(std::uint64_t now_ns) {
   }
   data_low_ = false;
   if (++bit_ == 8) {
-    if (sends_) return;  // the master acknowledges
+    if (sends_) return;  // acknowledged by the controller
     data_low_ = take_byte(now_ns);
     if (data_low_ && stretch_us > 0) stretched_until_ns_ = now_ns + 1000ull * stretch_us;
     return;
@@ -95,7 +95,7 @@ void MotorBus::on_fall(std::uint64_t now_ns) {
   if (sends_ && part_ == Part::expander && bit_ < 8) data_low_ = (shift_ >> (7 - bit_) & 1) == 0;
 }
 
-// True: acknowledged.
+// Returns true for acknowledge.
 bool MotorBus::take_byte(std::uint64_t now_ns) {
   if (!addressed_) {
     addressed_ = true;

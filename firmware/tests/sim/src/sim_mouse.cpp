@@ -9,8 +9,9 @@ namespace firmware_sim {
 namespace {
 
 constexpr std::uint64_t kUs = 1000, kMs = 1'000'000;
-constexpr std::uint64_t kLook = 50 * kUs;          // an idle mouse looks at the wires so often
-constexpr std::uint64_t kRequestDelay = 60 * kUs;  // from the clock let go to the first pulse
+constexpr std::uint64_t kLook = 50 * kUs;  // period at which an idle mouse checks the wires
+// From the release of the clock to the first pulse.
+constexpr std::uint64_t kRequestDelay = 60 * kUs;
 constexpr int kStopBit = 10;
 
 bool odd_ones(std::uint8_t value) {
@@ -176,7 +177,7 @@ void SimMouse::step(std::uint64_t now_ns, bool host_clock_low, bool host_data_lo
       after(now_ns, period_fraction(1), Phase::send_data);
       break;
 
-    case Phase::send_glitch:  // data stays as it is: the bit is seen once more
+    case Phase::send_glitch:  // data unchanged: the bit is seen once more
       clock_low_ = true;
       after(now_ns, fault_ns_, Phase::send_rise);
       break;
@@ -291,13 +292,13 @@ void SimMouse::end_command_byte(std::uint64_t now_ns) {
 }
 
 void SimMouse::answer(std::vector<std::uint8_t> bytes, std::uint64_t now_ns) {
-  // By the book, movement counts as reported once it has been sent.
+  // According to the standard, movement counts as reported once it has been sent.
   const bool forgets = options_.forgets_cut_packets && (cut_after_byte_ || byte_at_ > 0);
   if (!outgoing_.empty() && outgoing_.front().movement && !forgets) {
     pending_slide_ += outgoing_.front().slide;
     pending_spin_ += outgoing_.front().spin;
   }
-  outgoing_.clear();  // a command discards what was waiting to be sent
+  outgoing_.clear();  // a command discards pending output
   outgoing_.push_back({std::move(bytes)});
   byte_at_ = 0;
   after(now_ns, options_.reply_us * kUs, Phase::idle);
@@ -315,7 +316,7 @@ void SimMouse::obey(std::uint8_t value, std::uint64_t now_ns) {
     return answer({0xFA}, now_ns);
   }
   answer({0xFA}, now_ns);
-  // All but EB and FE also forget the movement not yet reported.
+  // All except EB and FE also discard movement not yet reported.
   if (value != 0xEB && value != 0xFE) pending_slide_ = pending_spin_ = 0;
   switch (value) {
     case 0xFF:

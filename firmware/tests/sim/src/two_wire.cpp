@@ -13,8 +13,8 @@ namespace {
 
 constexpr std::uint8_t kFlag = 0x80, kAcknowledge = 0x40, kStart = 0x20, kStop = 0x10, kOn = 0x04;
 constexpr std::uint8_t kStarted = 0x08, kStartedAgain = 0x10, kLost = 0x38;
-constexpr std::uint64_t kHold = 5;       // [cycles] of the data behind the clock's fall
-constexpr std::uint64_t kLookAgain = 8;  // ... at a clock that a part holds
+constexpr std::uint64_t kHold = 5;       // [cycles] data hold time after the clock's falling edge
+constexpr std::uint64_t kLookAgain = 8;  // ... retry period while a device holds the clock
 
 }  // namespace
 
@@ -121,7 +121,7 @@ void TwoWire::done(std::uint8_t status) {
 
 std::uint64_t TwoWire::step_start() {
   switch (phase_) {
-    case 0:  // again: the clock is this one's
+    case 0:  // repeated START: this side owns the clock
       if (owns_bus_) drive(true, false);
       phase_ = 1;
       return half();
@@ -142,9 +142,9 @@ std::uint64_t TwoWire::step_start() {
   }
 }
 
-// Between the phases: data, the clock's rise, its fall.
+// Phases: data, rising clock edge, falling clock edge.
 std::uint64_t TwoWire::step_byte() {
-  const bool mine = (bit_ < 8) == sends_;  // of this bit, who speaks
+  const bool mine = (bit_ < 8) == sends_;  // this side drives this bit
   switch (phase_) {
     case 0: {
       const bool high = bit_ < 8 ? (shift_ & 0x80) != 0 : !acknowledges_;

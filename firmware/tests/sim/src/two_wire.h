@@ -1,5 +1,5 @@
-// The two-wire interface of an ATmega2560 as a master on wires (data sheet, chapter 24): simavr's
-// own speaks in messages, at no rate, and knows no part that holds a line.
+// The two-wire interface of an ATmega2560 as a controller on wires (data sheet, chapter 24).
+// simavr's own version works on messages, without a bit rate, and has no devices that hold a line.
 #pragma once
 
 #include <simavr/sim_avr.h>
@@ -16,16 +16,16 @@ namespace firmware_sim {
 class TwoWire {
  public:
   struct Wires {
-    std::function<void()> changed;      // what this pulls low
-    std::function<bool()> clock, data;  // as they are
+    std::function<void()> changed;      // called when the lines pulled low change
+    std::function<bool()> clock, data;  // levels of the wires
   };
-  // Takes the place of simavr's. False from present(): the chip has none.
+  // Replaces simavr's version. present() is false if the chip has none.
   TwoWire(avr_t* avr, Wires wires);
   TwoWire(const TwoWire&) = delete;
   TwoWire& operator=(const TwoWire&) = delete;
 
   bool present() const { return twi_ != nullptr; }
-  void reset();  // of the chip, which forgets what was to be done at a time
+  void reset();  // of the chip, which drops pending timers
   bool clock_low() const { return clock_low_; }
   bool data_low() const { return data_low_; }
 
@@ -36,13 +36,13 @@ class TwoWire {
   static avr_cycle_count_t on_time(avr_t* avr, avr_cycle_count_t when, void* parameter);
 
   std::uint8_t& control() const;
-  std::uint64_t half() const;  // of a clock's period [cycles]
+  std::uint64_t half() const;  // half a clock period [cycles]
   void begin(std::uint8_t value);
   void begin_byte();
   void drive(bool clock_low, bool data_low);
   void release();
   void done(std::uint8_t status);
-  // Each moves on and returns the cycles until it wants to; 0: it is done.
+  // Each advances one step and returns the cycles until the next one; 0: finished.
   std::uint64_t step();
   std::uint64_t step_start();
   std::uint64_t step_byte();
@@ -57,7 +57,7 @@ class TwoWire {
   int phase_ = 0;
   bool owns_bus_ = false;
   bool addressed_ = false, reading_ = false;   // after START
-  bool sends_ = false, acknowledges_ = false;  // the byte under way
+  bool sends_ = false, acknowledges_ = false;  // of the current byte
   int bit_ = 0;
   std::uint8_t shift_ = 0;
   bool acknowledged_ = false;

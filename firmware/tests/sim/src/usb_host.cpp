@@ -7,7 +7,7 @@ namespace firmware_sim {
 
 namespace {
 constexpr std::uint32_t kStageUs = 60;  // between the stages of a control transfer
-// simavr, unlike the chip, takes data over a setup packet that the firmware has not read yet.
+// Unlike the chip, simavr accepts data over a setup packet that the firmware has not read yet.
 constexpr std::uint32_t kSetupReadUs = 1000;
 constexpr std::uint32_t kResetUs = 10'000;
 constexpr std::size_t kControlBytes = 64;

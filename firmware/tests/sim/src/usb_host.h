@@ -1,5 +1,5 @@
-// A USB host's port: resets the device, enumerates it, then asks the endpoint of each of its HID
-// interfaces for a report every poll.
+// A USB host's port: resets the device, enumerates it, then polls the endpoint of each of its HID
+// interfaces for reports.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@
 
 namespace firmware_sim {
 
-// What the host can do on the bus; each returns false for NAK.
+// Bus operations of the host; each returns false for NAK.
 struct UsbBus {
   enum class Answer { ok, nak, stall };
   std::function<void()> reset;
@@ -30,24 +30,24 @@ class UsbHost {
 
   void attached(std::uint64_t now_us);
   void detached();
-  void unplug();  // for good
+  void unplug();  // permanently
   void reset_port();
-  // Does what is due; returns how long until it has to be called again [us].
+  // Handles what is due; returns the time until the next call [us].
   std::uint32_t run(std::uint64_t now_us);
 
   bool configured() const { return configured_; }
   int enumerations() const { return enumerations_; }
-  // Linux does not ask for what no program has opened.
+  // Linux does not poll an interface that no program has opened.
   void read_frames(bool on) { reads_frames_ = on; }
   std::vector<Report> take_reports() { return std::exchange(reports_, {}); }
   std::vector<PadReport> take_pad_reports() { return std::exchange(pad_reports_, {}); }
 
-  // A transfer of the test's own, begun between two reports. data: what the host sends, at most a
-  // packet.
+  // A transfer requested by the test, started between two reports. data: sent by the host, at most
+  // one packet.
   void request(const std::array<std::uint8_t, 8>& setup, std::vector<std::uint8_t> data);
   std::optional<CabinetSim::ControlResult> take_result() { return std::exchange(result_, {}); }
 
-  // An output report for the command endpoint: one a millisecond, after the input report.
+  // An output report for the command endpoint: one per millisecond, after the input report.
   void send(std::vector<std::uint8_t> bytes) { outgoing_.push_back(std::move(bytes)); }
   std::size_t unsent() const { return outgoing_.size(); }
   std::uint64_t last_sent_us() const { return last_sent_us_; }  // when the device took it
@@ -61,7 +61,7 @@ class UsbHost {
   enum class Stage { setup, data_in, data_out, status_in, status_out };
   struct Transfer {
     Setup setup;
-    std::vector<std::uint8_t> data;  // that the host sends
+    std::vector<std::uint8_t> data;  // sent by the host
     Done done;
     Stage stage = Stage::setup;
     CabinetSim::ControlResult result;

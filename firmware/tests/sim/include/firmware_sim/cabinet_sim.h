@@ -1,8 +1,8 @@
-// A cabinet without the wood: the firmware's own .elf runs in simavr, eight simulated mice and
-// eight haptic drivers are on its pins, and a simulated PC takes what it sends, and sends commands.
-// Time is virtual: nothing happens but in advance_us().
+// A simulated cabinet: the firmware's own .elf runs in simavr with eight simulated mice and eight
+// haptic drivers on its pins. A simulated PC receives its data and sends commands. Time is virtual
+// and advances only in advance_us().
 //
-// simavr is GPL-3: this library is for tests only and is linked into nothing that is shipped.
+// simavr is GPL-3: this library is for tests only and is not linked into anything shipped.
 #pragma once
 
 #include <array>
@@ -20,11 +20,11 @@ namespace firmware_sim {
 inline constexpr int kMice = 8;
 
 enum class Board {
-  mega32u4,  // USB: 64-byte HID reports, one a millisecond
+  mega32u4,  // USB: a 64-byte HID report every millisecond
   mega2560,  // UART0: COBS frames at 1 Mbaud, 250 a second
 };
 
-// The .elf that this build made for board.
+// The .elf of this build for a board.
 std::string firmware_elf(Board board);
 
 struct Report {
@@ -32,7 +32,7 @@ struct Report {
   std::array<std::uint8_t, 64> bytes{};
 };
 
-// Of an interface besides that of the frames.
+// A report of an interface other than that of the frames.
 struct PadReport {
   std::uint64_t time_us = 0;  // when the host took it
   int interface = 0;
@@ -41,8 +41,8 @@ struct PadReport {
 
 struct CabinetOptions {
   std::array<MouseOptions, kMice> mice{};
-  std::uint32_t host_poll_us = 1000;  // how often the USB host asks for a report
-  std::vector<std::uint8_t> eeprom;   // what it holds at power-on; empty: erased
+  std::uint32_t host_poll_us = 1000;  // period of the USB host's polls
+  std::vector<std::uint8_t> eeprom;   // content at power-on; empty: erased
   // mega32u4: ten bytes of the signature row.
   std::array<std::uint8_t, 10> unique_id{0x59, 0x36, 0x34, 0x32, 0x31,
                                          0x39, 0x0B, 0x1C, 0xA0, 0xFE};
@@ -50,59 +50,59 @@ struct CabinetOptions {
 
 class CabinetSim {
  public:
-  // Power-on of everything. Throws std::runtime_error when the .elf cannot be loaded.
+  // Powers everything on. Throws std::runtime_error if the .elf cannot be loaded.
   explicit CabinetSim(const std::string& elf, Board board, const CabinetOptions& options = {});
   explicit CabinetSim(Board board, const CabinetOptions& options = {});
   ~CabinetSim();
   CabinetSim(const CabinetSim&) = delete;
   CabinetSim& operator=(const CabinetSim&) = delete;
 
-  // Throws std::runtime_error when the firmware crashes.
+  // Throws std::runtime_error if the firmware crashes.
   void advance_us(std::uint64_t us);
   std::uint64_t now_us() const;
 
   SimMouse& mouse(int rod);
-  // All mice that are plugged in are enabled by the firmware.
+  // The firmware has enabled all connected mice.
   bool all_enabled() const;
 
-  // mega32u4: the reports taken since the last call.
+  // mega32u4: reports taken since the last call.
   std::vector<Report> take_reports();
-  // The same of all other interfaces.
+  // Reports of all other interfaces since the last call.
   std::vector<PadReport> take_pad_reports();
-  // mega2560: the bytes that left UART0 since the last call.
+  // mega2560: bytes sent by UART0 since the last call.
   std::vector<std::uint8_t> take_serial();
 
-  // Towards the board. mega32u4: an output report for the command endpoint; mega2560: bytes for
-  // UART0, one in 11 us.
+  // Sends to the board. mega32u4: an output report to the command endpoint. mega2560: bytes to
+  // UART0, one every 11 us.
   void send(std::span<const std::uint8_t> bytes);
   bool all_sent() const;
-  std::uint64_t last_sent_us() const;  // when the board had the last of it
-  // mega2560: bytes that found two before them not taken.
+  std::uint64_t last_sent_us() const;  // when the board had received all of it
+  // mega2560: bytes that arrived while two others were unread.
   int serial_overruns() const;
 
   MotorBus& motors();
-  bool motors_enabled() const;  // the line that enables the drivers
-  // A line that must be open drain was driven high.
+  bool motors_enabled() const;  // enable line of the drivers
+  // An open-drain line was driven high.
   bool drove_high() const;
-  std::uint8_t led() const;  // width of its pulses
+  std::uint8_t led() const;  // pulse width
 
   // ---- EEPROM and resets
   std::vector<std::uint8_t> eeprom() const;
   std::uint64_t eeprom_writes() const;
-  bool eeprom_misused() const;  // spoken to while it was writing
+  bool eeprom_misused() const;  // accessed during a write
   void stick_program(bool interrupts_off);
   int resets() const;
 
   // ---- the simulated USB host (mega32u4)
   bool usb_configured() const;
-  void usb_reset();  // and enumerates again
+  void usb_reset();  // the host then enumerates again
   void usb_unplug();
   int usb_enumerations() const;  // so far
-  // Off: no program has opened the interface of the frames, so the host does not ask for them.
+  // Off: no program has opened the frames' interface, so the host does not poll it.
   void usb_read_frames(bool on);
-  // What the data sheet forbids; only of the endpoints that simavr has not.
+  // Violations of the data sheet, only on the endpoints that simavr lacks.
   const std::vector<std::string>& usb_violations() const;
-  // As read during enumeration; empty before.
+  // As read at enumeration; empty before.
   const std::vector<std::uint8_t>& device_descriptor() const;
   const std::vector<std::uint8_t>& configuration_descriptor() const;
   const std::vector<std::uint8_t>& report_descriptor(int interface = 0) const;
@@ -112,17 +112,17 @@ class CabinetSim {
     bool stalled = false;
     std::vector<std::uint8_t> data;
   };
-  // One control transfer after enumeration, with at most a packet from the host; advances the time.
-  // Throws std::runtime_error when the device has not answered within 50 ms.
+  // Runs a control transfer after enumeration, with at most one packet from the host; advances the
+  // time. Throws std::runtime_error if the device does not answer within 50 ms.
   ControlResult control(const std::array<std::uint8_t, 8>& setup,
                         std::vector<std::uint8_t> data = {});
 
-  // ---- measured
-  std::uint32_t serial_baud() const;  // as UART0 is set up
-  double idle_share() const;  // of the CPU's cycles, slept, since the last call of reset_idle()
+  // ---- measurements
+  std::uint32_t serial_baud() const;  // as configured for UART0
+  double idle_share() const;          // fraction of CPU cycles asleep since the last reset_idle()
   void reset_idle();
   std::size_t static_ram_bytes() const;  // .data and .bss
-  std::size_t unused_ram_bytes() const;  // between them and the deepest stack so far
+  std::size_t unused_ram_bytes() const;  // between these and the deepest stack so far
 
  private:
   struct Impl;

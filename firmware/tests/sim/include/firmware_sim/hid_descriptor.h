@@ -1,5 +1,6 @@
-// A HID report descriptor as a host reads it (USB-IF, HID 1.11, 6.2.2), and what Linux makes of a
-// gamepad's usages (drivers/hid/hid-input.c). Written from these, not from the firmware.
+// Parses a HID report descriptor as a host does (USB-IF, HID 1.11, 6.2.2), and maps a gamepad's
+// usages as Linux does (drivers/hid/hid-input.c). Written from these sources, not from the
+// firmware.
 #pragma once
 
 #include <linux/input-event-codes.h>
@@ -14,10 +15,10 @@
 namespace hid {
 
 struct Field {
-  std::uint32_t application = 0;  // page << 16 | usage, as the next
+  std::uint32_t application = 0;  // page << 16 | usage; the next field too
   std::uint32_t usage = 0;
   unsigned report_id = 0;
-  std::size_t bit = 0;  // in the report, behind its number if it has one
+  std::size_t bit = 0;  // offset in the report, after its ID if it has one
   unsigned bits = 0;
   int minimum = 0, maximum = 0;
   bool constant = false, relative = false;
@@ -31,7 +32,7 @@ struct Description {
 
 constexpr std::uint32_t kGamePad = 0x10005, kButtonPage = 9, kDesktopPage = 1;
 
-// Throws std::runtime_error for what is no descriptor. One report number at most.
+// Throws std::runtime_error if it is not a valid descriptor. Supports at most one report ID.
 inline Description parse(std::span<const std::uint8_t> bytes) {
   Description out;
   std::uint32_t page = 0, size = 0, count = 0, first = 0, last = 0, application = 0;
@@ -126,8 +127,8 @@ struct LinuxCode {
   int type = 0, code = 0;
 };
 
-// Of hidinput_configure_usage(): absolute axes of the desktop page by the usage's last digit,
-// buttons of an application that is a gamepad from BTN_GAMEPAD on.
+// As hidinput_configure_usage(): absolute axes of the desktop page by the usage's last digit;
+// buttons of a gamepad application from BTN_GAMEPAD on.
 inline std::optional<LinuxCode> linux_code(const Field& field) {
   const std::uint32_t page = field.usage >> 16, usage = field.usage & 0xFFFF;
   if (field.constant || field.relative) return std::nullopt;

@@ -1,6 +1,6 @@
-// Eight haptic drivers of the DRV2605 class behind a multiplexer of the TCA9548A class, and an
-// expander whose byte can be read, as seen from the two wires of an I2C bus (UM10204, fast mode).
-// They know nothing of the master but the level of the wires; what a master may not do is noted.
+// Simulates eight haptic drivers of the DRV2605 class behind a multiplexer of the TCA9548A class,
+// and an expander with a readable byte, on the two wires of an I2C bus (UM10204, fast mode). They
+// only see the levels of the wires, and record violations by the controller.
 #pragma once
 
 #include <array>
@@ -15,17 +15,17 @@ class MotorBus {
  public:
   static constexpr std::uint8_t kMultiplexer = 0x70, kDriver = 0x5A, kExpander = 0x20;
 
-  // ---- what is attached
+  // ---- connected devices
   bool multiplexer = true;
-  std::uint8_t attached = 0xFF;          // drivers, a bit each
-  std::optional<std::uint8_t> expander;  // the byte that it sends
+  std::uint8_t attached = 0xFF;          // bit i: driver i
+  std::optional<std::uint8_t> expander;  // its input byte
 
   // ---- faults
-  void hold_data(int clocks) { held_clocks_ = clocks; }  // pulled low for so many clocks
+  void hold_data(int clocks) { held_clocks_ = clocks; }  // pulls data low for this many clocks
   bool holds_clock = false;                              // from the next clock on
   std::uint32_t stretch_us = 0;                          // before each acknowledge
 
-  // ---- what happened
+  // ---- events
   struct Write {
     std::uint64_t time_ns = 0;
     int rod = 0;
@@ -40,10 +40,11 @@ class MotorBus {
   const std::vector<std::string>& violations() const { return violations_; }
   std::uint64_t clocks() const { return clocks_; }
 
-  // ---- the wires
-  // What the master pulls low from now on.
+  // ---- wires
+  // Sets what the controller pulls low from now on.
   void drive(std::uint64_t now_ns, bool clock_low, bool data_low);
-  // When the parts let go of a stretched clock; call drive() then, with what the master pulls.
+  // When the devices release a stretched clock. Call drive() then, with what the controller pulls
+  // low.
   std::optional<std::uint64_t> next_event_ns() const { return stretched_until_ns_; }
   bool pulls_clock() const { return clock_held_ || stretched_until_ns_.has_value(); }
   bool pulls_data() const { return data_low_ || held_clocks_ > 0; }
@@ -61,7 +62,7 @@ class MotorBus {
   void require(bool good, const char* what, std::uint64_t now_ns);
 
   bool master_clock_low_ = false, master_data_low_ = false;
-  bool clock_ = true, data_ = true;  // the wires
+  bool clock_ = true, data_ = true;  // levels of the wires
   bool data_low_ = false, clock_held_ = false;
   int held_clocks_ = 0;
   std::optional<std::uint64_t> stretched_until_ns_;
