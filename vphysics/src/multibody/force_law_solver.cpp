@@ -14,7 +14,7 @@ constexpr int kMaxIterations = 100;
 constexpr int kHalvings = 40;
 // Factors of caution after a failed Newton step, in a cycle: a bold step may select the same wrong
 // pieces again, and a cautious step corrects few of them (docs/decisions/0015).
-constexpr double kDamping[8] = {1, 1, 16, 1, 256, 1, 4096, 1};
+constexpr double kNewtonDamping[8] = {1, 1, 16, 1, 256, 1, 4096, 1};
 
 }  // namespace
 
@@ -152,7 +152,7 @@ int ForceLawSolver::solve() {
     line_search();
     sweep();
     find_w();
-    off_ = update_active_pieces(kDamping[iteration % 8]);
+    off_ = update_active_pieces(kNewtonDamping[iteration % 8]);
   }
   return iteration;
 }
