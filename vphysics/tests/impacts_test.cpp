@@ -53,7 +53,8 @@ TEST(Impacts, LeaveNoTraceInWhatMeetsNothing) {
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       const SE3 T = alone.pose(expected[i]), there = beside.pose(bodies[i]);
       ASSERT_EQ(T.position(), there.position()) << "step " << k << ", body " << i;
-      ASSERT_EQ(T.rotation() * Vec3(1, 2, 3), there.rotation() * Vec3(1, 2, 3));
+      const Vec3 x{1, 2, 3};
+      ASSERT_EQ(T.rotation() * x, there.rotation() * x);
     }
   }
   EXPECT_GT(impacts, 500u);  // measured 597

@@ -25,7 +25,7 @@
 namespace vp::collide {
 namespace {
 
-constexpr int kMaxAdvances = 64;
+constexpr int kMaxSphereAdvances = 64;
 
 bool turns(const Vec3& w) {
   return w.x != 0.0 || w.y != 0.0 || w.z != 0.0;
@@ -70,7 +70,7 @@ double safe_step(double f, double df, double A) {
 template <class F>
 double first_time(const SweepQuery& q, double A, double target, const F& distance) {
   double t = 0.0;
-  for (int i = 0; i < kMaxAdvances; ++i) {
+  for (int i = 0; i < kMaxSphereAdvances; ++i) {
     const Local c = local_at(q, t);
     const SignedDistance d = distance(c.centre);
     const double f = d.distance - q.radius - target;

@@ -104,6 +104,7 @@ constexpr Kernels table() {
 constexpr vphysics_kernels::Table table() {
 #define VP_TABLE_ENTRY(T) kernels<T>(),
   return {{VP_FOR_EACH_SCALAR(VP_TABLE_ENTRY)}};
+#undef VP_TABLE_ENTRY
 }
 #endif
 
