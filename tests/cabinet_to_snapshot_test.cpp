@@ -91,8 +91,8 @@ constexpr std::uint8_t kHeld = static_cast<std::uint8_t>(cabinet::RodStatus::hel
 constexpr std::uint8_t kLive = static_cast<std::uint8_t>(cabinet::RodStatus::live);
 
 // Steps until every rod has the status; returns the number of ticks, or -1 after `most`.
-int ticks_until(CabinetRig& rig, std::uint8_t status, int most) {
-  for (int tick = 1; tick <= most; ++tick) {
+int ticks_until(CabinetRig& rig, std::uint8_t status, int max) {
+  for (int tick = 1; tick <= max; ++tick) {
     const wire::Snapshot& now = rig.step();
     if (std::all_of(now.rods.begin(), now.rods.end(),
                     [&](const wire::RodSnapshot& rod) { return rod.status == status; })) {

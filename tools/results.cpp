@@ -14,7 +14,7 @@ namespace {
 struct Options {
   std::string file, player, csv, format = "table";
   std::size_t newest = 0;
-  std::uint64_t least_matches = 1;
+  std::uint64_t min_matches = 1;
 };
 
 int fail(int code, const std::string& why) {
@@ -58,7 +58,7 @@ int questionnaire(const Options& options, const results::Store& store,
 
 int hall_of_fame(const Options& options, const std::vector<results::MatchResult>& matches) {
   std::vector<results::Standing> all = results::standings(matches);
-  std::erase_if(all, [&](const auto& s) { return s.matches < options.least_matches; });
+  std::erase_if(all, [&](const auto& s) { return s.matches < options.min_matches; });
   if (options.newest != 0 && all.size() > options.newest) all.resize(options.newest);
   if (options.format == "csv") return print(results::standings_csv(all));
   if (options.format == "json") return print(results::standings_json(all));
@@ -89,7 +89,7 @@ int main(int argc, char** argv) {
   CLI::App* fame =
       common(cli.add_subcommand("fame", "the hall of fame: players by their rating (Elo)"));
   fame->add_option("--top", options.newest, "only so many")->check(CLI::Range(1, 1'000'000));
-  fame->add_option("--least", options.least_matches, "only who has played so many matches (1)")
+  fame->add_option("--least", options.min_matches, "only who has played so many matches (1)")
       ->check(CLI::Range(1, 1'000'000));
   CLI::App* asked = common(cli.add_subcommand(
       "questionnaire",

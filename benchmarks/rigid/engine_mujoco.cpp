@@ -17,16 +17,16 @@ namespace rigid {
 namespace {
 
 // A Newton step factors a matrix of all velocities: with more bodies than this it takes minutes.
-constexpr std::size_t kMostBodies = 3000;
+constexpr std::size_t kMaxBodies = 3000;
 
 // Maximum nesting depth of bodies in the XML.
 constexpr int kDeepest = 90;
 
 // The model sets the maximum number of constraint rows, four for each contact. MuJoCo 2.2 counts
 // the bytes of their buffer in an int: 12 rows^2 + 24 rows velocities, plus small terms.
-int most_rows(double velocities) {
-  constexpr double kMostBytes = 2.0e9;
-  return static_cast<int>(std::sqrt(velocities * velocities + kMostBytes / 12.0) - velocities);
+int max_rows(double velocities) {
+  constexpr double kMaxBytes = 2.0e9;
+  return static_cast<int>(std::sqrt(velocities * velocities + kMaxBytes / 12.0) - velocities);
 }
 
 bool begins_at_rest(const scenes::Body& body) {
@@ -234,14 +234,14 @@ class Mujoco final : public Engine {
   // Creates its data again with this many rows, or with the maximum. Returns false if it has the
   // maximum already.
   bool make_room(int rows) {
-    const int most = most_rows(model_->nv);
-    if (data_ && model_->njmax == most) {
+    const int max = max_rows(model_->nv);
+    if (data_ && model_->njmax == max) {
       trouble_ =
-          fmt::format("its data holds {} rows of contacts at most beside so many bodies", most);
+          fmt::format("its data holds {} rows of contacts at most beside so many bodies", max);
       return false;
     }
     if (data_) mj_deleteData(data_);
-    model_->njmax = std::min(rows, most);
+    model_->njmax = std::min(rows, max);
     model_->nconmax = model_->njmax / 3;
     // The same formula as MuJoCo's own choice.
     const double all = model_->njmax + model_->nv;
@@ -260,7 +260,7 @@ class Mujoco final : public Engine {
 
 MadeEngine make_engine(const scenes::Scene& scene, double dt) {
   if (const std::string why = beyond_simple(scene); !why.empty()) return tl::make_unexpected(why);
-  if (scene.bodies.size() > kMostBodies) {
+  if (scene.bodies.size() > kMaxBodies) {
     return tl::make_unexpected("a step of so many bodies takes it minutes");
   }
   for (const scenes::Body& body : scene.bodies) {

@@ -13,7 +13,7 @@ vp::Expected<scenes::Scene> load(std::string_view name) {
   int balls = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), balls);
   if (error != std::errc() || end != digits.data() + digits.size() || balls < 1 ||
-      balls > kMostBalls) {
+      balls > kMaxBalls) {
     return tl::make_unexpected(vp::Error{vp::Errc::invalid_argument,
                                          "a table is asked for as tableN, with N from 1 to 1000"});
   }

@@ -21,7 +21,7 @@ namespace {
 constexpr double kTurn = 0.25;  // simulated time [s]
 constexpr double kBusy = 10.0;  // maximum wall time of a turn, in multiples of its processor time
 // An engine that stops before this fraction of the scene has no results.
-constexpr double kLeastShare = 0.1;
+constexpr double kMinShare = 0.1;
 
 // A temporary folder, removed by the destructor.
 class Scratch {
@@ -103,7 +103,7 @@ std::optional<Left> read_left(const std::string& file, std::size_t bodies) {
 }
 
 void summarize(Figure& figure) {
-  const std::vector<double>& steps = figure.least_us.empty() ? figure.steps_us : figure.least_us;
+  const std::vector<double>& steps = figure.min_us.empty() ? figure.steps_us : figure.min_us;
   figure.median_us = quantile(steps, 0.5);
   figure.p99_us = quantile(figure.steps_us, 0.99);
   if (figure.ended != "finished") return;
@@ -226,7 +226,7 @@ class Race {
     } else {
       entry.figure.ended = answer->text;
       fill(entry);
-      if (entry.figure.stopped() && entry.figure.simulated < kLeastShare * scene_.seconds) {
+      if (entry.figure.stopped() && entry.figure.simulated < kMinShare * scene_.seconds) {
         entry.figure.missing =
             fmt::format("{}, after {:.3g} s", entry.figure.ended, entry.figure.simulated);
       }
@@ -263,7 +263,7 @@ class Race {
 double share(const Figure& a, const Figure& b) {
   const bool of_least = a.runs > 1 && a.runs == b.runs;
   const auto steps_of = [&](const Figure& f) -> const std::vector<double>& {
-    return of_least ? f.least_us : f.steps_us;
+    return of_least ? f.min_us : f.steps_us;
   };
   const std::size_t both = std::min(steps_of(a).size(), steps_of(b).size());
   if (both == 0) return 0.0;
@@ -291,9 +291,9 @@ bool did_the_same(const Figure& a, const Figure& b) {
 }
 
 void keep_least(Figure& figure, const Figure& again) {
-  if (figure.least_us.empty()) figure.least_us = figure.steps_us;
-  for (std::size_t i = 0; i < figure.least_us.size(); ++i) {
-    figure.least_us[i] = std::min(figure.least_us[i], again.steps_us[i]);
+  if (figure.min_us.empty()) figure.min_us = figure.steps_us;
+  for (std::size_t i = 0; i < figure.min_us.size(); ++i) {
+    figure.min_us[i] = std::min(figure.min_us[i], again.steps_us[i]);
   }
   ++figure.runs;
   summarize(figure);

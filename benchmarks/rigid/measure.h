@@ -68,7 +68,7 @@ struct Figure {
   std::string settings{};
   std::string ended{};      // finished, budget, or stopped with the reason
   double simulated = 0.0;   // simulated time [s]
-  double median_us = 0.0;   // of least_us if there are several runs
+  double median_us = 0.0;   // of min_us if there are several runs
   double p99_us = 0.0;      // of the first run
   double settled_us = 0.0;  // median of the last quarter of a finished run; else 0
   double rss_mb = 0.0;
@@ -77,7 +77,7 @@ struct Figure {
   scenes::Standing standing{};  // quality of the final state
   int runs = 1;
   std::vector<double> steps_us{};  // times in the first run, without the first step of each turn
-  std::vector<double> least_us{};  // minimum of all runs for each; empty if there is only one run
+  std::vector<double> min_us{};    // minimum of all runs for each; empty if there is only one run
   std::vector<vp::SE3> poses{};    // final poses of the first run
 
   bool stopped() const { return ended.starts_with("stopped"); }

@@ -137,10 +137,10 @@ TEST_F(Repeated, KeepsTheLeastOfEachStep) {
   const auto figures = run();
   ASSERT_EQ(figures.size(), 2u);
   EXPECT_EQ(figures[0].runs, 3);
-  EXPECT_EQ(figures[0].least_us, (std::vector<double>{11, 27, 25}));
+  EXPECT_EQ(figures[0].min_us, (std::vector<double>{11, 27, 25}));
   EXPECT_EQ(figures[0].median_us, 25.0);
   EXPECT_EQ(figures[0].steps_us, (std::vector<double>{11, 29, 25}));
-  EXPECT_EQ(figures[1].least_us, (std::vector<double>{101, 97, 133}));
+  EXPECT_EQ(figures[1].min_us, (std::vector<double>{101, 97, 133}));
   EXPECT_DOUBLE_EQ(share(figures[0], figures[1]), 25.0 / 101.0);
   EXPECT_NE(csv(figures).find("tower10@60,Bullet,runs,3,\n"), std::string::npos);
   // If one engine was run only once, the first runs are compared.

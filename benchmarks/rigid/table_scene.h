@@ -9,8 +9,8 @@
 
 namespace rigid {
 
-inline constexpr int kMostBalls = 1000;
-// Precondition: 1 <= balls <= kMostBalls. A single ball rolls; several fall between the rods.
+inline constexpr int kMaxBalls = 1000;
+// Precondition: 1 <= balls <= kMaxBalls. A single ball rolls; several fall between the rods.
 scenes::Scene table_scene(int balls);
 
 // Eight rods of four men each, with strong drives whose targets swing and slide at random.

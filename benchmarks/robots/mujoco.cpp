@@ -140,9 +140,9 @@ class Mujoco final : public Simulation {
                    {x[0], x[1], x[2]});
   }
   double speed() const override {
-    double most = 0.0;
-    for (int i = 0; i < model_->nv; ++i) most = std::max(most, std::fabs(data_->qvel[i]));
-    return most;
+    double max = 0.0;
+    for (int i = 0; i < model_->nv; ++i) max = std::max(max, std::fabs(data_->qvel[i]));
+    return max;
   }
 
  private:

@@ -85,9 +85,9 @@ class Ours final : public Simulation {
   void step() override {
     if (random_) {
       for (std::size_t i = 0; i < held_.size(); ++i) {
-        const double most = robot_.links[i].random_torque;
-        if (most <= 0.0) continue;
-        if (steps_ % kHeldSteps == 0) held_[i] = most * torques_.next();
+        const double max = robot_.links[i].random_torque;
+        if (max <= 0.0) continue;
+        if (steps_ % kHeldSteps == 0) held_[i] = max * torques_.next();
         or_end(world_.apply_joint_force(art_, static_cast<int>(i), 0, held_[i]));
       }
     }
@@ -96,9 +96,9 @@ class Ours final : public Simulation {
   }
   vp::SE3 pose(int link) const override { return world_.pose(world_.link_body(art_, link)); }
   double speed() const override {
-    double most = 0.0;
-    for (const double v : world_.velocities(art_)) most = std::max(most, std::fabs(v));
-    return most;
+    double max = 0.0;
+    for (const double v : world_.velocities(art_)) max = std::max(max, std::fabs(v));
+    return max;
   }
 
  private:

@@ -24,24 +24,24 @@ using Failure = std::optional<std::string>;  // what is wrong and what to do
 
 constexpr int kVersion = 3;  // 1 had no gains and no dead band, 2 no serial number and no date
 // Eight rods take 2 KiB; a much longer file is something else.
-constexpr std::size_t kMostBytes = 64 * 1024;
+constexpr std::size_t kMaxBytes = 64 * 1024;
 // Known sensors: from PS/2 at 1 count/mm to a PMW3360 at 12000 counts per inch (472 per mm). On
 // rods of 16 mm, a count of length l along the surface turns the rod by l / 8 mm. A file may exceed
 // this range by a factor of 4.
-constexpr double kLeastMetres = 1e-3 / 472 / 4, kMostMetres = 1e-3 * 4;
+constexpr double kMinMetres = 1e-3 / 472 / 4, kMaxMetres = 1e-3 * 4;
 // Minimum sine of the angle between the two rows (1 for a square sensor): below it, slide and spin
 // cannot be distinguished.
-constexpr double kLeastSine = 0.01;
+constexpr double kMinSine = 0.01;
 // Limit for an eccentric rod. At half, the rod comes a third closer and recedes as much: it would
 // grind.
-constexpr double kMostGain = 0.5;
+constexpr double kMaxGain = 0.5;
 // A magnet of 6 mm on a collar of 34 mm is on for a fifteenth of a turn.
-constexpr double kLeastMark = 0.01, kMostMark = 1.6;  // [rad] wide
-constexpr double kMostDeadBand = 4000;                // [counts / s] 50 mm/s at 78.7 counts/mm
+constexpr double kMinMark = 0.01, kMaxMark = 1.6;  // [rad] wide
+constexpr double kMaxDeadBand = 4000;              // [counts / s] 50 mm/s at 78.7 counts/mm
 // Counts further apart belong to two motions, the second of which has just started.
 constexpr double kLongestMotion = 0.05;  // [s] ten reports of a PS/2 mouse
 
-constexpr std::size_t kMostWord = 64;  // bytes
+constexpr std::size_t kMaxWord = 64;  // bytes
 
 const char* const kSerialKey = "serial";
 const char* const kMadeKey = "made";
@@ -69,29 +69,29 @@ Failure check_rod(const RodCalibration& rod) {
   if (!std::isfinite(slide) || !std::isfinite(arc)) {
     return "has a value that is not a finite number; calibrate it again";
   }
-  if (slide == 0 || arc == 0 || std::abs(determinant) * kRodRadius < kLeastSine * slide * arc) {
+  if (slide == 0 || arc == 0 || std::abs(determinant) * kRodRadius < kMinSine * slide * arc) {
     return "is singular: slide and angle follow the same counts; check that the sensor sees both "
            "motions and calibrate it again";
   }
-  if (slide < kLeastMetres || slide > kMostMetres || arc < kLeastMetres || arc > kMostMetres) {
+  if (slide < kMinMetres || slide > kMaxMetres || arc < kMinMetres || arc > kMaxMetres) {
     return "has a scale that no sensor has: " + millimetres(slide) + " along the rod and " +
-           millimetres(arc) + " around it a count, where " + millimetres(kLeastMetres) + " to " +
-           millimetres(kMostMetres) +
+           millimetres(arc) + " around it a count, where " + millimetres(kMinMetres) + " to " +
+           millimetres(kMaxMetres) +
            " are possible; write metres and radians per count, as in "
            "cabinet/calibration.example.json";
   }
   for (const auto& gain : {rod.slide_gain, rod.spin_gain}) {
-    if (!(std::hypot(gain[0], gain[1]) <= kMostGain)) {
+    if (!(std::hypot(gain[0], gain[1]) <= kMaxGain)) {
       return "has a gain above 0.5 in a turn, which no eccentric rod has; mount the sensor so that "
              "its distance stays the same while the rod turns, and calibrate it again";
     }
   }
-  if (!(rod.dead_band >= 0 && rod.dead_band <= kMostDeadBand)) {
+  if (!(rod.dead_band >= 0 && rod.dead_band <= kMaxDeadBand)) {
     return "has a dead band out of 0 to 4000 counts a second; calibrate it again";
   }
   if (rod.index &&
-      !(std::abs(rod.index->angle) <= 2 * M_PI && rod.index->width >= kLeastMark &&
-        rod.index->width <= kMostMark && std::abs(rod.index->lag) <= rod.index->width)) {
+      !(std::abs(rod.index->angle) <= 2 * M_PI && rod.index->width >= kMinMark &&
+        rod.index->width <= kMaxMark && std::abs(rod.index->lag) <= rod.index->width)) {
     return "has an index mark that no magnet has: its middle within a turn, 0.01 to 1.6 radians "
            "wide "
            "and lagging by no more than that; calibrate it again, or leave the mark out";
@@ -163,7 +163,7 @@ Failure read_index(const json& rod, RodCalibration& calibration) {
 Failure read_word(const json& file, const char* key, std::string& word) {
   const auto found = file.find(key);
   if (found == file.end()) return {};
-  if (!found->is_string() || found->get_ref<const std::string&>().size() > kMostWord) {
+  if (!found->is_string() || found->get_ref<const std::string&>().size() > kMaxWord) {
     return std::string("has a \"") + key + "\" that is no text of up to 64 bytes; leave it out";
   }
   word = found->get<std::string>();
@@ -227,7 +227,7 @@ tl::expected<std::string, std::string> read_text(const std::string& path) {
                   "); give an existing file, or copy cabinet/calibration.example.json there"));
   }
   if (!S_ISREG(about.st_mode)) return tl::unexpected(sentence(path, "is not a file; give one"));
-  std::string text(kMostBytes + 1, '\0');
+  std::string text(kMaxBytes + 1, '\0');
   std::size_t size = 0;
   while (size < text.size()) {
     const ssize_t got = ::read(file.fd, text.data() + size, text.size() - size);
@@ -289,7 +289,7 @@ tl::expected<Calibration, std::string> parse_calibration(std::string_view text,
     return tl::unexpected(sentence(
         name, "is empty; calibrate again, or copy cabinet/calibration.example.json there"));
   }
-  if (text.size() > kMostBytes) {
+  if (text.size() > kMaxBytes) {
     return tl::unexpected(sentence(name, "is longer than 64 KiB: not a calibration; give another"));
   }
   json file;

@@ -22,7 +22,7 @@ using Numbers = Eigen::Matrix<double, kFitted, 1>;
 constexpr double kCauchy[] = {100, 10, 2.385};
 constexpr double kOutlier = 5.0;  // [deviations]
 // Of all marks: with more, the good ones cannot be identified.
-constexpr double kMostOutliers = 0.25;
+constexpr double kMaxOutliers = 0.25;
 constexpr double kWeakGain = 0.1;  // deviation from zero, so that a poor run has a solution
 constexpr double kBandUnit = 100;  // [counts / s] unit of the dead band
 constexpr int kIterations = 60;
@@ -31,9 +31,9 @@ constexpr int kPriorRows = 2 + 2 + 2 + 1;
 // Required accuracy of a fit.
 constexpr double kScaleDeviation = 0.004;  // relative: 0.8 mm per stroke of 200 mm
 constexpr double kGainDeviation = 0.01;
-constexpr double kMostSlideRms = 1e-3;    // [m]
-constexpr double kMostAngleRms = 0.0875;  // [rad] 5 degrees
-constexpr std::size_t kLeastSlideMarks = 9, kLeastAngleMarks = 4;
+constexpr double kMaxSlideRms = 1e-3;    // [m]
+constexpr double kMaxAngleRms = 0.0875;  // [rad] 5 degrees
+constexpr std::size_t kMinSlideMarks = 9, kMinAngleMarks = 4;
 
 struct Scale {
   double slide, angle;  // [m / count], [rad / count]: units of m
@@ -223,12 +223,12 @@ std::optional<std::string> check_run(const CalibrationRun& run) {
     last = mark.at;
     ++count[mark.kind == Kind::slide ? 0 : 1];
   }
-  if (count[0] < kLeastSlideMarks) {
+  if (count[0] < kMinSlideMarks) {
     return "has " + std::to_string(count[0]) +
            " marks at the end stops, 9 are needed; push the rod from stop to stop, with the feet "
            "down and turned by an eighth more each time";
   }
-  if (count[1] < kLeastAngleMarks) {
+  if (count[1] < kMinAngleMarks) {
     return "has " + std::to_string(count[1]) +
            " marks with the feet straight down, 4 are needed; hold the rod at a stop and turn it "
            "whole turns, both ways";
@@ -257,13 +257,13 @@ std::optional<std::string> check_deviations(const RodFit& fit, const Scale& scal
 std::optional<std::string> check_residuals(const RodFit& fit) {
   const auto outliers = std::count_if(fit.residuals.begin(), fit.residuals.end(),
                                       [](const auto& r) { return r.outlier; });
-  if (static_cast<double>(outliers) > kMostOutliers * static_cast<double>(fit.residuals.size())) {
+  if (static_cast<double>(outliers) > kMaxOutliers * static_cast<double>(fit.residuals.size())) {
     return "does not agree with itself: " + std::to_string(outliers) + " of " +
            std::to_string(fit.residuals.size()) +
            " marks are far off; see that the sensor is fast and near the rod's surface, mark only "
            "when the rod rests, and calibrate again";
   }
-  if (fit.slide_rms > kMostSlideRms || fit.angle_rms > kMostAngleRms) {
+  if (fit.slide_rms > kMaxSlideRms || fit.angle_rms > kMaxAngleRms) {
     return "leaves " + number("%.2f mm", fit.slide_rms * 1e3) + " and " +
            number("%.1f degrees", fit.angle_rms * 57.29578) +
            " rms, at most 1 mm and 5 degrees are accepted; clean sensor and rod, see that neither "

@@ -13,17 +13,17 @@ using Kind = CalibrationMark::Kind;
 constexpr int kStrokesToAndFro = 3, kStrokes = 8, kEighths = 7, kTurns = 5;
 
 // Min counts of a stroke: one per millimetre, for rods with a reach of 100 mm.
-constexpr double kLeastStroke = 100;
+constexpr double kMinStroke = 100;
 // Tolerance of a stop's position, as a fraction of a stroke, around the ends of the strokes to and
 // fro. For a rod that is 0.15 mm eccentric, a stroke has up to 4 % more or fewer counts, depending
 // on its angle.
 constexpr double kAtStop = 0.12;
 // Strokes to and fro restart when one is longer by this factor.
 constexpr double kLonger = 1.1;
-constexpr double kLeastTurn = 0.06;     // [turns] half of the requested eighth
+constexpr double kMinTurn = 0.06;       // [turns] half of the requested eighth
 constexpr double kNearlyDown = 0.08;    // [turns]
 constexpr double kReadSeconds = 2.0;    // time to read a request
-constexpr double kMostOffDown = 0.3;    // [turns] from straight down, by scales not yet fitted
+constexpr double kMaxOffDown = 0.3;     // [turns] from straight down, by scales not yet fitted
 constexpr double kRestCounts = 2;       // a sensor at rest may flicker
 constexpr double kRestStrokes = 0.002;  // 0.4 mm
 
@@ -71,7 +71,7 @@ CalibrationRequest CalibrationGuide::request() const {
 }
 
 bool CalibrationGuide::seen_stroke() const {
-  return std::hypot(stroke_.slide, stroke_.spin) >= kLeastStroke;
+  return std::hypot(stroke_.slide, stroke_.spin) >= kMinStroke;
 }
 
 double CalibrationGuide::along(const Counts& from) const {
@@ -101,8 +101,8 @@ bool CalibrationGuide::rests() const {
 }
 
 bool CalibrationGuide::is_here(const Counts& at) const {
-  const double most = std::max(kRestCounts, kRestStrokes * std::hypot(stroke_.slide, stroke_.spin));
-  return std::hypot(at.slide - at_.slide, at.spin - at_.spin) <= most;
+  const double max = std::max(kRestCounts, kRestStrokes * std::hypot(stroke_.slide, stroke_.spin));
+  return std::hypot(at.slide - at_.slide, at.spin - at_.spin) <= max;
 }
 
 double CalibrationGuide::resting() const {
@@ -142,14 +142,13 @@ GuideAdvice CalibrationGuide::missing() const {
   if (!at_stop(ends_away(asked.motion) ? 1 : 0)) return GuideAdvice::further;
   switch (asked.motion) {
     case Motion::turn_and_push:
-      if (turns < -kLeastTurn) return GuideAdvice::wrong_way;
-      return turns < kLeastTurn ? GuideAdvice::turn_more : GuideAdvice::none;
+      if (turns < -kMinTurn) return GuideAdvice::wrong_way;
+      return turns < kMinTurn ? GuideAdvice::turn_more : GuideAdvice::none;
     case Motion::turn_feet_down:
-      if (turns < -kLeastTurn) return GuideAdvice::wrong_way;
+      if (turns < -kMinTurn) return GuideAdvice::wrong_way;
       // If the previous eighths were larger than asked, the feet may already hang down. The step
       // ends if the person has had time to read the request and left them so.
-      if (turns < kLeastTurn &&
-          (std::abs(all - 1) > kNearlyDown || time_ - began_s_ < kReadSeconds))
+      if (turns < kMinTurn && (std::abs(all - 1) > kNearlyDown || time_ - began_s_ < kReadSeconds))
         return GuideAdvice::turn_more;
       break;
     case Motion::turn_forward:
@@ -162,8 +161,7 @@ GuideAdvice CalibrationGuide::missing() const {
     default:
       return GuideAdvice::none;
   }
-  return std::abs(all - std::round(all)) > kMostOffDown ? GuideAdvice::feet_down
-                                                        : GuideAdvice::none;
+  return std::abs(all - std::round(all)) > kMaxOffDown ? GuideAdvice::feet_down : GuideAdvice::none;
 }
 
 void CalibrationGuide::learn_stroke() {
@@ -201,7 +199,7 @@ void CalibrationGuide::add(const CountIncrement& counts) {
   }
   // A rod that was not moved since the request gets no advice.
   const bool moved =
-      std::abs(along(began_at_)) > 2 * kAtStop || std::abs(turned(began_at_)) > kLeastTurn;
+      std::abs(along(began_at_)) > 2 * kAtStop || std::abs(turned(began_at_)) > kMinTurn;
   advice_ = missing();
   if (advice_ == GuideAdvice::none) return put_marks();
   if (!moved) advice_ = GuideAdvice::none;

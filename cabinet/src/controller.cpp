@@ -16,15 +16,15 @@ namespace fs = std::filesystem;
 // Walks up from the device node to its USB device. In between are the interface and, for hidraw,
 // the HID device, or, for serial lines behind a bridge, their port. Hubs above it have serial
 // numbers of their own.
-constexpr int kMostLevels = 6;
-constexpr std::size_t kMostUsbWord = 64;
+constexpr int kMaxLevels = 6;
+constexpr std::size_t kMaxUsbWord = 64;
 const char* const kUnnumbered = "unnumbered";
 
 std::string first_line(const fs::path& path) {
   std::ifstream file(path);
   std::string line;
   std::getline(file, line);
-  if (line.size() > kMostUsbWord) line.resize(kMostUsbWord);
+  if (line.size() > kMaxUsbWord) line.resize(kMaxUsbWord);
   return line;
 }
 
@@ -51,7 +51,7 @@ UsbIdentity usb_identity(const std::string& device_class, const std::string& nod
   std::error_code error;
   fs::path at = fs::canonical(fs::path(sys) / "class" / device_class / node / "device", error);
   if (error) return {};
-  for (int level = 0; level < kMostLevels && at.has_relative_path(); ++level) {
+  for (int level = 0; level < kMaxLevels && at.has_relative_path(); ++level) {
     if (fs::exists(at / "idVendor", error))
       return {first_line(at / "idVendor") + ":" + first_line(at / "idProduct"),
               first_line(at / "serial"), first_line(at / "product")};

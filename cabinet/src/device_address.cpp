@@ -93,7 +93,7 @@ std::unique_ptr<DeviceSource> line_source(DeviceOptions options, const std::stri
       [keeper](int fd) { keeper->close(fd); });
 }
 
-constexpr std::size_t kMostRecordingBytes = std::size_t{64} << 20;
+constexpr std::size_t kMaxRecordingBytes = std::size_t{64} << 20;
 
 bool write_all(int fd, const char* bytes, std::size_t size) {
   while (size > 0) {
@@ -115,7 +115,7 @@ std::string copy_to_memory(const std::string& text, const std::string& path, int
     const ssize_t size = ::read(file.get(), piece.data(), piece.size());
     if (size == 0) break;
     total += size > 0 ? static_cast<std::size_t>(size) : 0;
-    if (total > kMostRecordingBytes) {
+    if (total > kMaxRecordingBytes) {
       return text + ": longer than 64 MiB; cut the recording into shorter ones.";
     }
     if (size < 0 || !write_all(memory, piece.data(), static_cast<std::size_t>(size))) {

@@ -19,14 +19,14 @@ namespace cabinet {
 namespace {
 
 // Bounds the work of a poll: 160 ms of a line at 1 Mbaud. The rest waits for the next poll.
-constexpr std::size_t kMostBytesPerPoll = 16 * 1024;
-constexpr int kMostReadsPerPoll = 512;
+constexpr std::size_t kMaxBytesPerPoll = 16 * 1024;
+constexpr int kMaxReadsPerPoll = 512;
 // A recording's pause is played in full up to this length; a longer one separates two sessions.
 constexpr std::int64_t kLongestPauseUs = 600'000'000;
 // Max interval between polls for estimates of the arrival time.
 constexpr std::int64_t kLongestPollUs = 1'500;
 // A line with more unsent bytes than this gets no packet: 10 ms at 1 Mbaud.
-constexpr int kMostQueuedBytes = 1024;
+constexpr int kMaxQueuedBytes = 1024;
 // A device that sends noise does not become silent between two bursts of it.
 constexpr std::int64_t kNoiseUs = 1'000'000;
 
@@ -194,7 +194,7 @@ bool DeviceSource::Impl::take_frames(std::int64_t now_us) {
 
 void DeviceSource::Impl::take_in(std::int64_t now_us) {
   std::size_t bytes = 0;
-  for (int reads = 0; reads < kMostReadsPerPoll && bytes < kMostBytesPerPoll; ++reads) {
+  for (int reads = 0; reads < kMaxReadsPerPoll && bytes < kMaxBytesPerPoll; ++reads) {
     if (!take_frames(now_us)) return;
     const auto room = reader.room();
     const ssize_t got = ::read(fd, room.data(), room.size());
@@ -240,7 +240,7 @@ bool DeviceSource::send(std::span<const std::byte> packet) {
   // A partial packet would corrupt the next one too, so nothing goes into a queue that may lack the
   // capacity for all of it.
   int queued = 0;
-  if (::ioctl(in.fd, TIOCOUTQ, &queued) != 0 || queued > kMostQueuedBytes) return false;
+  if (::ioctl(in.fd, TIOCOUTQ, &queued) != 0 || queued > kMaxQueuedBytes) return false;
   return ::write(in.fd, packet.data(), packet.size()) == static_cast<ssize_t>(packet.size());
 }
 

@@ -33,11 +33,11 @@ constexpr const char* kFirstInterface = "/input0";
 // 16U2, and the CH340 of its copies. Other lines belong to other devices, which opening might
 // restart.
 constexpr std::array kBridges = {"2341:0010", "2341:0042", "2a03:0010", "2a03:0042", "1a86:7523"};
-constexpr std::size_t kMostEntries = 256, kMostText = 4096;
+constexpr std::size_t kMaxEntries = 256, kMaxText = 4096;
 
 std::string read_text(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
-  std::string text(kMostText, '\0');
+  std::string text(kMaxText, '\0');
   file.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(std::max<std::streamsize>(file.gcount(), 0)));
   while (!text.empty() && text.back() == '\n') text.pop_back();
@@ -49,7 +49,7 @@ std::vector<std::string> entries(const fs::path& folder, const std::string& pref
   std::error_code error;
   for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
     std::string name = at->path().filename().string();
-    if (name.rfind(prefix, 0) == 0 && names.size() < kMostEntries) names.push_back(std::move(name));
+    if (name.rfind(prefix, 0) == 0 && names.size() < kMaxEntries) names.push_back(std::move(name));
   }
   std::ranges::sort(names);
   return names;

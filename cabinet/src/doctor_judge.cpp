@@ -82,9 +82,9 @@ void judge_frames(const FoundDevice& device, std::vector<Trouble>& troubles) {
   };
   const SourceCounters& c = device.counters;
   const double rate = frames_per_s(device);
-  const double least = device.kind == DeviceKind::hid_controller ? kHidFrames : kSerialFrames;
-  if (rate < least)
-    add(fmt::format("{:.0f} frames a second come, of {:.0f}", rate, least / 0.9),
+  const double min = device.kind == DeviceKind::hid_controller ? kHidFrames : kSerialFrames;
+  if (rate < min)
+    add(fmt::format("{:.0f} frames a second come, of {:.0f}", rate, min / 0.9),
         "plug it into the machine itself, not into a hub, and flash the firmware of this version");
   if (c.lost * 1000 > c.frames)
     add(fmt::format("{} frames of {} were lost", c.lost, c.frames + c.lost),

@@ -50,18 +50,18 @@ class RangesOfRods {
       Range& range = ranges_[i];
       const double slide = rods[i].slide - rods[i].slide_ahead;
       const double angle = rods[i].angle - rods[i].angle_ahead;
-      range = {std::min(range.slide_least, slide), std::max(range.slide_most, slide),
-               std::min(range.angle_least, angle), std::max(range.angle_most, angle)};
+      range = {std::min(range.slide_min, slide), std::max(range.slide_max, slide),
+               std::min(range.angle_min, angle), std::max(range.angle_max, angle)};
     }
   }
   RodCheck check(std::size_t rod, RodStatus status) const {
     const Range& range = ranges_[rod];
-    return {status, range.slide_most - range.slide_least, range.angle_most - range.angle_least};
+    return {status, range.slide_max - range.slide_min, range.angle_max - range.angle_min};
   }
 
  private:
   struct Range {
-    double slide_least = 0, slide_most = 0, angle_least = 0, angle_most = 0;
+    double slide_min = 0, slide_max = 0, angle_min = 0, angle_max = 0;
   };
   std::array<Range, kRods> ranges_;
 };

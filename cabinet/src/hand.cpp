@@ -16,7 +16,7 @@ constexpr double kStrikes = 6.0;       // [rad/s] below this, a rod is only bein
 // Max step after a stalled window [s], so that it does not fling the rods. A window with 10 frames
 // per second does not count as stalled.
 constexpr double kLongestStep = 0.11;
-constexpr int kMostTaps = 4;  // per poll
+constexpr int kMaxTaps = 4;  // per poll
 
 // A mouse reports at least every 8 ms. A poll without events this long after the last movement
 // means that the hand is at rest. With a longer hold, the rate would drive the rod past where the
@@ -90,7 +90,7 @@ void Hand::key_axis(double slide, double spin) {
 }
 
 void Hand::key_taps(int slide, int spin) {
-  slide_taps_ = std::clamp(slide, -kMostTaps, kMostTaps);
+  slide_taps_ = std::clamp(slide, -kMaxTaps, kMaxTaps);
   spin_taps_ = std::clamp(spin, -1, 1);
 }
 

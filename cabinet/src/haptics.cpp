@@ -49,7 +49,7 @@ std::optional<HapticPulse> HapticLimiter::admit(const HapticPulse& pulse, std::i
 }
 
 void DeviceHaptics::pulse(const HapticPulse& pulse) {
-  std::array<std::byte, kMostPacket> packet;
+  std::array<std::byte, kMaxPacket> packet;
   const std::size_t size = encode_ ? encode_(pulse, packet) : 0;
   if (size == 0 || size > packet.size()) return;
   ++(device_.send(std::span(packet).first(size)) ? sent_ : unsent_);

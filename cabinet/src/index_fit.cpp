@@ -25,10 +25,10 @@ using Kind = CalibrationMark::Kind;
 constexpr double kLag = 0.03, kDelay = 0.010;  // [rad], [s] deviations of the priors
 constexpr double kScaleDrift = 0.002;          // [rad / rad] deviation of the prior
 constexpr double kNoise = 0.02;                // [rad] initial deviation of a pass in a fast turn
-constexpr double kLeastNoise = 0.002;          // [rad]
+constexpr double kMinNoise = 0.002;            // [rad]
 constexpr double kFarOff = 2.5;                // [rms of the residuals]
-constexpr int kLeastPasses = 3;                // in each direction
-constexpr double kMostSpread = 0.06;           // [rad] of middles or widths of the same mark
+constexpr int kMinPasses = 3;                  // in each direction
+constexpr double kMaxSpread = 0.06;            // [rad] of middles or widths of the same mark
 
 struct FeetDown {
   double angle, known;  // [rad]
@@ -137,8 +137,8 @@ void drop_turned_back(std::vector<IndexPass>& passes) {
 
 bool both_ways(const std::vector<IndexPass>& passes) {
   const auto forward = std::ranges::count_if(passes, [](const auto& p) { return p.turned > 0; });
-  return forward >= kLeastPasses &&
-         static_cast<std::ptrdiff_t>(passes.size()) - forward >= kLeastPasses;
+  return forward >= kMinPasses &&
+         static_cast<std::ptrdiff_t>(passes.size()) - forward >= kMinPasses;
 }
 
 }  // namespace
@@ -149,11 +149,11 @@ void fit_index(const CalibrationRun& run, const MountPriors& priors, RodFit& fit
   drop_turned_back(seen.passes);
   if (!both_ways(seen.passes)) return;
   const Fit first = solve(seen, kNoise, priors.angle_error);
-  const double most = std::max(kFarOff * first.spread, kNoise);
-  std::erase_if(seen.passes, [&](const IndexPass& p) { return std::abs(wrong(p, first)) > most; });
+  const double max = std::max(kFarOff * first.spread, kNoise);
+  std::erase_if(seen.passes, [&](const IndexPass& p) { return std::abs(wrong(p, first)) > max; });
   if (!both_ways(seen.passes)) return;
-  const Fit mark = solve(seen, std::max(first.spread, kLeastNoise), priors.angle_error);
-  if (!(mark.spread <= kMostSpread && mark.width_spread <= kMostSpread)) return;
+  const Fit mark = solve(seen, std::max(first.spread, kMinNoise), priors.angle_error);
+  if (!(mark.spread <= kMaxSpread && mark.width_spread <= kMaxSpread)) return;
   RodCalibration marked = fit.calibration;
   marked.index = IndexMark{std::remainder(mark.mark - mark.zero, 2 * M_PI), mark.width, mark.lag};
   if (check_rod(marked)) return;

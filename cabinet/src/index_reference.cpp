@@ -11,12 +11,12 @@ namespace {
 constexpr double kDegree = M_PI / 180;
 // Max angle step of a report at the edges: the angle of each edge is known to half of it, and the
 // switch is read up to a millisecond late. 9 rad/s at 1000 reports a second.
-constexpr double kMostStep = 0.5 * kDegree;
+constexpr double kMaxStep = 0.5 * kDegree;
 // A coarse sensor has steps of a count, however slow the rod.
-constexpr double kMostCounts = 1.5;
+constexpr double kMaxCounts = 1.5;
 // Tolerance of the width, as a fraction: a pass of similar width is of this mark, at its position
 // along the rod.
-constexpr double kMostOff = 0.25, kMostOffAngle = 3 * kDegree;
+constexpr double kMaxOff = 0.25, kMaxOffAngle = 3 * kDegree;
 constexpr double kQuarterTurn = M_PI / 2;
 // A man's foot, 75 mm from the axis, moves at 15 mm/s; one degree is corrected in 0.1 s.
 constexpr double kRate = 0.2;
@@ -29,7 +29,7 @@ constexpr double kShare = 0.7;
 
 IndexReference::IndexReference(const RodCalibration& calibration)
     : mark_(calibration.index),
-      most_step_(std::max(kMostStep, kMostCounts * std::abs(count_of(calibration).angle))) {}
+      max_step_(std::max(kMaxStep, kMaxCounts * std::abs(count_of(calibration).angle))) {}
 
 void IndexReference::lose() {
   passes_.forget();
@@ -48,8 +48,7 @@ double IndexReference::frame(bool under, const RodMotion& at, double turned, dou
 
 void IndexReference::take(const IndexPass& pass) {
   const double off_width = std::abs(std::abs(pass.turned) - mark_->width);
-  if (pass.step > most_step_ || off_width > std::max(kMostOff * mark_->width, kMostOffAngle))
-    return;
+  if (pass.step > max_step_ || off_width > std::max(kMaxOff * mark_->width, kMaxOffAngle)) return;
   const double middle = pass.middle - std::copysign(mark_->lag, pass.turned);
   const double wrong = std::remainder(mark_->angle - middle, 2 * M_PI);
   // The first correction is still in progress.

@@ -30,7 +30,7 @@ class IndexReference {
   void take(const IndexPass& pass);
 
   std::optional<IndexMark> mark_;
-  double most_step_;
+  double max_step_;
   IndexPasses passes_;
   bool known_ = false;
   double left_ = 0;  // [rad] remaining correction

@@ -50,7 +50,7 @@ void LineKeeper::close(int fd) {
 
 bool LineKeeper::send(int fd, std::span<const std::byte> packet) {
   const std::uint32_t put = put_.load(std::memory_order_relaxed);
-  if (packet.size() > kMostPacket || fd < 0 ||
+  if (packet.size() > kMaxPacket || fd < 0 ||
       put - taken_.load(std::memory_order_acquire) >= packets_.size())
     return false;
   Packet& place = packets_[put % packets_.size()];

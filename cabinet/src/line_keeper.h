@@ -31,7 +31,7 @@ class LineKeeper {
   int take();
   void close(int fd);  // closes fd before the next open
   // Queues a packet for a descriptor that was taken and not closed. False: the queue is full, or
-  // the packet is longer than kMostPacket.
+  // the packet is longer than kMaxPacket.
   bool send(int fd, std::span<const std::byte> packet);
 
  private:
@@ -41,7 +41,7 @@ class LineKeeper {
   struct Packet {
     int fd = -1;
     std::size_t size = 0;
-    std::array<std::byte, kMostPacket> bytes{};
+    std::array<std::byte, kMaxPacket> bytes{};
   };
 
   // handover_ is a descriptor or one of these states. The poller changes it from idle to asked, and

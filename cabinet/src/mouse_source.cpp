@@ -15,7 +15,7 @@
 namespace cabinet {
 namespace {
 
-constexpr int kMostReadsPerPoll = 16;  // of 64 events: 5 polls of the fastest mouse
+constexpr int kMaxReadsPerPoll = 16;  // of 64 events: 5 polls of the fastest mouse
 // Max delay from the kernel's stamp until an event can be read.
 constexpr std::int64_t kHandOverUs = 500;
 
@@ -101,7 +101,7 @@ void MouseSource::Impl::lose_device(std::int64_t now_us) {
 }
 
 void MouseSource::Impl::take_in(std::int64_t now_us) {
-  for (int reads = 0; reads < kMostReadsPerPoll; ++reads) {
+  for (int reads = 0; reads < kMaxReadsPerPoll; ++reads) {
     const std::span<std::byte> room = reader.room();
     const ssize_t got = ::read(fd, room.data(), room.size());
     if (got < 0 && errno == EINTR) continue;

@@ -9,7 +9,7 @@ namespace {
 // follows a flick in two reports. A smaller gain is smoother and slower.
 constexpr double kGain = 0.6;
 // Min time between two increments: a stopped clock must not give infinite rates.
-constexpr std::int64_t kLeastIntervalUs = 500;
+constexpr std::int64_t kMinIntervalUs = 500;
 
 }  // namespace
 
@@ -28,8 +28,8 @@ void RateFilter::update(double d_slide, double d_angle, std::int64_t time_us) {
   }
   if (d_slide == 0 && d_angle == 0) return;
 
-  const std::int64_t interval = std::max(
-      moving_ ? time_us - moved_us_ : std::max(since_update, report_us_), kLeastIntervalUs);
+  const std::int64_t interval =
+      std::max(moving_ ? time_us - moved_us_ : std::max(since_update, report_us_), kMinIntervalUs);
   const double seconds = static_cast<double>(interval) * 1e-6;
   const double gain = moving_ ? kGain : 1.0;
   slide_rate_ += gain * (d_slide / seconds - slide_rate_);

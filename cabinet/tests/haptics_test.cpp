@@ -70,9 +70,9 @@ TEST(HapticLimiter, KeepsTheMeanPowerWhateverComes) {
       energy_ms += static_cast<double>(pulse->strength * pulse->strength) * pulse->ms;
       if (now < 2'000'000) first_second_ms = energy_ms;
     }
-    const double most = HapticLimiter::kMeanPower * 60'000.0 + HapticLimiter::kPulseEnergyMs;
-    EXPECT_LE(energy_ms, 1.0001 * most);
-    EXPECT_GE(energy_ms, 0.8 * most) << "and is not silent";
+    const double max = HapticLimiter::kMeanPower * 60'000.0 + HapticLimiter::kPulseEnergyMs;
+    EXPECT_LE(energy_ms, 1.0001 * max);
+    EXPECT_GE(energy_ms, 0.8 * max) << "and is not silent";
     EXPECT_LE(first_second_ms, HapticLimiter::kPulseEnergyMs + 150.0 + 1.0);
   }
 }
@@ -184,7 +184,7 @@ TEST(DeviceHaptics, WithoutAnEncoderOrWithARecordingNothingIsSent) {
 
 TEST(DeviceHaptics, AControllerIsToldAsItsCommandsAreDescribed) {
   for (const auto framing : {DeviceFraming::cobs, DeviceFraming::report}) {
-    std::array<std::byte, kMostPacket> out{};
+    std::array<std::byte, kMaxPacket> out{};
     const std::size_t size = command_encoder(framing)({6, 0.5f, 40}, out);
     const auto* bytes = reinterpret_cast<const std::uint8_t*>(out.data());
     std::array<std::uint8_t, wire::kDeviceCommandBytes> plain{};
@@ -204,7 +204,7 @@ TEST(DeviceHaptics, AControllerIsToldAsItsCommandsAreDescribed) {
     EXPECT_EQ(command.amplitude, 128);
     EXPECT_EQ(command.duration_ms, 40);
   }
-  std::array<std::byte, kMostPacket> out{};
+  std::array<std::byte, kMaxPacket> out{};
   EXPECT_EQ(command_encoder(DeviceFraming::report)({6, 0.5f, 0}, out), 0u) << "no length";
 }
 

@@ -173,8 +173,8 @@ int mounts_wanted() {
 
 struct Sensor {
   double counts_per_mm;
-  int report;       // [ms]
-  double most_rms;  // [rad] of the drift of the angle
+  int report;      // [ms]
+  double max_rms;  // [rad] of the drift of the angle
 };
 class Drifting : public testing::TestWithParam<Sensor> {};
 INSTANTIATE_TEST_SUITE_P(Of, Drifting,
@@ -209,7 +209,7 @@ TEST_P(Drifting, IndexMarkAndStopsLeaveNoneAfterTenMinutesOfPlay) {
   with.say("mark and stops");
   without.say("neither");
   EXPECT_LE(with.rms.slide, 0.5e-3);
-  EXPECT_LE(with.rms.angle, sensor.most_rms);
+  EXPECT_LE(with.rms.angle, sensor.max_rms);
 }
 
 // A rod at its near stop with an exact sensor and its mark at the feet, and a tracker of it. The

@@ -103,7 +103,7 @@ TEST(LineKeeper, WritesPacketsInTheirOrderThoughTheDeviceTakesItsTime) {
   ASSERT_GE(::fcntl(ends[1], F_SETPIPE_SZ, 4096), 4096);
   LineKeeper keeper([fd = ends[1]] { return fd; });
   const int line = take_when_ready(keeper);
-  std::array<std::byte, kMostPacket> packet{};
+  std::array<std::byte, kMaxPacket> packet{};
   const auto send = [&](int number) {
     packet[0] = static_cast<std::byte>(number);
     return keeper.send(line, packet);
@@ -116,7 +116,7 @@ TEST(LineKeeper, WritesPacketsInTheirOrderThoughTheDeviceTakesItsTime) {
   }));
   EXPECT_FALSE(send(255)) << "sixteen wait already";
   for (int i = 0; i < sent; ++i) {
-    std::array<std::byte, kMostPacket> got{};
+    std::array<std::byte, kMaxPacket> got{};
     std::size_t size = 0;
     while (size < got.size()) {
       const ssize_t piece = ::read(reader.fd, got.data() + size, got.size() - size);

@@ -324,7 +324,7 @@ void expect_steady_rate(std::uint32_t frame_us) {
   Tracked t;
   t.take(t.device.frame(frame_us));
   std::uint32_t reported_us = 0;
-  double least = 9, most = 0;
+  double min = 9, max = 0;
   for (std::uint32_t at = frame_us; at < 1'000'000; at += frame_us) {
     for (; reported_us + 5'000 <= at; reported_us += 5'000) {
       t.device.slide[0] += 40;  // 5 mm in 5 ms: 1 m/s
@@ -332,14 +332,14 @@ void expect_steady_rate(std::uint32_t frame_us) {
     }
     t.take(t.device.frame(frame_us), frame_us);
     if (at < 50'000) continue;
-    least = std::min(least, t.rod(0).slide_rate);
-    most = std::max(most, t.rod(0).slide_rate);
+    min = std::min(min, t.rod(0).slide_rate);
+    max = std::max(max, t.rod(0).slide_rate);
     EXPECT_NEAR(t.rod(0).angle_rate, -250.0, 18);  // 2000 rad/s^2, 5 ms, and the phase error
   }
-  EXPECT_GT(least, 0.7) << frame_us;  // 0.2 per period, and twice in the 8 ms of two 4 ms frames
-  EXPECT_LT(most, 1.02) << frame_us;
-  std::printf("  frames of %u us: a steady 1 m/s is seen as %.3f to %.3f m/s\n", frame_us, least,
-              most);
+  EXPECT_GT(min, 0.7) << frame_us;  // 0.2 per period, and twice in the 8 ms of two 4 ms frames
+  EXPECT_LT(max, 1.02) << frame_us;
+  std::printf("  frames of %u us: a steady 1 m/s is seen as %.3f to %.3f m/s\n", frame_us, min,
+              max);
 }
 
 TEST(RodTracker, RateOfASteadyMotionStandsThroughFramesOf1And4Ms) {

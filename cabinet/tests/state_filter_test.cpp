@@ -106,8 +106,8 @@ TEST(StateFilter, AHandThatBrakesIsNotSeenToTurnRound) {
 TEST(StateFilter, WithoutFramesAMotionIsNotPredictedForLong) {
   Seen seen{.angle = steadily, .report_us = 5'000, .phase_us = 400};
   seen.run_until(100'000);
-  const double most = 50 * 8e-3;
-  EXPECT_LT(seen.filter.at(seen.now_us + 10'000'000).angle, most);
+  const double max = 50 * 8e-3;
+  EXPECT_LT(seen.filter.at(seen.now_us + 10'000'000).angle, max);
   EXPECT_EQ(seen.filter.at(seen.now_us + 10'000'000).angle_rate, 0);
 }
 

@@ -24,7 +24,7 @@ using foosball::CharacterField;
 using foosball::Characters;
 using foosball::Colour;
 
-constexpr std::size_t kMostBytes = 64 * 1024;
+constexpr std::size_t kMaxBytes = 64 * 1024;
 
 using Problem = std::optional<std::string>;  // none: success
 
@@ -67,7 +67,7 @@ std::string unknown(std::string_view key, std::span<const char* const> names,
 
 template <class T>
 std::string range_of(const CharacterField<T>& field) {
-  return fmt::format("{} to {}{}{}", field.least, field.most, *field.unit == '\0' ? "" : " ",
+  return fmt::format("{} to {}{}{}", field.min, field.max, *field.unit == '\0' ? "" : " ",
                      field.unit);
 }
 
@@ -101,15 +101,15 @@ Problem take_numbers(const toml::table& table, const std::string& section, const
   return {};
 }
 
-Problem take_text(const toml::node& node, const char* name, std::size_t least, std::size_t most,
+Problem take_text(const toml::node& node, const char* name, std::size_t min, std::size_t max,
                   std::string_view file, std::string& text) {
   const auto parsed = node.value<std::string_view>();
   const auto value = parsed ? std::optional(profile::as_written(*parsed)) : std::nullopt;
-  const bool fits = value && value->size() >= least && wire::is_clean_text(*value, most);
+  const bool fits = value && value->size() >= min && wire::is_clean_text(*value, max);
   if (!fits) {
     return at(file, node.source(),
               fmt::format("{} must be a text of {} to {} bytes on one line; write {} = \"...\"",
-                          name, least, most, name));
+                          name, min, max, name));
   }
   text = *value;
   return {};
@@ -335,7 +335,7 @@ tl::expected<Character, std::string> load_character(const std::string& path) {
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
     return tl::unexpected(path + " is a folder, a pipe or a device; name a file of a character");
   }
-  auto bytes = wire::read_file(path, kMostBytes);
+  auto bytes = wire::read_file(path, kMaxBytes);
   if (!bytes) return tl::unexpected(bytes.error());
   return parse_character({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, path);
 }

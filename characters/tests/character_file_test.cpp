@@ -57,7 +57,7 @@ TEST(CharacterFile, ComesBackBitForBit) {
     double share = 0.0;
     for (const auto& f : kBodyFields) {
       share += 1.0 / 17.0;
-      c.body.*f.value = f.least + share * (f.most - f.least) / 3.0;
+      c.body.*f.value = f.min + share * (f.max - f.min) / 3.0;
     }
     const auto again = parse_character(format_character(c), "x.toml");
     ASSERT_TRUE(again) << again.error();
@@ -90,15 +90,15 @@ void expect_ranges(const Fields& fields, const std::string& section) {
     const auto text = [&](const std::string& value) {
       return "name = \"x\"\n[" + section + "]\n" + f.name + " = " + value + "\n";
     };
-    char least[40], most[40], below[40], above[40];
-    std::snprintf(least, sizeof least, "%.17e", f.least);
-    std::snprintf(most, sizeof most, "%.17e", f.most);
-    std::snprintf(below, sizeof below, "%.17e", std::nextafter(f.least, -INFINITY));
-    std::snprintf(above, sizeof above, "%.17e", std::nextafter(f.most, INFINITY));
+    char min[40], max[40], below[40], above[40];
+    std::snprintf(min, sizeof min, "%.17e", f.min);
+    std::snprintf(max, sizeof max, "%.17e", f.max);
+    std::snprintf(below, sizeof below, "%.17e", std::nextafter(f.min, -INFINITY));
+    std::snprintf(above, sizeof above, "%.17e", std::nextafter(f.max, INFINITY));
     const bool foot = std::string(f.name).starts_with("foot_reach");
     const std::string shallow = foot ? "foot_depth = 0.012\n" : "";  // corner in range
-    EXPECT_EQ(error_of(text(least) + shallow), "") << f.name;
-    EXPECT_EQ(error_of(text(most) + shallow), "") << f.name;
+    EXPECT_EQ(error_of(text(min) + shallow), "") << f.name;
+    EXPECT_EQ(error_of(text(max) + shallow), "") << f.name;
     for (const std::string& bad :
          {std::string(below), std::string(above), std::string("nan"), std::string("inf"),
           std::string("-inf"), std::string("1e300"), std::string("true"), std::string("\"0.02\""),

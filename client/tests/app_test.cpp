@@ -317,13 +317,13 @@ std::vector<glm::vec3> all_that_must_be_seen(const foosball::TableSpec& table) {
 // The outermost point's distance from the centre, as a fraction of the picture's half: 1 at its
 // edge.
 float share_taken(const Camera& camera, const std::vector<glm::vec3>& points) {
-  float most = 0.0f;
+  float max = 0.0f;
   for (const glm::vec3& point : points) {
     const glm::vec4 clip = camera.view_projection * glm::vec4(point, 1.0f);
     EXPECT_GT(clip.w, 0.0f);
-    most = std::max({most, std::abs(clip.x / clip.w), std::abs(clip.y / clip.w)});
+    max = std::max({max, std::abs(clip.x / clip.w), std::abs(clip.y / clip.w)});
   }
-  return most;
+  return max;
 }
 
 TEST(Camera, ShowsTheWholeTableWithAllHandlesAtMidSlideInEveryWindow) {
@@ -333,7 +333,7 @@ TEST(Camera, ShowsTheWholeTableWithAllHandlesAtMidSlideInEveryWindow) {
          {glm::ivec2(720, 720), glm::ivec2(1024, 768), glm::ivec2(1280, 800), glm::ivec2(1280, 720),
           glm::ivec2(2160, 1080), glm::ivec2(2520, 1080)}) {
       for (const int team : {0, 1}) {
-        for (const float lean : {-kMostLean, 0.0f, kMostLean}) {
+        for (const float lean : {-kMaxLean, 0.0f, kMaxLean}) {
           const Camera camera =
               player_camera({.layout = layout, .team = team, .lean = {lean, 0.0f}}, screen);
           const float share = share_taken(camera, points);

@@ -64,7 +64,7 @@ TEST_F(TuningPanel, HasEveryValueAndChangesEachWithinItsRange) {
   for (const foosball::TuningField& field : foosball::kTuningFields) {
     for (const int way : {1, -1}) {
       for (int i = 0; i < 400; ++i) menu.step(row(field.name), {.right = way});
-      EXPECT_EQ(menu.wanted().*field.value, way > 0 ? field.most : field.least) << field.name;
+      EXPECT_EQ(menu.wanted().*field.value, way > 0 ? field.max : field.min) << field.name;
     }
     menu.step(row(field.name), {.confirm = true});
     EXPECT_EQ(menu.wanted().*field.value, foosball::Tuning{}.*field.value) << field.name;

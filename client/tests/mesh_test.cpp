@@ -105,7 +105,7 @@ foosball::Character figure_of(int number) {
   if (i < built_in.size()) return built_in[i];
   foosball::Character c;
   for (const auto& f : foosball::kBodyFields) {
-    c.body.*f.value = i == built_in.size() ? f.least : f.most;
+    c.body.*f.value = i == built_in.size() ? f.min : f.max;
   }
   c.look = built_in[3].look;
   return c;

@@ -150,7 +150,7 @@ TEST_P(RenderTest, TheBallLooksLargerWithHeightAndLiesInTheGoalAfterIt) {
   const auto radius = static_cast<float>(table.ball_radius);
   EXPECT_EQ(Scene::drawn_ball_radius(table, radius), radius);
   EXPECT_GT(Scene::drawn_ball_radius(table, radius + 0.030f), 1.2f * radius);
-  EXPECT_LT(Scene::drawn_ball_radius(table, 5.0f), (1.001f + kMostBallGrowth) * radius);
+  EXPECT_LT(Scene::drawn_ball_radius(table, 5.0f), (1.001f + kMaxBallGrowth) * radius);
   wire::Snapshot state = scripted_play(0.35);
   state.screen = 3;
   state.ball_in_play = false;

@@ -12,11 +12,10 @@
 namespace draw {
 namespace {
 
-bool read_length(std::string_view text, int least, int& value) {
-  constexpr int kMost = 16384;
+bool read_length(std::string_view text, int min, int& value) {
+  constexpr int kMax = 16384;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size() && value >= least &&
-         value <= kMost;
+  return error == std::errc() && end == text.data() + text.size() && value >= min && value <= kMax;
 }
 
 }  // namespace

@@ -11,9 +11,9 @@ GlRenderbuffer make_renderbuffer(const TargetDesc& desc, GLenum format) {
   if (desc.samples > 0) {
     // The maximum number of samples of a format depends on the driver; 4 is guaranteed for these
     // two.
-    GLint most = 4;
-    glGetInternalformativ(GL_RENDERBUFFER, format, GL_SAMPLES, 1, &most);
-    glRenderbufferStorageMultisample(GL_RENDERBUFFER, std::min(desc.samples, most), format,
+    GLint max = 4;
+    glGetInternalformativ(GL_RENDERBUFFER, format, GL_SAMPLES, 1, &max);
+    glRenderbufferStorageMultisample(GL_RENDERBUFFER, std::min(desc.samples, max), format,
                                      desc.size.x, desc.size.y);
   } else {
     glRenderbufferStorage(GL_RENDERBUFFER, format, desc.size.x, desc.size.y);

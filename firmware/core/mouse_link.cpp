@@ -181,7 +181,7 @@ MouseLink::Event MouseLink::tend_stream(uint16_t now_ms) {
     answering_ = false;
     return kResync;
   }
-  if (answers_ >= kMostAnswers) {
+  if (answers_ >= kMaxAnswers) {
     restart();
     return kResync;
   }

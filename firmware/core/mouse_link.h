@@ -62,7 +62,7 @@ class MouseLink {
   static const uint8_t kTries = 3;          // attempts for each command
   // Consecutive responses to EB with movement, without a streamed packet in between. One in fifty
   // responses of a streaming mouse has movement, that of the few milliseconds before the request.
-  static const uint8_t kMostAnswers = 3;
+  static const uint8_t kMaxAnswers = 3;
 
  private:
   Event error() const;

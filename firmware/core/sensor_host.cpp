@@ -77,8 +77,8 @@ void SensorHost::sample(uint8_t elapsed_ms) {
   for (uint8_t byte = 0; byte < kBurstBytes; ++byte) transpose8(bits + 8 * byte, answers[byte]);
   // Motion beyond the sensor's tracking range, with a margin of a quarter: it has lost track. At
   // the 16-bit limit the delta is saturated and counts are missing.
-  const int32_t most = static_cast<int32_t>(kMaxInchesPerSecond) * resolution_ * elapsed_ms / 8 + 8;
-  const int32_t limit = most < 32767 ? most : 32767;
+  const int32_t max = static_cast<int32_t>(kMaxInchesPerSecond) * resolution_ * elapsed_ms / 8 + 8;
+  const int32_t limit = max < 32767 ? max : 32767;
   for (uint8_t i = 0; i < kSensors; ++i) {
     const uint8_t mask = static_cast<uint8_t>(1u << i);
     if ((live_ & mask) == 0) continue;

@@ -26,7 +26,7 @@ struct Trace {
   };
   std::vector<Level> levels;
   Moves moves;
-  int parity = 0, framing_least = 0, framing_most = 0;
+  int parity = 0, framing_min = 0, framing_max = 0;
 };
 
 Trace read_trace(const std::string& path) {
@@ -44,7 +44,7 @@ Trace read_trace(const std::string& path) {
     }
     words >> word >> word;
     if (word == "parity") words >> trace.parity;
-    if (word == "framing") words >> trace.framing_least >> trace.framing_most;
+    if (word == "framing") words >> trace.framing_min >> trace.framing_max;
     if (word != "moves") continue;
     char comma = 0;
     for (std::pair<int, int> move; words >> move.first >> comma >> move.second;)
@@ -122,8 +122,8 @@ TEST_P(EdgeTrace, IsReadTheSameAtEveryPhaseOfTheSampler) {
     const Heard heard = listen(trace, phase_ns);
     EXPECT_EQ(heard.moves, trace.moves) << "phase " << phase_ns << " ns";
     EXPECT_EQ(heard.parity, trace.parity) << "phase " << phase_ns << " ns";
-    EXPECT_GE(heard.framing, trace.framing_least) << "phase " << phase_ns << " ns";
-    EXPECT_LE(heard.framing, trace.framing_most) << "phase " << phase_ns << " ns";
+    EXPECT_GE(heard.framing, trace.framing_min) << "phase " << phase_ns << " ns";
+    EXPECT_LE(heard.framing, trace.framing_max) << "phase " << phase_ns << " ns";
   }
 }
 

@@ -39,13 +39,13 @@ void slide_towards(double goal, double& position, double& rate) {
   const double error = goal - position;
   const double stopping = std::sqrt(1.8 * kAssistAcceleration * std::fabs(error));
   const double speed = std::min({kAssistRate, stopping, std::fabs(error) / kTick});
-  constexpr double kMost = kAssistAcceleration * kTick;
-  rate += std::clamp(std::copysign(speed, error) - rate, -kMost, kMost);
+  constexpr double kMax = kAssistAcceleration * kTick;
+  rate += std::clamp(std::copysign(speed, error) - rate, -kMax, kMax);
   position += rate * kTick;
 }
 
-double towards(double from, double to, double most) {
-  return from + std::clamp(to - from, -most, most);
+double towards(double from, double to, double max) {
+  return from + std::clamp(to - from, -max, max);
 }
 
 }  // namespace
@@ -91,10 +91,10 @@ int Assists::rod_to_take(const AssistView& view, const AssistHand& hand, int now
   const double reach = reach_of(view.bodies[team_]);
   const auto time = [&](int rod) { return time_to_act(rod, ball, reach); };
   int best = have ? now : -1;
-  double least = have ? time(now) - kSoonerBy : 1e9;
+  double min = have ? time(now) - kSoonerBy : 1e9;
   for (const int rod : rods_of_team(*table_, team_)) {  // in order from the team's own goal
-    if ((mine_ >> rod & 1) == 0 || rod == now || time(rod) >= least) continue;
-    least = time(rod);
+    if ((mine_ >> rod & 1) == 0 || rod == now || time(rod) >= min) continue;
+    min = time(rod);
     best = rod;
   }
   return best;
@@ -118,13 +118,13 @@ double Assists::guard_y(int rod, const Ball& ball) const {
 // slide.
 double Assists::slide_for(int rod, double y, double from) const {
   const RodSpec& spec = table_->rods[rod];
-  double best = from, least = 1e9;
+  double best = from, min = 1e9;
   for (int man = 0; man < spec.men; ++man) {
     const double wanted = y - man_offset(spec, man);
     const double slide = std::clamp(wanted, -spec.slide_limit, spec.slide_limit);
     const double cost = 10.0 * std::fabs(wanted - slide) + std::fabs(slide - from);
-    if (cost >= least) continue;
-    least = cost;
+    if (cost >= min) continue;
+    min = cost;
     best = slide;
   }
   return best;
@@ -157,7 +157,7 @@ void Assists::follow(int rod, const AssistView& view, const RodTarget& from, int
 // Distance between the nearest man in the way and the line from the ball to (goal line, target).
 double Assists::clearance(const AssistView& view, const Ball& ball, double target) const {
   const double run = 0.5 * table_->length - ball.x;
-  double least = 0.06;  // a wider lane is not better
+  double min = 0.06;  // a wider lane is not better
   for (int rod = 0; rod < kRods; ++rod) {
     const RodSpec& spec = table_->rods[rod];
     const double ahead = rod_x(rod) - ball.x;
@@ -165,10 +165,10 @@ double Assists::clearance(const AssistView& view, const Ball& ball, double targe
     const double y = ball.y + (target - ball.y) * ahead / run;
     for (int man = 0; man < spec.men; ++man) {
       const double at = man_offset(spec, man) + team_of(team_, view.rods[rod].slide);
-      least = std::min(least, std::fabs(at - y));
+      min = std::min(min, std::fabs(at - y));
     }
   }
-  return least;
+  return min;
 }
 
 // The slide at which the foot sends the ball to the least guarded target, among those near the
@@ -186,12 +186,12 @@ double Assists::aimed_slide(int rod, const AssistView& view, double slide) const
   const double beside = man_offset(spec, man) + slide - ball.y;  // offset of the foot from the ball
   const double run = 0.5 * table_->length - ball.x;
   const double post = 0.5 * table_->goal_width - table_->ball_radius;
-  double best = 0.0, most = -1e9;
+  double best = 0.0, max = -1e9;
   const auto consider = [&](double target, double foot, double bonus) {
     const double worth = bonus + clearance(view, ball, target) +
                          (std::fabs(target) < post ? 0.03 : 0.0) - 2.0 * std::fabs(foot - beside);
-    if (worth <= most) return;
-    most = worth;
+    if (worth <= max) return;
+    max = worth;
     best = foot;
   };
   const double flat = 0.6 * half_foot;

@@ -63,9 +63,9 @@ class ByteReader {
   }
   void any(std::uint64_t& x) { x = take(8); }
   // An integer in [0, most].
-  void count(std::uint64_t& x, std::uint64_t most) {
+  void count(std::uint64_t& x, std::uint64_t max) {
     const std::uint64_t value = take(8);
-    if (require(value <= most)) x = value;
+    if (require(value <= max)) x = value;
   }
   // A number in [low, high]; NaN is an error.
   void real(double& x, double low, double high) {

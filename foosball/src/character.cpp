@@ -47,8 +47,8 @@ std::uint64_t digest(const Characters& characters) {
   for (const Character& c : characters) {
     visit_text(writer, c.name);
     visit_text(writer, c.specialty);
-    for (const auto& f : kBodyFields) writer.real(c.body.*f.value, f.least, f.most);
-    for (const auto& f : kVoiceFields) writer.real(c.voice.*f.value, f.least, f.most);
+    for (const auto& f : kBodyFields) writer.real(c.body.*f.value, f.min, f.max);
+    for (const auto& f : kVoiceFields) writer.real(c.voice.*f.value, f.min, f.max);
     for (const std::uint8_t part : c.look.skin) writer.choice(part, 256);
     for (const std::uint8_t part : c.look.accent) writer.choice(part, 256);
     writer.choice(c.look.headgear, kHeadgears);

@@ -32,7 +32,7 @@ double lerp(double a, double b, double t) {
 // Minimum distance between the men in the way and the line from the ball to (goal line, target).
 double clearance(const TableSpec& table, const Sighting& now, int team, double target) {
   const double run = 0.5 * table.length - now.ball.x;
-  double least = 0.2;
+  double min = 0.2;
   for (int rod = 0; rod < kRods; ++rod) {
     const RodSpec& spec = table.rods[rod];
     const double ahead = attack_sign(team) * spec.x - now.ball.x;
@@ -40,10 +40,10 @@ double clearance(const TableSpec& table, const Sighting& now, int team, double t
     if (spec.team == team || ahead < 0.03 || lifted) continue;
     const double y = now.ball.y + (target - now.ball.y) * ahead / run;
     for (int man = 0; man < spec.men; ++man) {
-      least = std::min(least, std::fabs(man_offset(spec, man) + now.slide[rod] - y));
+      min = std::min(min, std::fabs(man_offset(spec, man) + now.slide[rod] - y));
     }
   }
-  return least;
+  return min;
 }
 
 }  // namespace
@@ -156,13 +156,13 @@ double RodTactics::guard_y(const TableSpec& table, const Sighting& now) const {
 double RodTactics::slide_for(const TableSpec& table, double y) const {
   const RodSpec& rod = spec(table);
   double best = slide_.position();
-  double least = 1e9;
+  double min = 1e9;
   for (int man = 0; man < rod.men; ++man) {
     const double wanted = y - man_offset(rod, man);
     const double slide = std::clamp(wanted, -rod.slide_limit, rod.slide_limit);
     const double cost = 10.0 * std::fabs(wanted - slide) + std::fabs(slide - slide_.position());
-    if (cost < least) {
-      least = cost;
+    if (cost < min) {
+      min = cost;
       best = slide;
     }
   }
@@ -245,11 +245,11 @@ void RodTactics::wind_up(const TableSpec& table, const Sighting& now, const Temp
 // ahead, the lower the power, so that the upward part of the speed stays small.
 double RodTactics::power_for(const TableSpec& table, double ahead) const {
   constexpr double kLift = 0.11;  // upward fraction at full power that stays on the table
-  constexpr double kLeast = 0.25;
+  constexpr double kMin = 0.25;
   const double rise = std::max(0.0, ahead - 0.010 - table.ball_radius);
   const double arm = table.rod_height - table.ball_radius;
   const double sine = rise / std::sqrt(rise * rise + arm * arm);
-  return sine > kLift ? std::max(kLeast, kLift / sine) : 1.0;
+  return sine > kLift ? std::max(kMin, kLift / sine) : 1.0;
 }
 
 void RodTactics::strike(const Temper& temper) {

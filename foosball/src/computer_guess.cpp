@@ -34,11 +34,11 @@ class Flight {
 
   // Takes as many steps at once as are certain to be free of collisions, at most `most`. Returns
   // their number. step() handles the collision that may follow.
-  int skip(int most) {
+  int skip(int max) {
     const Cell cell = free_cell();
     const double dx = kStep * v_.x, dy = kStep * v_.y;
     const bool rolls = field_.rolls(p_.z, v_.z);
-    double free = most;
+    double free = max;
     free = std::min(free, steps_within(cell.x, p_.x, dx));
     free = std::min(free, steps_within(cell.y, p_.y, dy));
     if (!rolls) free = std::min(free, field_.steps_above(p_.z, v_.z));

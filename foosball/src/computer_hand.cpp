@@ -21,8 +21,8 @@ void HandAxis::swing(double goal, const AxisLimits& limits) {
 }
 
 void HandAxis::accelerate(double wanted_rate, const AxisLimits& limits) {
-  const double most = limits.acceleration * kTick;
-  rate_ += std::clamp(wanted_rate - rate_, -most, most);
+  const double max = limits.acceleration * kTick;
+  rate_ += std::clamp(wanted_rate - rate_, -max, max);
   position_ += rate_ * kTick;
 }
 

@@ -9,7 +9,7 @@ namespace foosball {
 class ComputerHands {
  public:
   static constexpr int kNone = -1;
-  static constexpr int kMost = 2;
+  static constexpr int kMax = 2;
 
   ComputerHands(int hands, int travel_ticks) : count_(hands), travel_(travel_ticks) {}
 
@@ -31,7 +31,7 @@ class ComputerHands {
   void send(int line, const std::array<bool, 4>& busy, int other);
 
   int count_, travel_;
-  std::array<Hand, kMost> hands_{};
+  std::array<Hand, kMax> hands_{};
 };
 
 }  // namespace foosball

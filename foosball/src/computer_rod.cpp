@@ -133,13 +133,13 @@ bool ComputerRod::is_behind_feet(const Sighting& now) const {
 
 double ComputerRod::slide_for(double y, int* man_out) const {
   double best = slide_.position();
-  double least = 1e9;
+  double min = 1e9;
   for (int man = 0; man < spec().men; ++man) {
     const double wanted = y - man_offset(spec(), man);
     const double slide = std::clamp(wanted, -spec().slide_limit, spec().slide_limit);
     const double cost = 10.0 * std::fabs(wanted - slide) + std::fabs(slide - slide_.position());
-    if (cost >= least) continue;
-    least = cost;
+    if (cost >= min) continue;
+    min = cost;
     best = slide;
     if (man_out != nullptr) *man_out = man;
   }

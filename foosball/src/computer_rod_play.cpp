@@ -19,7 +19,7 @@ constexpr double kFrom = -0.030, kTo = 0.058;
 constexpr double kScoopFrom = -0.062;    // a ball at rest behind the foot is scooped forward:
 constexpr double kScoopTo = -0.030;      // a strike from above would pin it, or send it back
 constexpr double kScoopBeside = 0.0115;  // distance of the ball's centre beyond the foot's edge [m]
-constexpr double kScoopLeast = 2.0, kScoopMost = 4.0;  // rate of the swing [rad/s]
+constexpr double kScoopMin = 2.0, kScoopMax = 4.0;  // rate of the swing [rad/s]
 constexpr double kHookFrom = -0.042;  // a ball less far behind leaves at a known slope
 struct Hook {
   double beside, rate;  // [m], [rad/s]
@@ -195,7 +195,7 @@ void ComputerRod::choose_hook(const Sighting& now, double square, const Temperam
                               Random& random) {
   scoop_side_ = random.unit() < 0.5 ? -1.0 : 1.0;
   if (!can_stand_beside(square, scoop_side_, kScoopBeside)) scoop_side_ = -scoop_side_;
-  scoop_rate_ = random.between(kScoopLeast, kScoopMost);
+  scoop_rate_ = random.between(kScoopMin, kScoopMax);
   scoop_beside_ = kScoopBeside;
   pass_ = {};
   slope_ = 0.0;
@@ -304,9 +304,9 @@ void ComputerRod::strike_if_ready(const Sighting& now, const Meeting& m, bool al
   if (!(aligned && worth_ >= bar) && since_ <= pause_ + judgment_.patience + judgment_.late) return;
   power_ = m.rate / t.strike.rate;
   // The stroke goes through the ball and a little beyond; the braking distance is subtracted.
-  constexpr double kLeast = 0.08, kBeyond = 0.20;  // [rad]
+  constexpr double kMin = 0.08, kBeyond = 0.20;  // [rad]
   const double rest = 0.5 * m.rate * m.rate / t.strike.acceleration;
-  through_ = std::max(kLeast, contact_swing(*table_, foot_, m.ahead) + kBeyond - rest);
+  through_ = std::max(kMin, contact_swing(*table_, foot_, m.ahead) + kBeyond - rest);
   sends_ = stroke_speed(foot_, *table_, m);
   enter(Act::strike);
 }

@@ -51,7 +51,7 @@ vp::Expected<Judgment> with_changes(const Judgment& base, std::string_view chang
     double value = 0.0;
     if (!read_number(one.substr(equals + 1), value) || !in_range(field, value)) {
       return refuse(quoted(one) + ": " + field.name + " must be a number from " +
-                    number(field.least) + " to " + number(field.most));
+                    number(field.min) + " to " + number(field.max));
     }
     if (given[static_cast<std::size_t>(index)]) {
       return refuse(std::string(field.name) + " is given twice: give it once");

@@ -42,7 +42,7 @@ bool playable(const Rules& rules) {
   return static_cast<int>(rules.set) < kRuleSets && static_cast<int>(rules.spin) < kSpinRules &&
          rules.goals_to_win >= 1 && rules.goals_to_win <= rules.max_goals &&
          rules.max_goals <= kMaxScore && rules.lead >= 1 && rules.lead <= kMaxScore &&
-         rules.sets_to_win >= 1 && rules.sets_to_win <= kMostSetsToWin &&
+         rules.sets_to_win >= 1 && rules.sets_to_win <= kMaxSetsToWin &&
          (rules.golden_goal || rules.sets_to_win == 1) && rules.time_outs >= 0 &&
          rules.time_outs <= kMaxCount && duration(rules.dead_ball_seconds) &&
          duration(rules.possession_midfield_seconds) && duration(rules.possession_seconds) &&

@@ -12,7 +12,7 @@ namespace {
 
 // Below this impulse the ball's velocity changes by less than about 0.1 m/s: too little to hear or
 // feel.
-constexpr double kLeastHit = 0.003;  // [N s]
+constexpr double kMinHit = 0.003;  // [N s]
 // A ball that a defender touches within this time after an attacker is a deflected shot.
 constexpr double kDeflection = 0.3;  // [s]
 // A hand that is faster at the rod's stop jars the table (16.3).
@@ -50,7 +50,7 @@ void Match::Impl::watch_ball(const vp::Vec3& velocity_before) {
 void Match::Impl::note_contacts(const vp::Vec3& velocity_before) {
   // A ball pressed against an object has repeated contact events; they are not hits.
   const vp::Vec3 change = world->ball().velocity - velocity_before;
-  const bool felt = state.tuning.ball_mass * vp::norm(change) >= kLeastHit;
+  const bool felt = state.tuning.ball_mass * vp::norm(change) >= kMinHit;
   for (const vp::ContactEvent& event : world->contacts()) {
     const BallContact contact = ball_contact(event);
     const Tag& other = contact.other;

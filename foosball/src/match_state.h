@@ -15,8 +15,8 @@ namespace foosball {
 
 // Fits a byte, and no match reaches it.
 inline constexpr int kMaxScore = 99;
-static_assert(kMostGoals <= kMaxScore);
-inline constexpr int kMostSetsToWin = (kMostSets + 1) / 2;
+static_assert(kMaxGoals <= kMaxScore);
+inline constexpr int kMaxSetsToWin = (kMaxSets + 1) / 2;
 inline constexpr int kMaxCount = 250;           // of fouls and time-outs; counting stops there
 inline constexpr double kMaxDuration = 3600.0;  // [s]
 // Bound on a rod's angle [rad]: no hand reaches two million revolutions.
@@ -74,7 +74,7 @@ struct Tally {
   static void visit(Archive& archive, Self& self) {
     for (int team = 0; team < kTeams; ++team) {
       archive.choice(self.score[team], kMaxScore + 1);
-      archive.choice(self.sets[team], kMostSetsToWin + 1);
+      archive.choice(self.sets[team], kMaxSetsToWin + 1);
       archive.choice(self.time_outs[team], kMaxCount + 1);
       archive.choice(self.jars[team], kMaxCount + 1);
     }
@@ -172,7 +172,7 @@ void visit_rules(Archive& archive, R& rules) {
   archive.choice(rules.goals_to_win, kMaxScore + 1);
   archive.choice(rules.max_goals, kMaxScore + 1);
   archive.choice(rules.lead, kMaxScore + 1);
-  archive.choice(rules.sets_to_win, kMostSetsToWin + 1);
+  archive.choice(rules.sets_to_win, kMaxSetsToWin + 1);
   archive.real(rules.match_seconds, 0.0, kMaxDuration);
   archive.flag(rules.golden_goal);
   archive.flag(rules.change_sides);
@@ -242,7 +242,7 @@ void MatchState::visit(Archive& archive, Self& self) {
   }
   archive.any(self.random);
   visit_fields(self.tuning, [&](const TuningField& field, auto& value) {
-    archive.real(value, field.least, field.most);
+    archive.real(value, field.min, field.max);
   });
 }
 

@@ -18,8 +18,8 @@ class MovedRods {
     unsigned moved = 0;
     for (int rod = 0; rod < kRods; ++rod) {
       const RodTarget& hand = hands[rod];
-      if (!hand.live || (std::fabs(hand.slide - slide_[rod]) < kLeastHandSlide &&
-                         std::fabs(hand.angle - angle_[rod]) < kLeastHandTurn)) {
+      if (!hand.live || (std::fabs(hand.slide - slide_[rod]) < kMinHandSlide &&
+                         std::fabs(hand.angle - angle_[rod]) < kMinHandTurn)) {
         continue;
       }
       slide_[rod] = hand.slide;

@@ -74,11 +74,11 @@ int rod_after_possession(const TableSpec& table, int team, Line line) {
 // If two rods can reach the ball, it belongs to the nearer one.
 int nearest_in_reach(const TableSpec& table, std::uint8_t rods_in_reach, double ball_x) {
   int nearest = kRods;
-  double least = table.length;
+  double min = table.length;
   for (int rod = 0; rod < kRods; ++rod) {
     const double distance = std::fabs(table.rods[rod].x - ball_x);
-    if ((rods_in_reach >> rod & 1) == 0 || distance >= least) continue;
-    least = distance;
+    if ((rods_in_reach >> rod & 1) == 0 || distance >= min) continue;
+    min = distance;
     nearest = rod;
   }
   return nearest;

@@ -32,8 +32,8 @@ double step_rate(const AxisDrive& drive, double mass, double position, double ra
   const double gain = h * (h * drive.stiffness + drive.damping);
   const double target =
       h * (drive.stiffness * (drive.position - position) + drive.damping * drive.velocity) / gain;
-  const double most = h * drive.max_force;
-  const double impulse = std::clamp((target - rate) / (1.0 / mass + 1.0 / gain), -most, most);
+  const double max = h * drive.max_force;
+  const double impulse = std::clamp((target - rate) / (1.0 / mass + 1.0 / gain), -max, max);
   return rate + impulse / mass;
 }
 

@@ -455,8 +455,8 @@ void TableWorld::lift_ball(double speed) {
   const vp::Vec3 position = ball().pose.position();
   const double up = ball().velocity.z;
   const double room = std::max(0.0, tuning_.hop_ceiling - (position.z - table_.ball_radius));
-  const double most = std::sqrt(2.0 * tuning_.gravity * room);
-  const double wanted = std::min(speed, most);
+  const double max = std::sqrt(2.0 * tuning_.gravity * room);
+  const double wanted = std::min(speed, max);
   if (wanted == up) return;
   must(world_.apply_impulse(ball_, {0.0, 0.0, tuning_.ball_mass * (wanted - up)}, position));
   read_ball();

@@ -20,9 +20,9 @@ inline TeamBodies built_in(int character0, int character1) {
 
 // Every number at its minimum or maximum. The reach is reduced where the foot's corner would be too
 // far from the axis.
-inline CharacterBody body_at_bound(bool most) {
+inline CharacterBody body_at_bound(bool max) {
   CharacterBody body;
-  for (const auto& field : kBodyFields) body.*field.value = most ? field.most : field.least;
+  for (const auto& field : kBodyFields) body.*field.value = max ? field.max : field.min;
   const double half = 0.5 * body.foot_depth;
   body.foot_reach = std::fmin(body.foot_reach, std::sqrt(kFootCorner * kFootCorner - half * half));
   return body;
@@ -37,7 +37,7 @@ inline std::vector<CharacterBody> bodies_of_all_kinds() {
   all.push_back(body_at_bound(true));
   CharacterBody thin = body_at_bound(false);
   for (const auto& f : kBodyFields) {
-    if (f.value == &CharacterBody::foot_reach) thin.foot_reach = f.most;
+    if (f.value == &CharacterBody::foot_reach) thin.foot_reach = f.max;
   }
   const double half = 0.5 * thin.foot_depth;
   thin.foot_reach = std::fmin(thin.foot_reach, std::sqrt(kFootCorner * kFootCorner - half * half));

@@ -89,17 +89,17 @@ TEST(Characters, AreEachFirstAtWhatTheyAreKnownFor) {
   const auto largest = [](const std::vector<double>& v) {
     return std::max_element(v.begin(), v.end()) - v.begin();
   };
-  const auto least = [](const std::vector<double>& v) {
+  const auto min = [](const std::vector<double>& v) {
     return std::min_element(v.begin(), v.end()) - v.begin();
   };
   EXPECT_EQ(largest(shot), kHeavy);
   EXPECT_EQ(largest(aside), kHeavy) << "and pays for it";
   EXPECT_GT(aside[kHeavy], 1.5 * aside[kAverage]);
   EXPECT_GT(shot[kTall], 1.05 * shot[kAverage]);
-  EXPECT_EQ(least(foot), kTall) << "and lets more through";
+  EXPECT_EQ(min(foot), kTall) << "and lets more through";
   EXPECT_EQ(largest(foot), kSmall);
   EXPECT_LT(shot[kSmall], 0.95 * shot[kAverage]);
-  EXPECT_EQ(least(kept), kSoft);
+  EXPECT_EQ(min(kept), kSoft);
   EXPECT_EQ(largest(hop), kJumper);
   EXPECT_GT(hop[kJumper], 1.5 * hop[kAverage]);
 }

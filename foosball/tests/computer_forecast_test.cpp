@@ -14,7 +14,7 @@ namespace foosball {
 namespace {
 
 constexpr int kDelay = 80;  // ticks
-constexpr int kMost = 8;    // world steps per tick of play
+constexpr int kMax = 8;     // world steps per tick of play
 
 double percentile(std::vector<double>& values, double share) {
   const auto at =
@@ -47,7 +47,7 @@ struct Watched {
   Match match;
   ComputerPlayer home, away;
   ComputerSight sight{0, kDelay};
-  BallForecast forecast{0, kDelay, kMost};
+  BallForecast forecast{0, kDelay, kMax};
   TickInput input;
 };
 
@@ -80,34 +80,34 @@ TEST_P(ComputerForecast, IsCloserToTheBallThanACoarseModel) {
   }
   ASSERT_GT(in_play, 20'000);
   const double share = static_cast<double>(off.size()) / static_cast<double>(in_play);
-  const double half = percentile(off, 0.5), most = percentile(off, 0.9);
-  const double coarse_half = percentile(coarse_off, 0.5), coarse_most = percentile(coarse_off, 0.9);
+  const double half = percentile(off, 0.5), max = percentile(off, 0.9);
+  const double coarse_half = percentile(coarse_off, 0.5), coarse_max = percentile(coarse_off, 0.9);
   std::printf(
       "forecast in %.0f %% of play: off by %.2f mm (median), %.1f mm (90th percentile); "
       "the coarse model %.2f, %.1f\n",
-      100.0 * share, half, most, coarse_half, coarse_most);
+      100.0 * share, half, max, coarse_half, coarse_max);
   EXPECT_GT(share, 0.5);
   EXPECT_LT(half, 0.3 * coarse_half);
-  EXPECT_LT(most, 0.7 * coarse_most);
+  EXPECT_LT(max, 0.7 * coarse_max);
 }
 
 TEST_P(ComputerForecast, SpendsNoMoreTicksThanItMay) {
   Watched game(GetParam(), 3);
-  int most = 0;
+  int max = 0;
   long spent = 0, in_play = 0;
   for (int tick = 0; tick < 30'000; ++tick) {
     game.look();
     game.play();
-    most = std::max(most, game.forecast.ticks_spent());
+    max = std::max(max, game.forecast.ticks_spent());
     if (game.match.view().ball_in_play) {
       ++in_play;
       spent += game.forecast.ticks_spent();
     }
   }
   std::printf("%.2f world ticks for a tick of play, %d at most\n",
-              static_cast<double>(spent) / static_cast<double>(in_play), most);
-  EXPECT_LE(most, kMost);
-  EXPECT_GT(most, kMost / 2) << "it does catch up";
+              static_cast<double>(spent) / static_cast<double>(in_play), max);
+  EXPECT_LE(max, kMax);
+  EXPECT_GT(max, kMax / 2) << "it does catch up";
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ TEST(ComputerGuess, OfALongTimeIsThatOfItsStepsOneByOne) {
   const auto between = [&](double low, double high) {
     return low + (high - low) * static_cast<double>(bits() >> 11) * 0x1p-53;
   };
-  double most = 0.0;
+  double max = 0.0;
   int parted = 0, moved = 0;
   constexpr int kTries = 4000;
   for (int i = 0; i < kTries; ++i) {
@@ -44,10 +44,10 @@ TEST(ComputerGuess, OfALongTimeIsThatOfItsStepsOneByOne) {
     const double off = vp::norm(at_once.position - ball.position);
     moved += vp::norm(ball.position - from.position) > 0.05 ? 1 : 0;
     // At the edge of a foot or a post, the last bit decides the direction of the ball.
-    off > 1e-6 ? void(++parted) : void(most = std::max(most, off));
+    off > 1e-6 ? void(++parted) : void(max = std::max(max, off));
   }
-  std::printf("at most %.1e m off; %d of %d parted at an edge\n", most, parted, kTries);
-  EXPECT_LT(most, 1e-9);  // measured 7e-15
+  std::printf("at most %.1e m off; %d of %d parted at an edge\n", max, parted, kTries);
+  EXPECT_LT(max, 1e-9);  // measured 7e-15
   EXPECT_LE(parted, kTries / 1000);
   EXPECT_GT(moved, kTries / 2);
 }

@@ -40,7 +40,7 @@ TEST(GameSetup, RulesAreThoseOfTheSetWithWhatIsChosenOfThem) {
 TEST(GameSetup, IsReadBackFromItsRules) {
   for (const Mode mode : {Mode::match, Mode::ladder}) {
     for (const int goals : {0, 1, 5, 99}) {
-      for (const std::uint32_t ms : {0u, 6'000u, 90'500u, kMostMatchMs}) {
+      for (const std::uint32_t ms : {0u, 6'000u, 90'500u, kMaxMatchMs}) {
         const GameSetup setup{mode, RuleSet::itsf, goals, 17, ms, true, 0};
         const Rules rules = rules_of(setup);
         EXPECT_EQ(rules_of(setup_of(mode, rules)), rules) << goals << " " << ms;
@@ -53,12 +53,12 @@ TEST(GameSetup, IsReadBackFromItsRules) {
 
 TEST(GameSetup, WhatContradictsItsModeOrIsOutOfRangeIsNotPlayable) {
   EXPECT_TRUE(playable(GameSetup{}));
-  EXPECT_TRUE(playable(GameSetup{.goals = 99, .sets = 17, .match_ms = kMostMatchMs}));
+  EXPECT_TRUE(playable(GameSetup{.goals = 99, .sets = 17, .match_ms = kMaxMatchMs}));
   EXPECT_TRUE(playable(GameSetup{.mode = Mode::training, .rules = RuleSet::itsf}));
   EXPECT_TRUE(playable(GameSetup{.mode = Mode::challenge, .date = 20261122}));
   for (const GameSetup& bad :
        {GameSetup{.goals = 100}, GameSetup{.goals = -1}, GameSetup{.sets = 2},
-        GameSetup{.sets = 19}, GameSetup{.sets = -1}, GameSetup{.match_ms = kMostMatchMs + 1},
+        GameSetup{.sets = 19}, GameSetup{.sets = -1}, GameSetup{.match_ms = kMaxMatchMs + 1},
         GameSetup{.mode = static_cast<Mode>(4)}, GameSetup{.rules = static_cast<RuleSet>(2)},
         GameSetup{.date = 20261122}, GameSetup{.mode = Mode::challenge},
         GameSetup{.mode = Mode::challenge, .date = 20260231},

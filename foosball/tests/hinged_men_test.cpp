@@ -143,7 +143,7 @@ TEST_P(HingedMen, OneWhoIsHeldWhileTheHandSpinsThreeTurnsSlipsAndComesBack) {
 TEST_P(HingedMen, TheTorqueOfAManIsBounded) {
   const RodInertia inertia = rod_inertia(table(), table().rods[kGoalie], built_in(character));
   world.set_man(kGoalie, kHeldMan, {-2.5, 0.0});
-  const double most = inertia.limits.torque / inertia.turn * kTick;  // per tick [rad/s]
+  const double max = inertia.limits.torque / inertia.turn * kTick;  // per tick [rad/s]
   double greatest = 0.0;
   for (int tick = 0; tick < 100; ++tick) {
     const double before = world.men()[kGoalie][kHeldMan].angle_rate;
@@ -152,7 +152,7 @@ TEST_P(HingedMen, TheTorqueOfAManIsBounded) {
     const double after = world.men()[kGoalie][kHeldMan].angle_rate;
     greatest = std::max(greatest, std::fabs(after - before));
   }
-  EXPECT_NEAR(greatest, most, 1e-6 * most);
+  EXPECT_NEAR(greatest, max, 1e-6 * max);
   EXPECT_NEAR(world.men()[kGoalie][kHeldMan].angle, 0.0, 1e-3) << "and he has come back";
 }
 

@@ -14,7 +14,7 @@ TEST(Judgment, IsTheSameAfterItsChangesAreWrittenAndRead) {
   double share = 0.0;
   for (const JudgmentField& field : kJudgmentFields) {
     share += 1.0 / 37.0;  // not a short decimal
-    judgment.*field.value = field.least + share * (field.most - field.least);
+    judgment.*field.value = field.min + share * (field.max - field.min);
   }
   const auto again = with_changes(base, changes_of(base, judgment));
   ASSERT_TRUE(again) << again.error().message;

@@ -22,7 +22,7 @@ double length(const std::vector<double>& v) {
 }
 
 // Limits against noise: it must not stop the search, nor make it jump across the whole cube.
-constexpr double kLeastStep = 0.01, kMostStep = 0.5;
+constexpr double kMinStep = 0.01, kMaxStep = 0.5;
 
 }  // namespace
 
@@ -120,8 +120,8 @@ void EvolutionStrategy::tell(const std::vector<double>& values) {
     variance_[i] = (1.0 - c_1_ - c_mu_) * variance_[i] +
                    c_1_ * (path_c_[i] * path_c_[i] + missing) + c_mu_ * squares[i];
   }
-  step_ = std::clamp(step_ * plain_exp(std::min(600.0, c_s_ / d_s_ * (relative - 1.0))), kLeastStep,
-                     kMostStep);
+  step_ = std::clamp(step_ * plain_exp(std::min(600.0, c_s_ / d_s_ * (relative - 1.0))), kMinStep,
+                     kMaxStep);
   sample();
 }
 

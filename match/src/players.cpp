@@ -64,13 +64,13 @@ class Spinner final : public Player {
  private:
   // The slide that brings a man to y with the least motion.
   static double goal_of(const foosball::RodSpec& rod, double y, double slide) {
-    double best = slide, least = 1e9;
+    double best = slide, min = 1e9;
     for (int man = 0; man < rod.men; ++man) {
       const double wanted = y - man_offset(rod, man);
       const double goal = std::clamp(wanted, -rod.slide_limit, rod.slide_limit);
       const double cost = 10.0 * std::fabs(wanted - goal) + std::fabs(goal - slide);
-      if (cost < least) {
-        least = cost;
+      if (cost < min) {
+        min = cost;
         best = goal;
       }
     }

@@ -23,18 +23,18 @@ constexpr std::array kLayouts{foosball::Layout::tournament, foosball::Layout::pa
 constexpr std::uint64_t kSeedsApart = 100'000;
 
 double share_of(const JudgmentField& field, double value) {
-  return (value - field.least) / (field.most - field.least);
+  return (value - field.min) / (field.max - field.min);
 }
 
 // Four digits are finer than any search can resolve. So a sample's name contains its complete
 // value.
 double value_at(const JudgmentField& field, double share) {
-  const double value = std::lerp(field.least, field.most, std::clamp(share, 0.0, 1.0));
+  const double value = std::lerp(field.min, field.max, std::clamp(share, 0.0, 1.0));
   char digits[32];
   const int size = std::snprintf(digits, sizeof digits, "%.4g", value);
   double rounded = value;
   std::from_chars(digits, digits + size, rounded);
-  return std::clamp(rounded, field.least, field.most);
+  return std::clamp(rounded, field.min, field.max);
 }
 
 // Goals of the first and the second player. Half a goal each defines the fraction without goals.

@@ -16,7 +16,7 @@ namespace profile {
 
 template <class Field>
 std::string range_of(const Field& field) {
-  return fmt::format("{} to {}{}{}", field.least, field.most, *field.unit == '\0' ? "" : " ",
+  return fmt::format("{} to {}{}{}", field.min, field.max, *field.unit == '\0' ? "" : " ",
                      field.unit);
 }
 
@@ -56,13 +56,13 @@ tl::expected<Values, std::string> read_fields(std::string_view text, std::string
 // Reads a file of at most 64 KiB. what: the expected kind, such as "tuning profile".
 inline tl::expected<std::string, std::string> read_text(const std::string& path,
                                                         std::string_view what) {
-  constexpr std::size_t kMostBytes = 64 * 1024;
+  constexpr std::size_t kMaxBytes = 64 * 1024;
   std::ifstream file(path, std::ios::binary);
   if (!file) return tl::unexpected(path + " cannot be read; check its name and permissions.");
-  std::string text(kMostBytes + 1, '\0');
+  std::string text(kMaxBytes + 1, '\0');
   file.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(file.gcount()));
-  if (file.bad() || text.size() > kMostBytes) {
+  if (file.bad() || text.size() > kMaxBytes) {
     return tl::unexpected(
         fmt::format("{} is no {}: it is a folder or longer than 64 KiB.", path, what));
   }

@@ -27,9 +27,9 @@ Letter letter_at(std::string_view text, std::size_t at) {
     if ((byte(k) & 0xC0u) != 0x80u) return {};
     code = code << 6 | (byte(k) & 0x3Fu);
   }
-  constexpr std::uint32_t kLeast[] = {0, 0, 0x80, 0x800, 0x10000};
+  constexpr std::uint32_t kMin[] = {0, 0, 0x80, 0x800, 0x10000};
   const bool surrogate = code >= 0xD800 && code < 0xE000;
-  if (code < kLeast[bytes] || surrogate) return {};
+  if (code < kMin[bytes] || surrogate) return {};
   return {code, bytes};
 }
 
@@ -69,9 +69,9 @@ std::string with_moved(std::string_view text, std::uint32_t first, std::uint32_t
 
 // Each dot of a key (a.b.c) opens a nested table, which toml++ follows by recursion: 20000 levels
 // overflow a stack of 8 MiB. Numbers, strings and comments do not need that many either.
-constexpr std::size_t kMostDots = 2000;
+constexpr std::size_t kMaxDots = 2000;
 
-// The line in which the number of dots exceeds kMostDots; 0: none. A row of dots counts as one: a
+// The line in which the number of dots exceeds kMaxDots; 0: none. A row of dots counts as one: a
 // key has no adjacent dots.
 toml::source_index line_with_too_many_dots(std::string_view text) {
   std::size_t dots = 0;
@@ -79,7 +79,7 @@ toml::source_index line_with_too_many_dots(std::string_view text) {
   char before = 0;
   for (const char c : text) {
     if (c == '\n') ++line;
-    if (c == '.' && before != '.' && ++dots > kMostDots) return line;
+    if (c == '.' && before != '.' && ++dots > kMaxDots) return line;
     before = c;
   }
   return 0;

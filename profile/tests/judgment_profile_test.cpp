@@ -14,7 +14,7 @@ TEST(JudgmentProfile, ComesBackBitForBit) {
   double share = 0.0;
   for (const JudgmentField& field : kJudgmentFields) {
     share += 1.0 / 37.0;
-    judgment.*field.value = field.least + share * (field.most - field.least);
+    judgment.*field.value = field.min + share * (field.max - field.min);
   }
   const auto again = parse_judgment(format_judgment(judgment, {}), "x.toml", {});
   ASSERT_TRUE(again) << again.error();

@@ -21,7 +21,7 @@ TEST(TuningProfile, ComesBackBitForBit) {
   double share = 0.0;
   visit_fields(tuning, [&](const TuningField& field, double& value) {
     share += 1.0 / 31.0;
-    value = field.least + share * (field.most - field.least);
+    value = field.min + share * (field.max - field.min);
   });
   const auto again = parse_tuning(format_tuning(tuning), "x.toml");
   ASSERT_TRUE(again) << again.error();
@@ -37,7 +37,7 @@ TEST(TuningProfile, OfTheDefaultsAndAnEmptyOneAreTheDefaults) {
 TEST(TuningProfile, TakesTheEndsOfEachRangeAndRefusesWhatLiesBeyondWithItsLine) {
   for (const TuningField& field : kTuningFields) {
     const std::string name = field.name;
-    for (const double end : {field.least, field.most}) {
+    for (const double end : {field.min, field.max}) {
       EXPECT_TRUE(parse_tuning(name + " = " + std::to_string(end + 0.0) + "\n", "x.toml") ||
                   end < 1e-3)
           << name;

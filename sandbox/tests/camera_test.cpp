@@ -31,7 +31,7 @@ TEST(OrbitCamera, ShowsAllThatItIsFittedToAndNoMoreThanThat) {
         camera.look_from(yaw, 0.5);
         const vp::Vec3 low{-3, 100, 2}, high{9, 104, 7};
         camera.fit(low, high, screen);
-        float most = 0.0f;
+        float max = 0.0f;
         for (int corner = 0; corner < 8; ++corner) {
           const glm::vec3 p =
               projected(camera,
@@ -40,10 +40,10 @@ TEST(OrbitCamera, ShowsAllThatItIsFittedToAndNoMoreThanThat) {
                         screen);
           const auto c = static_cast<float>(covered);
           const float x = (p.x - c) / (1.0f - c);  // in the free part
-          most = std::max({most, std::abs(x), std::abs(p.y)});
+          max = std::max({max, std::abs(x), std::abs(p.y)});
         }
-        EXPECT_LT(most, 1.0f) << screen.x << " " << covered << " " << yaw;
-        EXPECT_GT(most, 0.9f) << screen.x << " " << covered << " " << yaw;
+        EXPECT_LT(max, 1.0f) << screen.x << " " << covered << " " << yaw;
+        EXPECT_GT(max, 0.9f) << screen.x << " " << covered << " " << yaw;
       }
     }
   }

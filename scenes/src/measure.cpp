@@ -46,9 +46,9 @@ const Vec3& column(const Core& core, int i) {
 // The smallest overlap of two cores along the separating axes; negative if they are separated.
 double core_overlap(const Core& a, const Core& b) {
   const Vec3 d = b.pose.position() - a.pose.position();
-  double least = std::numeric_limits<double>::infinity();
+  double min = std::numeric_limits<double>::infinity();
   const auto try_axis = [&](const Vec3& n) {
-    least = std::min(least, extent(a, n) + extent(b, n) - std::fabs(dot(d, n)));
+    min = std::min(min, extent(a, n) + extent(b, n) - std::fabs(dot(d, n)));
   };
   for (int i = 0; i < 3; ++i) {
     try_axis(column(a, i));
@@ -61,7 +61,7 @@ double core_overlap(const Core& a, const Core& b) {
       if (length > 1e-6) try_axis((1.0 / length) * n);  // else parallel: the face axes suffice
     }
   }
-  return least;
+  return min;
 }
 
 double distance_to(const Core& core, const Vec3& point) {
@@ -73,7 +73,7 @@ double distance_to(const Core& core, const Vec3& point) {
 // The distance of a segment's points from a convex set is a convex function. Ternary search finds
 // its minimum: 100 iterations reduce the interval below rounding.
 template <class DistanceAt>
-double least_along(double half_length, const DistanceAt& at) {
+double min_along(double half_length, const DistanceAt& at) {
   double lower = -half_length, upper = half_length;
   for (int i = 0; i < 100 && upper > lower; ++i) {
     const double third = (upper - lower) / 3.0;
@@ -88,7 +88,7 @@ double least_along(double half_length, const DistanceAt& at) {
 
 // Distance of a point or a segment from another core.
 double core_distance(const Core& thin, const Core& other) {
-  return least_along(thin.half.z, [&](double z) {
+  return min_along(thin.half.z, [&](double z) {
     return distance_to(other, thin.pose * Vec3{0.0, 0.0, z});
   });
 }
@@ -160,7 +160,7 @@ double hull_penetration(const Polyhedron& hull, const SE3& T, const Core& core) 
   if (!core.round()) return hulls_penetration(hull, T, box_polyhedron(core.half), core.pose);
   const auto in_hull = [&](double z) { return inverse_times(T, core.pose * Vec3{0.0, 0.0, z}); };
   const double distance =
-      least_along(core.half.z, [&](double z) { return hull_distance(hull, in_hull(z)); });
+      min_along(core.half.z, [&](double z) { return hull_distance(hull, in_hull(z)); });
   if (distance > 0.0) return core.radius - distance;
   return core.radius +
          std::max(depth_in(hull, in_hull(core.half.z)), depth_in(hull, in_hull(-core.half.z)));

@@ -36,11 +36,11 @@ double triangle_distance(const Vec3 (&corners)[3], const Vec3& p) {
 }
 
 double depth_in(const Polyhedron& hull, const Vec3& p) {
-  double least = std::numeric_limits<double>::infinity();
+  double min = std::numeric_limits<double>::infinity();
   for (const Polyhedron::Face& face : hull.faces) {
-    least = std::min(least, face.offset - dot(face.normal, p));
+    min = std::min(min, face.offset - dot(face.normal, p));
   }
-  return least;
+  return min;
 }
 
 double hull_distance(const Polyhedron& hull, const Vec3& p) {

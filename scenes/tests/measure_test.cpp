@@ -110,17 +110,17 @@ TEST(Penetration, OfBoxesIsTheLeastOverlapOverAllDirections) {
     const double depth = penetration(a, A, b, B);
     if (depth <= 0.0) continue;
     ++meeting;
-    double least = 1e9;
+    double min = 1e9;
     for (int k = 0; k < 40000; ++k) {
       const Vec3 any = random.in_cube(1.0);
       if (norm(any) < 0.1) continue;
       const Vec3 n = (1.0 / norm(any)) * any;
       const double overlap =
           reach(a, A, n) + reach(b, B, n) - std::fabs(dot(n, B.position() - A.position()));
-      least = std::min(least, overlap);
+      min = std::min(min, overlap);
     }
-    EXPECT_LE(depth, least + 1e-12);
-    EXPECT_GE(depth, least - 0.03);
+    EXPECT_LE(depth, min + 1e-12);
+    EXPECT_GE(depth, min - 0.03);
   }
   EXPECT_GT(meeting, 20);
   // Measured: 0.016 m at worst; the directions are about a degree apart.

@@ -103,20 +103,20 @@ bool Broadcaster::spare_core() {
 // Busy-waits, since a wake-up takes as long as the tick does. After several failures in a row (long
 // ticks, a loaded machine) it stops for a while.
 void Broadcaster::await(std::uint32_t done) {
-  constexpr int kMostVain = 8, kRest = 1000;
+  constexpr int kMaxFailedWaits = 8, kRest = 1000;
   if (expected_.load(std::memory_order_acquire) != done + 1 || !spare_core()) return;
-  if (vain_ >= kMostVain) {
-    if (++vain_ > kMostVain + kRest) vain_ = 0;
+  if (failed_waits_ >= kMaxFailedWaits) {
+    if (++failed_waits_ > kMaxFailedWaits + kRest) failed_waits_ = 0;
     return;
   }
   const std::int64_t end = os::monotonic_ns() + kLookOutNs;
   while (given_.load(std::memory_order_acquire) == done) {
     if (os::monotonic_ns() >= end) {
-      ++vain_;
+      ++failed_waits_;
       return;
     }
   }
-  vain_ = 0;
+  failed_waits_ = 0;
 }
 
 namespace {

@@ -96,7 +96,7 @@ class Broadcaster {
   std::vector<Sealed> sealed_;
   std::uint32_t looked_at_cores_ = 0;
   bool spare_core_ = false;
-  int vain_ = 0;  // consecutive busy-waits without a datagram in time
+  int failed_waits_ = 0;  // consecutive busy-waits without a datagram in time
   SendStats stats_;
   std::atomic<std::uint64_t> sent_{0}, errors_{0}, bytes_{0};
   std::atomic<int> last_error_{0};

@@ -43,7 +43,7 @@ void ControlServer::take_game(ControlConnection& connection, wire::Game game) {
     game.date = challenge_day();
     if (game.date == 0) return refuse_it(say<Said::challenge_undated>());
   }
-  if (untold_.size() > kMostUntold) return refuse_it(say<Said::server_overloaded>());
+  if (pending_.size() > kMaxPending) return refuse_it(say<Said::server_overloaded>());
   count(Count::requests);
   send(connection, wire::Notice{wire::Notice::Level::cleared, wire::kGameAnswerTopic, "chosen"});
   choose(game, seat->client);
@@ -54,7 +54,7 @@ void ControlServer::choose(const wire::Game& game, std::uint32_t client) {
   event.kind = ControlEvent::Kind::game;
   event.client = client;
   event.game = game;
-  untold_.push_back(std::move(event));
+  pending_.push_back(std::move(event));
   tell_tick();
 }
 

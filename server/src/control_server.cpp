@@ -30,7 +30,7 @@ constexpr std::int64_t kLineEveryUs = 1'000'000;
 constexpr int kRostersAtOnce = 32;
 constexpr std::int64_t kRosterEveryUs = 50'000;
 // Rejected connections that are not closed yet.
-constexpr std::size_t kMostClosing = 64;
+constexpr std::size_t kMaxClosing = 64;
 
 }  // namespace
 
@@ -154,7 +154,7 @@ void ControlServer::wait() {
   const std::int64_t now = os::monotonic_us();
   const bool accepting = now >= accept_after_us_;
   std::int64_t until = accepting ? now + 60'000'000 : accept_after_us_;
-  if (!untold_.empty()) until = std::min(until, now + 10'000);
+  if (!pending_.empty()) until = std::min(until, now + 10'000);
   constexpr std::int64_t kLookAtSeatsUs = 100'000;
   const bool waiting =
       votes_.any() || kicks_.any() || std::ranges::any_of(seats_.all(), &Seat::away);
@@ -223,16 +223,16 @@ void ControlServer::make_room_at_the_door() {
     const auto oldest = std::ranges::find_if(connections_, chosen);
     if (oldest != connections_.end()) connections_.erase(oldest);
   };
-  if (closing >= kMostClosing) {
+  if (closing >= kMaxClosing) {
     drop_oldest([](const auto& c) { return c->state == State::closing; });
   }
   if (greeting < options_.limits.greeting) return;
   // Of networks with equal counts, drops the oldest connection of all. Otherwise the same network
   // would lose each time, and nobody from there could join.
-  int most = 0;
-  for (const auto& [network, count] : crowd) most = std::max(most, count);
+  int max = 0;
+  for (const auto& [network, count] : crowd) max = std::max(max, count);
   drop_oldest([&](const auto& c) {
-    return c->state == State::greeting && crowd.at(c->peer().network()) == most;
+    return c->state == State::greeting && crowd.at(c->peer().network()) == max;
   });
   count(Count::crowded_out);
 }
@@ -447,9 +447,9 @@ void ControlServer::publish(const wire::Notice& notice) {
 }
 
 void ControlServer::tell_tick() {
-  while (!untold_.empty() && events_.room() > 0) {
-    events_.push(std::move(untold_.front()));
-    untold_.pop_front();
+  while (!pending_.empty() && events_.room() > 0) {
+    events_.push(std::move(pending_.front()));
+    pending_.pop_front();
   }
 }
 

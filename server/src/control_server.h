@@ -243,7 +243,7 @@ class ControlServer {
   std::uint32_t matches_over_seen_ = 0;
   PasswordTries password_tries_;
   std::map<std::uint32_t, wire::Notice> notices_;  // active, by topic
-  std::deque<ControlEvent> untold_;                // not yet passed to the tick
+  std::deque<ControlEvent> pending_;               // not yet passed to the tick
   std::vector<pollfd> polled_;
   std::uint32_t last_client_ = 0;
   std::int64_t accept_after_us_ = 0;
@@ -251,7 +251,7 @@ class ControlServer {
   RateLimit roster_limit_;
   // Limit of events pending for the tick, which takes eight per millisecond. Above it, nobody may
   // join.
-  static constexpr std::size_t kMostUntold = 256;
+  static constexpr std::size_t kMaxPending = 256;
   static constexpr std::int64_t kLookAtTheDayUs = 1'000'000;
   std::int64_t look_at_the_day_us_ = 0;
   std::uint32_t followed_day_ = 0;

@@ -22,8 +22,6 @@ using wire::say;
 // Topics of notices: of a reserved seat; of a vote, see wire/limits.h; of a claim.
 constexpr std::uint32_t kAwayTopic = 1'000'000;
 constexpr std::uint32_t kClaimTopic = 300;
-// The roster cannot list more seats.
-constexpr std::size_t kMostSeats = wire::kMaxSeats;
 // Client id of a request that was decided by a vote.
 constexpr std::uint32_t kEverybody = 0;
 
@@ -91,7 +89,7 @@ void ControlServer::greet(ControlConnection& connection, const wire::Hello& hell
     refuse(connection, wire::Refusal::Code::layout, say<Said::other_snapshots>());
   } else if (!connection.sealed() && !connection.vouched() && !trusted(connection)) {
     refuse(connection, wire::Refusal::Code::password, say<Said::password_wanted>());
-  } else if (untold_.size() > kMostUntold) {
+  } else if (pending_.size() > kMaxPending) {
     refuse(connection, wire::Refusal::Code::full, say<Said::server_overloaded>());
   } else if (!resume(connection, hello)) {
     RodSet rods = 0;
@@ -141,8 +139,9 @@ bool ControlServer::admit_to_table(ControlConnection& connection, const wire::He
     return false;
   }
   hear_out_leavers(hello.rods != 0 ? hello.rods : rods_of_team(options_.layout, hello.team));
-  const auto most = std::min(static_cast<std::size_t>(limits.connections), kMostSeats);
-  if (seats_.all().size() >= most) {
+  // The roster cannot list more than kMaxSeats.
+  const auto max = std::min(static_cast<std::size_t>(limits.connections), wire::kMaxSeats);
+  if (seats_.all().size() >= max) {
     refuse(connection, wire::Refusal::Code::full, say<Said::server_full>());
     return false;
   }
@@ -273,7 +272,7 @@ bool ControlServer::welcome(ControlConnection& connection, Seat& seat, ControlEv
     welcome.multicast = options_.multicast->address;
     welcome.multicast_port = options_.multicast->port;
   }
-  untold_.push_back(std::move(event));
+  pending_.push_back(std::move(event));
   tell_tick();
   connection.state = State::joined;
   connection.client = seat.client;
@@ -328,7 +327,7 @@ void ControlServer::take_claim(ControlConnection& connection, const wire::Claim&
   event.token = seat->ticket;
   seat->name.copy(event.name.data(), event.name.size() - 1);
   event.input_key = seat->input_key;
-  untold_.push_back(std::move(event));
+  pending_.push_back(std::move(event));
   tell_tick();
   roster_changed_ = true;
 }
@@ -336,7 +335,7 @@ void ControlServer::take_claim(ControlConnection& connection, const wire::Claim&
 // A client that changes its name during a match counts as another player (docs/rules.md).
 void ControlServer::take_names(ControlConnection& connection, const wire::Names& names) {
   Seat* seat = seats_.find(connection.client);
-  if (seat == nullptr || untold_.size() > kMostUntold ||
+  if (seat == nullptr || pending_.size() > kMaxPending ||
       !connection.requests.take(os::monotonic_us()))
     return;
   if (const std::string wanted = wire::clean_name(names.name); wanted != seat->wanted_name) {
@@ -370,7 +369,7 @@ void ControlServer::tell_name(const Seat& seat, RodSet rods, const std::string& 
   event.client = seat.client;
   event.rods = rods;
   name.copy(event.name.data(), event.name.size() - 1);
-  untold_.push_back(std::move(event));
+  pending_.push_back(std::move(event));
 }
 
 void ControlServer::lose_seat(std::uint32_t client) {
@@ -380,7 +379,7 @@ void ControlServer::lose_seat(std::uint32_t client) {
   ControlEvent event;
   event.kind = ControlEvent::Kind::away;
   event.client = client;
-  untold_.push_back(std::move(event));
+  pending_.push_back(std::move(event));
   tell_tick();
   const auto seconds = std::to_string(options_.limits.seat_kept_us / 1'000'000);
   tell(wire::Notice::Level::warning, kAwayTopic + client,
@@ -403,7 +402,7 @@ void ControlServer::give_up_seat(std::uint32_t client) {
   event.put_out = seat->put_out;
   seats_.remove(client);
   count(Count::left);
-  untold_.push_back(std::move(event));
+  pending_.push_back(std::move(event));
   tell_tick();
   roster_changed_ = true;
 }
@@ -496,7 +495,7 @@ void ControlServer::take_answers(ControlConnection& connection, const wire::Answ
   if (team == foosball::kTeams) return refuse_them(say<Said::answers_of_both_teams>());
   if (std::ranges::all_of(answers.scores, [](std::uint8_t score) { return score == 0; }))
     return refuse_them(say<Said::answers_empty>());
-  if (untold_.size() > kMostUntold) return refuse_them(say<Said::server_overloaded>());
+  if (pending_.size() > kMaxPending) return refuse_them(say<Said::server_overloaded>());
   seat->asked_rods &= static_cast<RodSet>(~answers.rods);
   count(Count::answers);
   ControlEvent event;
@@ -504,17 +503,17 @@ void ControlServer::take_answers(ControlConnection& connection, const wire::Answ
   event.client = seat->client;
   event.team = team;
   event.answers = answers;
-  untold_.push_back(std::move(event));
+  pending_.push_back(std::move(event));
   tell_tick();
 }
 
 bool ControlServer::hand_on(std::uint32_t client, const foosball::Command& command) {
-  if (untold_.size() > kMostUntold) return false;
+  if (pending_.size() > kMaxPending) return false;
   ControlEvent event;
   event.kind = ControlEvent::Kind::request;
   event.client = client;
   event.request = command;
-  untold_.push_back(std::move(event));
+  pending_.push_back(std::move(event));
   tell_tick();
   return true;
 }

@@ -6,9 +6,9 @@
 
 namespace server {
 
-static_assert(wire::kMostGoals == foosball::kMostGoals);
-static_assert(wire::kMostSets == foosball::kMostSets);
-static_assert(wire::kMostMatchMs == foosball::kMostMatchMs);
+static_assert(wire::kMaxGoals == foosball::kMaxGoals);
+static_assert(wire::kMaxSets == foosball::kMaxSets);
+static_assert(wire::kMaxMatchMs == foosball::kMaxMatchMs);
 static_assert(wire::kLastDate == foosball::kLastDate);
 static_assert(wire::kStyleCount == foosball::kPlayStyles);
 

@@ -32,8 +32,8 @@ void HandWatch::look(std::size_t source, const cabinet::RodInputs& rods, std::in
     Rod& rod = sources_[source][i];
     if (now.status != cabinet::RodStatus::live) continue;
     rod.live_us = now_us;
-    const bool moved = std::fabs(now.slide - rod.slide) > foosball::kLeastHandSlide ||
-                       std::fabs(now.angle - rod.angle) > foosball::kLeastHandTurn;
+    const bool moved = std::fabs(now.slide - rod.slide) > foosball::kMinHandSlide ||
+                       std::fabs(now.angle - rod.angle) > foosball::kMinHandTurn;
     if (!moved) continue;
     rod.slide = now.slide;
     rod.angle = now.angle;

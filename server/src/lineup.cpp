@@ -45,16 +45,15 @@ void Lineup::excuse(std::string_view name) {
 bool Lineup::has_left(const Row& row, std::uint64_t return_ticks) const {
   if (row.kind != Kind::person || row.excused) return false;
   const auto away = static_cast<double>(ticks_ + 1 - row.first - row.ticks);
-  const double most = std::max(static_cast<double>(return_ticks),
-                               results::kLargestAbsence * static_cast<double>(ticks_));
-  return row.seated != ticks_ || away > most;
+  const double max = std::max(static_cast<double>(return_ticks),
+                              results::kLargestAbsence * static_cast<double>(ticks_));
+  return row.seated != ticks_ || away > max;
 }
 
 std::vector<results::Player> Lineup::players(int team, std::uint64_t return_ticks) const {
   std::vector<Row> rows;
   for (const Row& row : rows_[static_cast<std::size_t>(team)]) {
-    if (static_cast<double>(row.ticks) >= kLeastShare * static_cast<double>(ticks_) &&
-        row.ticks > 0)
+    if (static_cast<double>(row.ticks) >= kMinShare * static_cast<double>(ticks_) && row.ticks > 0)
       rows.push_back(row);
   }
   std::ranges::stable_sort(rows, std::greater(), &Row::ticks);

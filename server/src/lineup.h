@@ -22,7 +22,7 @@ class Lineup {
   // Number of names counted per team; above it, the one that played least is dropped.
   static constexpr std::size_t kNames = 16;
   // Names with less are omitted: joining for a moment does not make a player of the match.
-  static constexpr double kLeastShare = 0.01;
+  static constexpr double kMinShare = 0.01;
 
   void begin();  // starts another match
   // In each tick of play: call begin_tick(), then add() for each player, and keep_seat() for each

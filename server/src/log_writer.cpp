@@ -88,7 +88,7 @@ LogWriter::~LogWriter() {
 
 void LogWriter::write(const std::string& text) {
   const std::lock_guard guard(state_->mutex);
-  if (state_->waiting.size() + text.size() > kMostWaiting) {
+  if (state_->waiting.size() + text.size() > kMaxWaiting) {
     ++state_->dropped;
     ++state_->dropped_unsaid;
     return;

@@ -7,20 +7,20 @@ namespace server {
 
 class OverloadWatch {
  public:
-  enum class News : std::uint8_t { none, overloaded, keeps_up_again };
+  enum class Change : std::uint8_t { none, overloaded, keeps_up_again };
 
   static constexpr std::uint64_t kWindow = 1000;  // ticks
   static constexpr std::uint64_t kTolerated = 50;
 
   // Both count from the start. Call each tick.
-  News look(std::uint64_t ticks, std::uint64_t missed) {
-    if (ticks - ticks_ < kWindow) return News::none;
+  Change look(std::uint64_t ticks, std::uint64_t missed) {
+    if (ticks - ticks_ < kWindow) return Change::none;
     const bool overloaded = missed - missed_ > kTolerated;
     ticks_ = ticks;
     missed_ = missed;
-    if (overloaded == overloaded_) return News::none;
+    if (overloaded == overloaded_) return Change::none;
     overloaded_ = overloaded;
-    return overloaded ? News::overloaded : News::keeps_up_again;
+    return overloaded ? Change::overloaded : Change::keeps_up_again;
   }
 
  private:

@@ -10,8 +10,8 @@
 namespace server {
 namespace {
 
-constexpr std::size_t kMostHead = 4096;              // bytes of a request's head
-constexpr std::size_t kMostToControl = 64 * 1024;    // pending bytes
+constexpr std::size_t kMaxHead = 4096;               // bytes of a request's head
+constexpr std::size_t kMaxToControl = 64 * 1024;     // pending bytes
 constexpr auto kFarewell = std::chrono::seconds(1);  // time to read the reason before the end
 constexpr std::string_view kScanAnew = "Scan the code on the game's screen anew.\n";
 constexpr std::string_view kNoRoom = "All places for phones are taken: try again later.\n";
@@ -38,7 +38,7 @@ PhoneCaller::PhoneCaller(PhoneHouse& house, asio::io_context& io, os::FileDescri
       socket_(io.get_executor()),
       deadline_(io),
       pace_(io),
-      buffer_(2 * kMostHead),
+      buffer_(2 * kMaxHead),
       guest_(house.options().layout),
       pace_limit_(house.options().limits.messages_at_once, house.options().limits.message_every_us),
       link_(io) {
@@ -89,7 +89,7 @@ void PhoneCaller::leave_when_told() {
 
 void PhoneCaller::read_request() {
   parser_.emplace();
-  parser_->header_limit(kMostHead);
+  parser_->header_limit(kMaxHead);
   parser_->body_limit(0);
   http::async_read(beast::get_lowest_layer(socket_), buffer_, *parser_,
                    [self = shared_from_this()](const Error& error, std::size_t bytes) {
@@ -126,7 +126,7 @@ void PhoneCaller::answer(const Request& request, std::size_t bytes) {
   }
   if (!house_.has_room()) {
     house_.count(Count::refused);
-    return send_sentence("503 Service Unavailable", kNoRoom, kMostHead);
+    return send_sentence("503 Service Unavailable", kNoRoom, kMaxHead);
   }
   open_socket(request);
 }
@@ -153,12 +153,12 @@ void PhoneCaller::send_page() {
 
 // most: max size of the answer [bytes]; a larger answer is not sent.
 void PhoneCaller::send_sentence(std::string_view status, std::string_view sentence,
-                                std::size_t most) {
+                                std::size_t max) {
   std::string bytes =
       "HTTP/1.1 " + std::string(status) +
       "\r\nConnection: close\r\nContent-Length: " + std::to_string(sentence.size()) + "\r\n\r\n" +
       std::string(sentence);
-  if (bytes.size() > most) return drop();
+  if (bytes.size() > max) return drop();
   send_and_close(std::move(bytes));
 }
 
@@ -278,7 +278,7 @@ void PhoneCaller::follow(PhoneGuest::Outcome&& outcome) {
   if (outcome.input) house_.take(*outcome.input);
   for (const auto& reply : outcome.to_phone) tell(reply);
   if (dead_) return;
-  if (link_out_.size() > kMostToControl) return drop();
+  if (link_out_.size() > kMaxToControl) return drop();
   write_link();
   if (!outcome.end) return;
   end_when_told_ = true;

@@ -94,7 +94,7 @@ class PhoneCaller final : public std::enable_shared_from_this<PhoneCaller> {
   void answer(const Request& request, std::size_t bytes);
   Target target_of(std::string_view path) const;
   void send_page();
-  void send_sentence(std::string_view status, std::string_view sentence, std::size_t most);
+  void send_sentence(std::string_view status, std::string_view sentence, std::size_t max);
   void send_and_close(std::string&& bytes);
   void read_out();
   void open_socket(const Request& request);

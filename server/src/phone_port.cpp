@@ -157,10 +157,10 @@ void PhonePort::Impl::make_room_at_the_door() {
   for (const auto& caller : callers_)
     if (!caller->inside()) ++greeting, ++crowd[caller->peer().network()];
   if (greeting < options_.limits.greeting) return;
-  int most = 0;
-  for (const auto& [network, count] : crowd) most = std::max(most, count);
+  int max = 0;
+  for (const auto& [network, count] : crowd) max = std::max(max, count);
   const auto oldest = std::ranges::find_if(callers_, [&](const auto& caller) {
-    return !caller->inside() && crowd.at(caller->peer().network()) == most;
+    return !caller->inside() && crowd.at(caller->peer().network()) == max;
   });
   count(Count::crowded_out);
   const auto keep = *oldest;

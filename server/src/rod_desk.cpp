@@ -96,8 +96,8 @@ bool RodDesk::hand_moved() const {
       const cabinet::RodInput& then = hands_[source][rod];
       if (now.status != cabinet::RodStatus::live) continue;
       if (then.status != cabinet::RodStatus::live) return true;
-      if (std::fabs(now.slide - then.slide) > foosball::kLeastHandSlide) return true;
-      if (std::fabs(now.angle - then.angle) > foosball::kLeastHandTurn) return true;
+      if (std::fabs(now.slide - then.slide) > foosball::kMinHandSlide) return true;
+      if (std::fabs(now.angle - then.angle) > foosball::kMinHandTurn) return true;
     }
   }
   return false;

@@ -5,15 +5,15 @@
 namespace server {
 namespace {
 
-void tell(Server& server, OverloadWatch::News news) {
-  switch (news) {
-    case OverloadWatch::News::overloaded:
+void tell(Server& server, OverloadWatch::Change change) {
+  switch (change) {
+    case OverloadWatch::Change::overloaded:
       server.warn(Server::Topic::overload, wire::say<wire::Said::cannot_keep_up>());
       break;
-    case OverloadWatch::News::keeps_up_again:
+    case OverloadWatch::Change::keeps_up_again:
       server.clear(Server::Topic::overload, "the physics server keeps up again");
       break;
-    case OverloadWatch::News::none:
+    case OverloadWatch::Change::none:
       break;
   }
 }

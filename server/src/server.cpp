@@ -21,8 +21,8 @@ namespace server {
 namespace {
 
 // A restart's serve rebuilds the match's world: this bounds them to two per tick.
-constexpr std::size_t kMostCommands = 8;
-static_assert(kMostCommands <= wire::kMaxJournalCommands);
+constexpr std::size_t kMaxCommands = 8;
+static_assert(kMaxCommands <= wire::kMaxJournalCommands);
 
 StartError port_error(const NetworkOptions& network, const SocketError& error) {
   return {error.occupied() ? StartError::Kind::port_taken : StartError::Kind::bad_option,
@@ -123,7 +123,7 @@ void Server::Impl::take_control_events() {
   next.commands.clear();
   ControlEvent event;
   // Each event makes at most one command. Further events wait in the queue for the next tick.
-  while (next.commands.size() < kMostCommands && control.next_event(event)) {
+  while (next.commands.size() < kMaxCommands && control.next_event(event)) {
     switch (event.kind) {
       case ControlEvent::Kind::joined:
         admit(event);
@@ -205,9 +205,9 @@ void Server::Impl::take_game(const wire::Game& asked) {
 
 // A bounded number per tick, as for a client's socket; the rest waits.
 void Server::Impl::take_phone_inputs(std::int64_t now_us) {
-  constexpr int kMostPerTick = 64;
+  constexpr int kMaxPerTick = 64;
   PhoneInputEvent event;
-  for (int i = 0; i < kMostPerTick && phones && phones->next_input(event); ++i) {
+  for (int i = 0; i < kMaxPerTick && phones && phones->next_input(event); ++i) {
     if (RemoteSource* source = desk.remote(event.client)) source->accept(event.input, now_us);
   }
 }

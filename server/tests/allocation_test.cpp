@@ -167,7 +167,7 @@ class BestPlayersTick : public testing::Test {
   }
   struct Taken {
     int ticks = 0;  // that allocated
-    long sum = 0, most = 0;
+    long sum = 0, max = 0;
   };
   Taken taken_in(int ticks) {
     Taken all;
@@ -175,7 +175,7 @@ class BestPlayersTick : public testing::Test {
       const long now = taken();
       all.ticks += now > 0 ? 1 : 0;
       all.sum += now;
-      all.most = std::max(all.most, now);
+      all.max = std::max(all.max, now);
     }
     return all;
   }
@@ -227,9 +227,9 @@ TEST_F(BestPlayersTick, TakesMemoryForNewWorldsWhenTheTuningChangesAPartATick) {
   }
   const Taken making = taken_in(25);
   std::printf("the match's world: %ld allocations; the players', %ld in %d ticks, %ld at most\n",
-              at_once, making.sum, making.ticks, making.most);
+              at_once, making.sum, making.ticks, making.max);
   EXPECT_LT(at_once, 1'500);
-  EXPECT_LT(making.most, 400);
+  EXPECT_LT(making.max, 400);
   taken_in(500);  // the match's new world reaches its sizes
   EXPECT_EQ(taken_in(2'000).sum, 0);
 }

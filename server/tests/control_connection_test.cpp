@@ -23,8 +23,8 @@ class ControlConnectionTest : public testing::Test {
     peer = os::FileDescriptor(ends[1]);
   }
   // Reads up to `most` bytes of those sent.
-  void read(std::size_t most) {
-    std::vector<std::byte> bytes(most);
+  void read(std::size_t max) {
+    std::vector<std::byte> bytes(max);
     const ssize_t size = ::recv(peer.get(), bytes.data(), bytes.size(), MSG_DONTWAIT);
     if (size > 0) received.push({bytes.data(), static_cast<std::size_t>(size)});
     wire::ControlMessage message;
@@ -49,15 +49,15 @@ TEST_F(ControlConnectionTest, KeepsNoMoreForASteadyReaderThatNeverCatchesUp) {
   }
   std::vector<std::byte> one;
   wire::encode_control(wire::Pong{1}, one);
-  std::size_t most = 0;
+  std::size_t max = 0;
   for (int i = 0; i < 20'000; ++i) {
     for (int k = 0; k < 8; ++k) ASSERT_TRUE(say());
     read(8 * one.size());
     ASSERT_TRUE(connection->flush());
     ASSERT_TRUE(connection->wants_to_send());
-    most = std::max(most, connection->buffered_bytes());
+    max = std::max(max, connection->buffered_bytes());
   }
-  EXPECT_LE(most, kCap + 16 * 1024);
+  EXPECT_LE(max, kCap + 16 * 1024);
   EXPECT_GT(20'000 * 8 * one.size(), 10 * kCap);  // far more than that was sent
   while (connection->wants_to_send() || heard < said) {
     ASSERT_TRUE(connection->flush());

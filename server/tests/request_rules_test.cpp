@@ -58,8 +58,8 @@ TEST(RequestRules, TheHostTunesAndNobodyElse) {
   };
   for (int value = 0; value < foosball::kTuningValues; ++value) {
     const auto& field = foosball::kTuningFields[static_cast<std::size_t>(value)];
-    EXPECT_TRUE(formed(value, field.least) && formed(value, field.most)) << field.name;
-    EXPECT_FALSE(formed(value, field.least - 1.0) || formed(value, field.most + 1.0)) << field.name;
+    EXPECT_TRUE(formed(value, field.min) && formed(value, field.max)) << field.name;
+    EXPECT_FALSE(formed(value, field.min - 1.0) || formed(value, field.max + 1.0)) << field.name;
   }
   EXPECT_FALSE(formed(foosball::kTuningValues, 1.0));
 }

@@ -189,7 +189,7 @@ class Rig {
     next_tick_us_ += kTickUs;
   }
   void note(const foosball::RodTarget& given, Errors& e) const {
-    const auto larger = [](double& most, double value) { most = std::max(most, value); };
+    const auto larger = [](double& max, double value) { max = std::max(max, value); };
     const Pose now = truth(next_tick_us_), then = truth(next_tick_us_ + kTickUs);
     larger(e.slide, std::abs(given.slide - now.slide));
     larger(e.angle, std::abs(given.angle - now.angle));

@@ -54,9 +54,9 @@ void expect_played(Board board, const MatchResult& match, const Expected& limits
   EXPECT_EQ(pulses.stray, 0u);
   EXPECT_EQ(pulses.not_ended, 0u);
   EXPECT_LE(pulses.pulses - pulses.begun - pulses.merged, 1u) << "one may be on its way";
-  EXPECT_LE(spread(pulses.free_latency_us).most, 2000);
+  EXPECT_LE(spread(pulses.free_latency_us).max, 2000);
   // A pulse that comes as another one ends also waits for the bus: 0.8 ms.
-  EXPECT_LE(spread(pulses.latency_us).most, 3000);
+  EXPECT_LE(spread(pulses.latency_us).max, 3000);
   EXPECT_GE(2 * pulses.free_latency_us.size(), pulses.latency_us.size());
 }
 
@@ -67,7 +67,7 @@ TEST_P(OnEachController, AMatchIsPlayedByHandsOnACabinetAndItsHitsAreFeltAtTheir
   for (int ms = 0; ms < 3000; ++ms) table.pass(*controller);
   const MatchResult match =
       play_match(*controller, table, cabinet::nominal_calibration(usual_counts_per_mm(board)),
-                 {.most_seconds = 6, .swings = false});
+                 {.max_seconds = 6, .swings = false});
   expect_played(board, match, expected(board));
 }
 
@@ -78,7 +78,7 @@ TEST(CabinetEndToEnd, PersonsCalibrateAskewSensorsAndMarksThroughTheFirmwareAndT
   ASSERT_EQ(made.problem, "");
   EXPECT_LT(made.seconds, 150);
   EXPECT_EQ(made.marks, cabinet::kRods);
-  const MatchResult match = play_match(*controller, table, made.calibration, {.most_seconds = 30});
+  const MatchResult match = play_match(*controller, table, made.calibration, {.max_seconds = 30});
   EXPECT_GE(match.marks.slow, 2u * cabinet::kRods) << "there and back, before the match";
   EXPECT_EQ(match.disagreements, 0u);
   expect_played(Board::mega32u4, match, kCalibrated);

@@ -14,7 +14,7 @@ namespace cabinet_bench {
 namespace {
 
 constexpr double kPutBackSeconds = 0.5;
-constexpr int kMostSetUpMs = 5000;  // for the sensors, before the people begin
+constexpr int kMaxSetUpMs = 5000;  // for the sensors, before the people begin
 
 cabinet::GuideOptions guide_options(int rod) {
   const auto& spec =
@@ -74,7 +74,7 @@ class Workshop {
   }
 
   CalibrationResult run() {
-    for (int ms = 0; ms < kMostSetUpMs && !all_answer(); ++ms) pass_ms();
+    for (int ms = 0; ms < kMaxSetUpMs && !all_answer(); ++ms) pass_ms();
     const std::int64_t began_us = controller_.now_us();
     while (all_move_on()) pass_ms();
     table_.forget_turns();

@@ -13,8 +13,8 @@ class Wanderer {
  public:
   void step(std::mt19937& random, Surface& surface) {
     if (left_ms_-- <= 0) {
-      const auto draw = [&](double most) {
-        return std::uniform_real_distribution<double>(-most, most)(random);
+      const auto draw = [&](double max) {
+        return std::uniform_real_distribution<double>(-max, max)(random);
       };
       left_ms_ = std::uniform_int_distribution<int>(20, 900)(random);
       const int kind = std::uniform_int_distribution<int>(0, 19)(random);

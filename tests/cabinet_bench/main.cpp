@@ -71,15 +71,15 @@ void report(const std::string& board, const std::string& what, const Errors& err
   const Spread slide = spread(errors.slide), angle = spread(errors.angle);
   const double within = 100 * share_within(errors, 1e-3, 2 / kDegrees);
   fmt::print("  {:<24} {:6.2f} {:6.2f} {:6.2f} mm  {:6.2f} {:6.2f} {:6.2f} deg  {:6.2f} %\n", what,
-             1e3 * slide.rms, 1e3 * slide.p99, 1e3 * slide.most, kDegrees * angle.rms,
-             kDegrees * angle.p99, kDegrees * angle.most, within);
+             1e3 * slide.rms, 1e3 * slide.p99, 1e3 * slide.max, kDegrees * angle.rms,
+             kDegrees * angle.p99, kDegrees * angle.max, within);
   const std::string name = what.substr(0, what.find(' '));
   rows.add(board, name + "_slide_rms", 1e3 * slide.rms, "mm");
   rows.add(board, name + "_slide_p99", 1e3 * slide.p99, "mm");
-  rows.add(board, name + "_slide_max", 1e3 * slide.most, "mm");
+  rows.add(board, name + "_slide_max", 1e3 * slide.max, "mm");
   rows.add(board, name + "_angle_rms", kDegrees * angle.rms, "degrees");
   rows.add(board, name + "_angle_p99", kDegrees * angle.p99, "degrees");
-  rows.add(board, name + "_angle_max", kDegrees * angle.most, "degrees");
+  rows.add(board, name + "_angle_max", kDegrees * angle.max, "degrees");
   rows.add(board, name + "_within", within, "% within 1 mm and 2 degrees");
 }
 
@@ -89,11 +89,11 @@ void report(const std::string& board, const PulseCounts& pulses, Rows& rows) {
       "  {} hits, {} pulses: {} begun at their motors, {} merged, {} missing, {} stray, {} not "
       "ended; from command to driver {:.2f} ms rms, {:.2f} p99, {:.2f} at most\n",
       pulses.hits, pulses.pulses, pulses.begun, pulses.merged, pulses.missing, pulses.stray,
-      pulses.not_ended, 1e-3 * latency.rms, 1e-3 * latency.p99, 1e-3 * latency.most);
+      pulses.not_ended, 1e-3 * latency.rms, 1e-3 * latency.p99, 1e-3 * latency.max);
   rows.add(board, "pulses", static_cast<double>(pulses.pulses), "");
   rows.add(board, "pulses_missing", static_cast<double>(pulses.missing), "");
   rows.add(board, "pulse_latency_p99", 1e-3 * latency.p99, "ms");
-  rows.add(board, "pulse_latency_max", 1e-3 * latency.most, "ms");
+  rows.add(board, "pulse_latency_max", 1e-3 * latency.max, "ms");
 }
 
 void report(const std::string& board, const MatchResult& match, Rows& rows) {
@@ -133,7 +133,7 @@ bool play(Board board, const Options& options, Rows& rows) {
   }
   std::fflush(stdout);
   MatchOptions wanted;
-  wanted.most_seconds = options.seconds;
+  wanted.max_seconds = options.seconds;
   wanted.level = options.level;
   wanted.seed = options.seed;
   wanted.swings = !options.no_swings;

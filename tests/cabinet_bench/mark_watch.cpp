@@ -8,7 +8,7 @@ namespace cabinet_bench {
 namespace {
 
 constexpr double kStands = 0.5e-3;  // [m] maximum slide in a pass
-constexpr double kLeastTurn = 0.2;  // [rad] minimum rotation in a pass: it did not turn back
+constexpr double kMinTurn = 0.2;    // [rad] minimum rotation in a pass: it did not turn back
 constexpr double kSlow = 4.7;       // [rad/s]: one and a half counts of a mouse per report
 constexpr double kSeen = 3e-3;      // [m] from the near stop
 constexpr double kMs = 1e-3;
@@ -35,7 +35,7 @@ void MarkWatch::moved(const Table& table) {
 
 void MarkWatch::left(const Entry& entry, const Pose& at, double rate) {
   if (std::abs(at.slide - entry.at.slide) > kStands ||
-      std::abs(at.angle - entry.at.angle) < kLeastTurn) {
+      std::abs(at.angle - entry.at.angle) < kMinTurn) {
     return;
   }
   ++counts_.passes;

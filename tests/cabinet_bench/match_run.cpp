@@ -108,7 +108,7 @@ class MatchRun {
   }
 
   MatchResult run() {
-    const std::int64_t ms = std::llround(options_.most_seconds * 1e3);
+    const std::int64_t ms = std::llround(options_.max_seconds * 1e3);
     for (std::int64_t i = 0; i < kSettleMs; ++i) tick(false);
     for (std::int64_t i = 0; i < ms && !over(); ++i) tick(true);
     finish();
@@ -235,7 +235,7 @@ Spread spread(std::vector<float> absolute) {
   }
   s.rms = std::sqrt(squares / static_cast<double>(absolute.size()));
   s.p99 = static_cast<double>(absolute[(absolute.size() - 1) * 99 / 100]);
-  s.most = static_cast<double>(absolute.back());
+  s.max = static_cast<double>(absolute.back());
   return s;
 }
 

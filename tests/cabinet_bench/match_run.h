@@ -22,7 +22,7 @@ struct Errors {
   Errors last(std::size_t ticks) const;
 };
 struct Spread {
-  double rms = 0, p99 = 0, most = 0;
+  double rms = 0, p99 = 0, max = 0;
 };
 Spread spread(std::vector<float> absolute);
 // Fraction of the ticks and rods within both bounds.
@@ -40,7 +40,7 @@ struct PulseCounts {
 };
 
 struct MatchOptions {
-  double most_seconds = 600;
+  double max_seconds = 600;
   int level = 4;
   std::uint64_t seed = 1;
   bool swings = true;  // people re-zero their rods before the match and after each goal

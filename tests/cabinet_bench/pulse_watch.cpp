@@ -26,7 +26,7 @@ void PulseWatch::commanded(std::span<const std::uint8_t> packet, cabinet::Device
   if (!decode(packet, framing, command) || command.kind != wire::kPulseCommand) return;
   ++counts_.pulses;
   Motor& motor = motors_[command.rod];
-  motor.end_us = now_us + 1000 * command.duration_ms + kMostUs;
+  motor.end_us = now_us + 1000 * command.duration_ms + kMaxUs;
   motor.waiting.push_back(
       {now_us, command.amplitude, motor.amplitude == command.amplitude, writes_});
 }
@@ -51,7 +51,7 @@ void PulseWatch::written(const MotorWrite& write) {
 
 void PulseWatch::passed(std::int64_t now_us) {
   for (Motor& motor : motors_) {
-    while (!motor.waiting.empty() && now_us - motor.waiting.front().us > kMostUs) {
+    while (!motor.waiting.empty() && now_us - motor.waiting.front().us > kMaxUs) {
       ++(motor.waiting.front().runs_already ? counts_.merged : counts_.missing);
       motor.waiting.pop_front();
     }

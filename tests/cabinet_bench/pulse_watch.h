@@ -19,7 +19,7 @@ class PulseWatch {
   const PulseCounts& counts() const { return counts_; }
 
  private:
-  static constexpr std::int64_t kMostUs = 20'000;  // a pulse that has not begun by then is missing
+  static constexpr std::int64_t kMaxUs = 20'000;  // a pulse that has not begun by then is missing
 
   struct Pulse {
     std::int64_t us;

@@ -130,8 +130,8 @@ bool Session::all_fitted() const {
 
 int Session::other_rod_moves() const {
   if (moved_[index(rod())] > kMovesBarely) return -1;
-  const auto most = std::ranges::max_element(moved_);
-  return *most > kMovesClearly ? static_cast<int>(most - moved_.begin()) : -1;
+  const auto max = std::ranges::max_element(moved_);
+  return *max > kMovesClearly ? static_cast<int>(max - moved_.begin()) : -1;
 }
 
 }  // namespace calibrate

@@ -93,7 +93,7 @@ void draw_trace(const HudPen& pen, const Session& session, float top, float bott
 
 // The residual of each mark, as a fraction of the accepted one.
 void draw_residuals(const HudPen& pen, const cabinet::RodFit& fit, float top, float bottom) {
-  constexpr double kMostSlide = 1e-3, kMostAngle = 5.0 / 180 * M_PI;
+  constexpr double kMaxSlide = 1e-3, kMaxAngle = 5.0 / 180 * M_PI;
   pen.panel({-kWide, top}, {kWide, bottom}, 8.0f, kPanel);
   const float middle = 0.5f * (top + bottom) + 6.0f, half = 0.5f * (bottom - top) - 20.0f;
   pen.panel({-kWide + 8.0f, middle - 0.5f}, {kWide - 8.0f, middle + 0.5f}, 0.0f, kTrack);
@@ -101,7 +101,7 @@ void draw_residuals(const HudPen& pen, const cabinet::RodFit& fit, float top, fl
   float x = -kWide + 20.0f;
   for (const auto& r : fit.residuals) {
     const bool slide = r.mark.kind == cabinet::CalibrationMark::Kind::slide;
-    const double share = std::clamp(r.value / (slide ? kMostSlide : kMostAngle), -1.0, 1.0);
+    const double share = std::clamp(r.value / (slide ? kMaxSlide : kMaxAngle), -1.0, 1.0);
     const float y = middle - half * static_cast<float>(share);
     const Colour colour = r.outlier ? kBad : slide ? kSlide : kSpin;
     pen.panel({x, std::min(y, middle) - 1.0f}, {x + 0.6f * step, std::max(y, middle) + 1.0f}, 1.5f,

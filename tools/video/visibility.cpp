@@ -27,7 +27,7 @@ struct WatchedView {
   int team;
   client::View view;
   client::ViewMotion motion;
-  double hidden = 0.0, longest = 0.0, least = 1.0, sum = 0.0;  // [s], [s], fraction, fractions
+  double hidden = 0.0, longest = 0.0, min = 1.0, sum = 0.0;  // [s], [s], fraction, fractions
   int looks = 0, times_hidden = 0;
 };
 
@@ -43,7 +43,7 @@ void look(WatchedView& watched, client::Scene& scene, const wire::Snapshot& stat
   const double seen = scene.ball_visibility(state, view, kPicture);
   ++watched.looks;
   watched.sum += seen;
-  watched.least = std::min(watched.least, seen);
+  watched.min = std::min(watched.min, seen);
   watched.times_hidden += seen < 0.5;
   watched.hidden = seen < 0.5 ? watched.hidden + step : 0.0;
   watched.longest = std::max(watched.longest, watched.hidden);
@@ -82,7 +82,7 @@ int run(const char* recording) {
   for (const WatchedView& v : views) {
     const double looks = std::max(v.looks, 1);
     std::printf("%-14s %6d %9.1f %% %4.0f %% %5.2f %%  %.2f\n", v.name, v.looks,
-                100.0 * v.sum / looks, 100.0 * v.least, 100.0 * v.times_hidden / looks, v.longest);
+                100.0 * v.sum / looks, 100.0 * v.min, 100.0 * v.times_hidden / looks, v.longest);
     good = good && v.looks > 0 && v.longest <= kLongestHidden;
   }
   return good ? 0 : 1;

@@ -190,7 +190,7 @@ void Timeline::leave_mark(const client::MatchStory& story) {
   auto mark = std::make_shared<const Mark>(Mark{reader_.mark(), story});
   const std::lock_guard guard(mutex_);
   marks_.push_back(std::move(mark));
-  if (marks_.size() < kMostMarks) return;
+  if (marks_.size() < kMaxMarks) return;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < marks_.size(); i += 2) marks_[kept++] = std::move(marks_[i]);
   marks_.resize(kept);

@@ -24,7 +24,7 @@ namespace watch {
 inline constexpr std::uint64_t kMarkTicks = 2'000;  // initial interval of the marks
 // Above this number every second mark is dropped: 40 MB. In three hours there is then a mark every
 // 4 s, from which the simulation reaches any moment in about 50 ms.
-inline constexpr std::size_t kMostMarks = 4'096;
+inline constexpr std::size_t kMaxMarks = 4'096;
 
 struct Goal {
   std::uint64_t tick;

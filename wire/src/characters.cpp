@@ -11,8 +11,8 @@ Layout characters_layout() {
 }
 
 std::vector<std::byte> encode_characters(const Characters& characters) {
-  static const std::size_t most = max_bits(characters_layout()) / 8 + 1;
-  std::vector<std::byte> bytes(most);
+  static const std::size_t max = max_bits(characters_layout()) / 8 + 1;
+  std::vector<std::byte> bytes(max);
   Encoder encoder(bytes, 0);
   describe_characters(encoder, characters.characters);
   bytes.resize(encoder.finish());

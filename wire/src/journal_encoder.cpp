@@ -43,8 +43,8 @@ std::span<const std::byte> encode(std::span<std::byte> scratch, Describe describ
 }
 
 bool valid(const JournalSetup& s) {
-  return s.mode < kModeCount && s.rule_set < kRuleSetCount && s.goals <= kMostGoals &&
-         s.sets <= kMostSets && s.match_ms <= kMostMatchMs && s.date <= kLastDate;
+  return s.mode < kModeCount && s.rule_set < kRuleSetCount && s.goals <= kMaxGoals &&
+         s.sets <= kMaxSets && s.match_ms <= kMaxMatchMs && s.date <= kLastDate;
 }
 
 bool valid(const JournalCommand& c) {

@@ -32,9 +32,9 @@ std::uint32_t first_character(std::string_view text, std::size_t& length) {
       if ((byte_at(i) & 0xC0) != 0x80) character = kInvalid;
       if (character != kInvalid) character = character << 6 | (byte_at(i) & 0x3FU);
     }
-    constexpr std::uint32_t kLeast[] = {0, 0, 0x80, 0x800, 0x10000};
+    constexpr std::uint32_t kMin[] = {0, 0, 0x80, 0x800, 0x10000};
     const bool surrogate = character >= 0xD800 && character < 0xE000;
-    if (character < kLeast[length] || surrogate || character > 0x10FFFF) character = kInvalid;
+    if (character < kMin[length] || surrogate || character > 0x10FFFF) character = kInvalid;
   }
   if (character == kInvalid) length = 1;
   return character;

@@ -26,29 +26,29 @@ TEST(Characters, RoundTripIsExactWhateverTheirNumbers) {
 }
 
 TEST(Characters, TheLongestListFitsAControlMessageAndAJournalsHeader) {
-  Characters most;
-  most.characters.resize(kMaxCharacterCount);
-  for (CharacterRecord& c : most.characters) {
+  Characters max;
+  max.characters.resize(kMaxCharacterCount);
+  for (CharacterRecord& c : max.characters) {
     c.name = std::string(kMaxCharacterName, 'x');
     c.specialty = std::string(kMaxCharacterSpecialty, 'y');
     c.body.fill(~std::uint64_t{0});
     c.voice = {~std::uint64_t{0}, ~std::uint64_t{0}};
   }
-  EXPECT_LE(encode_characters(most).size(), max_bits(characters_layout()) / 8 + 1);
+  EXPECT_LE(encode_characters(max).size(), max_bits(characters_layout()) / 8 + 1);
   ControlReader reader;
-  reader.push(samples::encoded(ControlMessage{most}));
+  reader.push(samples::encoded(ControlMessage{max}));
   ControlMessage message;
   ASSERT_EQ(reader.next(message), ControlReader::Status::message);
-  EXPECT_EQ(std::get<Characters>(message), most);
+  EXPECT_EQ(std::get<Characters>(message), max);
 
   EXPECT_LE(max_bits(journal_layouts()[0].layout) / 8, kMaxJournalHeader);
   std::vector<JournalEntry> entries{JournalHeader{}};
-  std::get<JournalHeader>(entries[0]).characters = most.characters;
+  std::get<JournalHeader>(entries[0]).characters = max.characters;
   const Bytes file = samples::encoded(entries);
   JournalReader journal(file);
   const auto header = journal.next();
   ASSERT_TRUE(header) << journal.problem();
-  EXPECT_EQ(std::get<JournalHeader>(*header).characters, most.characters);
+  EXPECT_EQ(std::get<JournalHeader>(*header).characters, max.characters);
 }
 
 TEST(Characters, EveryTruncationAndALongerOneIsRefused) {

@@ -417,11 +417,10 @@ std::vector<CharacterRecord> random_characters(std::mt19937_64& random) {
 }
 
 JournalSetup random_setup(std::mt19937_64& random) {
-  return {
-      below<std::uint8_t>(random, kModeCount),        below<std::uint8_t>(random, kRuleSetCount),
-      below<std::uint8_t>(random, kMostGoals + 1),    below<std::uint8_t>(random, kMostSets + 1),
-      below<std::uint32_t>(random, kMostMatchMs + 1), random() % 2 == 0,
-      below<std::uint32_t>(random, kLastDate + 1)};
+  return {below<std::uint8_t>(random, kModeCount),       below<std::uint8_t>(random, kRuleSetCount),
+          below<std::uint8_t>(random, kMaxGoals + 1),    below<std::uint8_t>(random, kMaxSets + 1),
+          below<std::uint32_t>(random, kMaxMatchMs + 1), random() % 2 == 0,
+          below<std::uint32_t>(random, kLastDate + 1)};
 }
 
 std::vector<JournalEntry> random_journal(std::mt19937_64& random, int ticks) {

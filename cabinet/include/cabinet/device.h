@@ -10,7 +10,7 @@
 namespace cabinet {
 
 // [bytes] of a packet to a device: report ID and HID report.
-constexpr std::size_t kMostPacket = 65;
+constexpr std::size_t kMaxPacket = 65;
 
 // State of the device as seen from its descriptor. The message to the person differs for each.
 enum class DeviceState : std::uint8_t {

@@ -140,12 +140,12 @@ void App::follow_roster() {
 
 // A name may have letters that no sentence of the language has.
 void App::learn_names() {
-  constexpr std::size_t kMost = 4096;  // bytes: the names of many strangers must not fill the atlas
+  constexpr std::size_t kMax = 4096;  // bytes: the names of many strangers must not fill the atlas
   std::string names = names_;
   for (const wire::Seat& seat : roster_.seats) names += seat.name;
   for (const std::string& player : roster_.players) names += player;
   for (const std::string& name : settings_.names) names += name;
-  if (names.size() > kMost || hangul_of(names) == hangul_of(names_)) return;
+  if (names.size() > kMax || hangul_of(names) == hangul_of(names_)) return;
   names_ = names;
   if (const std::string error = use_texts(); !error.empty()) log_warning(error);
 }

@@ -10,9 +10,9 @@
 namespace client {
 namespace {
 
-constexpr float kMostShake = 0.006f;  // [m] of the eye
-constexpr float kFollowS = 0.35f;     // [s] to close 63% of the distance to the ball
-constexpr float kSettle = 1.1f;       // [s] to close most of the distance to the camera's target
+constexpr float kMaxShake = 0.006f;  // [m] of the eye
+constexpr float kFollowS = 0.35f;    // [s] to close 63% of the distance to the ball
+constexpr float kSettle = 1.1f;      // [s] to close most of the distance to the camera's target
 
 }  // namespace
 
@@ -29,7 +29,7 @@ CameraView ViewMotion::step(const wire::Snapshot* scene, int team, float dt, flo
   } else if (scene->ball_in_play) {
     const auto& table = foosball::table_spec(static_cast<foosball::Layout>(scene->layout));
     const float way = scene->ball.position[0] / static_cast<float>(0.5 * table.length);
-    wanted.lean = {kMostLean * std::clamp(way, -1.0f, 1.0f), 0.0f};
+    wanted.lean = {kMaxLean * std::clamp(way, -1.0f, 1.0f), 0.0f};
   }
   const float share = 1.0f - std::exp(-3.0f * dt / kSettle);
   if (scene != nullptr) view_.layout = static_cast<foosball::Layout>(scene->layout);
@@ -38,7 +38,7 @@ CameraView ViewMotion::step(const wire::Snapshot* scene, int team, float dt, flo
   view_.closeness += share * (wanted.closeness - view_.closeness);
   view_.lean += share * (wanted.lean - view_.lean);
   view_.shake =
-      kMostShake * shake *
+      kMaxShake * shake *
       glm::vec3(std::sin(61.0f * time_), std::sin(47.0f * time_), std::sin(73.0f * time_));
   if (scene != nullptr && scene->ball_in_play) {
     const auto& at = scene->ball.position;

@@ -18,8 +18,8 @@ namespace {
 
 constexpr std::int64_t kAskRefusedAgainUs = 2'000'000;  // a refusal rarely changes at once
 constexpr std::int64_t kListenEveryUs = 50'000;         // how soon a silence is noticed
-constexpr std::size_t kMostNotices = 64;  // a malicious server's topics must not fill the memory
-constexpr std::size_t kMostQueued = 256 * 1024;  // bytes that a server may leave unread
+constexpr std::size_t kMaxNotices = 64;  // a malicious server's topics must not fill the memory
+constexpr std::size_t kMaxQueued = 256 * 1024;  // bytes that a server may leave unread
 // Time that the destructor waits until Bye is delivered: a lost one is retransmitted after 200 ms.
 constexpr int kGoodbyeMs = 500;
 
@@ -375,7 +375,7 @@ void ControlLink::on_notice(const wire::Notice& notice) {
   const std::lock_guard lock(mutex_);
   if (notice.level == wire::Notice::Level::cleared) {
     notices_.erase(notice.topic);
-  } else if (notices_.size() < kMostNotices || notices_.contains(notice.topic)) {
+  } else if (notices_.size() < kMaxNotices || notices_.contains(notice.topic)) {
     notices_[notice.topic] = notice;
   }
 }
@@ -413,7 +413,7 @@ void ControlLink::flush(std::int64_t now_us) {
     if (sent < 0) return drop(std::strerror(errno), now_us);
     out_.erase(out_.begin(), out_.begin() + sent);
   }
-  if (out_.size() > kMostQueued) drop("it does not read what it is sent", now_us);
+  if (out_.size() > kMaxQueued) drop("it does not read what it is sent", now_us);
 }
 
 void ControlLink::say_bye() {

@@ -163,7 +163,7 @@ MenuRow GameMenu::row(int row) const {
     case row_rules:
       return {N_("Rules"), kRulesNames[game.rule_set]};
     case row_goals:
-      if (no_end || (rules.match_seconds > 0.0 && rules.goals_to_win == foosball::kMostGoals))
+      if (no_end || (rules.match_seconds > 0.0 && rules.goals_to_win == foosball::kMaxGoals))
         return {N_("Goals that win a set"), N_("no limit")};
       return {.label = N_("Goals that win a set"),
               .value = number(rules.goals_to_win),
@@ -229,9 +229,9 @@ void GameMenu::change_goals(int way) {
   const int now = rules_of(setup_of(kept_)).goals_to_win;
   const bool timed = kept_.match_ms > 0;
   const bool none = timed && kept_.goals == 0;
-  const int least = timed ? 0 : 1;
+  const int min = timed ? 0 : 1;
   const int next = none ? std::max(0, way) : now + way;
-  kept_.goals = static_cast<std::uint8_t>(std::clamp(next, least, foosball::kMostGoals));
+  kept_.goals = static_cast<std::uint8_t>(std::clamp(next, min, foosball::kMaxGoals));
 }
 
 void GameMenu::change(int row, int way) {
@@ -256,7 +256,7 @@ void GameMenu::change(int row, int way) {
       break;
     case row_sets: {
       const int sets = 2 * rules_of(setup_of(kept_)).sets_to_win - 1;
-      kept_.sets = byte(std::clamp(sets + 2 * way, 1, foosball::kMostSets));
+      kept_.sets = byte(std::clamp(sets + 2 * way, 1, foosball::kMaxSets));
       break;
     }
     case row_minutes: {

@@ -15,7 +15,7 @@ constexpr std::int64_t kLongestGapUs = 200'000;  // after a longer stall the pre
 // Units of disagreement; clamped, because a blocked rod must not determine the lag alone.
 constexpr double kSlideUnit = 0.002;  // [m]
 constexpr double kAngleUnit = 0.05;   // [rad]
-constexpr double kMostDisagreement = 16.0;
+constexpr double kMaxDisagreement = 16.0;
 constexpr float kForget = 0.985f;      // decay of the disagreement per frame: about a second
 constexpr float kEnoughToTell = 2.0f;  // minimum spread of the disagreement over the lags
 
@@ -76,7 +76,7 @@ void RodPrediction::score_lags(const wire::Snapshot& server) {
       const double angle = wire::unwrap_angle(seen.angle, then.angle);
       score += static_cast<float>(std::min(squared((seen.slide - then.slide) / kSlideUnit) +
                                                squared((angle - then.angle) / kAngleUnit),
-                                           kMostDisagreement));
+                                           kMaxDisagreement));
     }
   }
   const auto [best, worst] = std::minmax_element(disagreement_.begin(), disagreement_.end());

@@ -165,8 +165,8 @@ std::int64_t SnapshotBuffer::play_time(std::int64_t now_us) {
     playing_ = true;
     return play_us_ = wanted;
   }
-  const std::int64_t most = elapsed / kSlewShare;
-  return play_us_ += elapsed + std::clamp(error, -most, most);
+  const std::int64_t max = elapsed / kSlewShare;
+  return play_us_ += elapsed + std::clamp(error, -max, max);
 }
 
 SceneSample SnapshotBuffer::sample(std::int64_t now_us) {

@@ -136,11 +136,11 @@ tl::expected<UdpSocket, std::string> open_multicast(const std::string& group, st
   return udp;
 }
 
-std::size_t take_datagrams(int socket, std::size_t most,
+std::size_t take_datagrams(int socket, std::size_t max,
                            const std::function<void(std::span<const std::byte>)>& take) {
   std::array<std::byte, kLongestDatagram> bytes;
   std::size_t taken = 0;
-  for (; taken < most; ++taken) {
+  for (; taken < max; ++taken) {
     const auto size = ::recv(socket, bytes.data(), bytes.size(), 0);
     if (size < 0) break;
     take({bytes.data(), static_cast<std::size_t>(size)});

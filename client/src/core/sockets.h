@@ -50,7 +50,7 @@ tl::expected<UdpSocket, std::string> open_multicast(const std::string& group, st
 // Receives up to `most` pending datagrams, truncated to kLongestDatagram bytes, and returns their
 // number. The bytes are valid until `take` returns.
 inline constexpr std::size_t kLongestDatagram = 2048;
-std::size_t take_datagrams(int socket, std::size_t most,
+std::size_t take_datagrams(int socket, std::size_t max,
                            const std::function<void(std::span<const std::byte>)>& take);
 // Starts to connect; the socket becomes writable when the connection succeeds or fails.
 tl::expected<os::FileDescriptor, std::string> begin_connect(const os::SocketAddress& server);

@@ -88,8 +88,8 @@ void Survey::step(Asked& asked, const MenuSteps& steps, int key, std::int64_t no
     return;
   }
   const bool consent = asked.stage == kConsent;
-  const int most = consent ? consent_never : static_cast<int>(wire::kMaxScore);
-  int chosen = std::clamp(asked.chosen + steps.right, 0, most);
+  const int max = consent ? consent_never : static_cast<int>(wire::kMaxScore);
+  int chosen = std::clamp(asked.chosen + steps.right, 0, max);
   if (!consent && score_of_key(key) > 0) chosen = score_of_key(key);
   if (chosen != asked.chosen) {
     asked.chosen = chosen;

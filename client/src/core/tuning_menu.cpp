@@ -21,7 +21,7 @@ constexpr int kSlots = 5;  // names for profiles that do not exist yet
 
 // 1, 2 or 5 times a power of ten, about a hundredth of the range.
 double step_of(const foosball::TuningField& field) {
-  const double about = (field.most - field.least) / 100.0;
+  const double about = (field.max - field.min) / 100.0;
   const double power = std::pow(10.0, std::floor(std::log10(about)));
   const double mantissa = about / power;
   return power * (mantissa < 1.5 ? 1.0 : mantissa < 3.5 ? 2.0 : mantissa < 7.5 ? 5.0 : 10.0);
@@ -32,7 +32,7 @@ double stepped(const foosball::TuningField& field, double value, int way) {
   // Integer multiples of the step, rounded to short decimals: no 0.30000000000000004.
   char text[32];
   std::snprintf(text, sizeof text, "%.6g", step * std::round(value / step + way));
-  return std::clamp(std::strtod(text, nullptr), field.least, field.most);
+  return std::clamp(std::strtod(text, nullptr), field.min, field.max);
 }
 
 // In units that give values of a readable size.
@@ -64,7 +64,7 @@ std::string value_text(double value, const foosball::TuningField& field) {
 }
 
 float share_of(const foosball::TuningField& field, double value) {
-  return static_cast<float>((value - field.least) / (field.most - field.least));
+  return static_cast<float>((value - field.min) / (field.max - field.min));
 }
 
 }  // namespace
@@ -156,9 +156,8 @@ MenuPage TuningMenu::page(int chosen) const {
     const foosball::TuningField& field = foosball::kTuningFields[static_cast<std::size_t>(index)];
     page.note = field.meaning;
     const double factor = shown_unit(field.unit).factor;
-    page.detail = value_text(usual.*field.value, field) + "  [" +
-                  number_text(factor * field.least) + " .. " + number_text(factor * field.most) +
-                  "]";
+    page.detail = value_text(usual.*field.value, field) + "  [" + number_text(factor * field.min) +
+                  " .. " + number_text(factor * field.max) + "]";
   } else if (!may_change_ && chosen != row_save) {
     page.note = N_("Only the host changes the values; you see them as they are.");
   }

@@ -72,7 +72,7 @@ Stand whole_table(const foosball::TableSpec& table, float aspect) {
     const float f = glm::dot(p, forward), u = glm::dot(p, up);
     top = std::max(top, u - tan_y * f);
     bottom = std::max(bottom, -u - tan_y * f);
-    side = std::max(side, std::abs(point.x) + kMostLean - tan_x * f);
+    side = std::max(side, std::abs(point.x) + kMaxLean - tan_x * f);
   }
   const float back = std::max((top + bottom) / (2.0f * tan_y), side / tan_x);
   const glm::vec2 eye = 0.5f * (top - bottom) * up - back * forward;

@@ -20,7 +20,7 @@ struct Camera {
   glm::vec3 project(const glm::vec3& world, const glm::ivec2& screen) const;
 };
 
-inline constexpr float kMostLean = 0.030f;  // [m] along x, maximum with the whole table in view
+inline constexpr float kMaxLean = 0.030f;  // [m] along x, maximum with the whole table in view
 
 struct CameraView {
   foosball::Layout layout = foosball::Layout::tournament;

@@ -47,7 +47,7 @@ void draw_score(const HudPen& whole, const HudState& hud, bool at_the_bottom) {
     pen.text(score, {Face::bold, 44.0f, 0.0f, Align::centre}, {side * 54.0f, y + 47.0f},
              kTeamInk[t]);
     const bool counted = possession && possession->team == team;
-    const TextStyle small{Face::regular, std::max(11.5f, kLeastRead / pen.scale), 0.01f,
+    const TextStyle small{Face::regular, std::max(11.5f, kMinRead / pen.scale), 0.01f,
                           Align::centre};
     const bool crew = small.size <= 13.0f;  // a larger font leaves no space
     const float name_at = counted ? 23.0f : crew ? 31.0f : 37.0f;
@@ -61,8 +61,8 @@ void draw_score(const HudPen& whole, const HudState& hud, bool at_the_bottom) {
     if (crew) pen.text(tr(name.c_str()), small, {side * 137.0f, y + 49.0f}, kFaint, 0.55f, 108.0f);
   }
   // At the end of a match of one set there are no sets to count.
-  const int least_sets = state.screen == number(wire::Screen::end) ? 2 : 1;
-  if (state.sets[0] + state.sets[1] >= least_sets) {
+  const int min_sets = state.screen == number(wire::Screen::end) ? 2 : 1;
+  if (state.sets[0] + state.sets[1] >= min_sets) {
     const std::size_t left = pen.left_is_team_0 ? 0 : 1;
     const std::string sets = std::string(tr("sets")) + " " + std::to_string(state.sets[left]) +
                              " : " + std::to_string(state.sets[1 - left]);
@@ -192,8 +192,8 @@ void draw_notices(const HudPen& pen, const HudState& hud, float room_below) {
   constexpr float kHighest = 22.0f;  // its panel is then at the upper edge
   float y = std::max(pen.bottom - 22.0f - room_below, kHighest);
   // In the view from above they cover the field: only the newest is shown.
-  const std::size_t most = hud.view == View::above ? 1 : 3;
-  const std::size_t shown = std::min(hud.notices.size(), most);
+  const std::size_t max = hud.view == View::above ? 1 : 3;
+  const std::size_t shown = std::min(hud.notices.size(), max);
   for (std::size_t i = 0; i < shown && y >= kHighest; ++i) {
     const std::string text = tr_sentence(hud.notices[hud.notices.size() - 1 - i]);
     const TextStyle style{Face::regular, 15.0f, 0.0f, Align::centre};

@@ -39,10 +39,10 @@ void draw_trace(const HudPen& pen, const std::deque<DeviceView::Point>& trace,
                 double DeviceView::Point::*value, const glm::vec2& low, const glm::vec2& high,
                 const Colour& ink) {
   if (trace.size() < 2) return;
-  constexpr double kLeastRange = 40.0;  // [counts]
-  const auto [least, most] = std::ranges::minmax(trace, {}, value);
-  const double middle = 0.5 * (least.*value + most.*value);
-  const double range = std::max(most.*value - least.*value, kLeastRange);
+  constexpr double kMinRange = 40.0;  // [counts]
+  const auto [min, max] = std::ranges::minmax(trace, {}, value);
+  const double middle = 0.5 * (min.*value + max.*value);
+  const double range = std::max(max.*value - min.*value, kMinRange);
   const double end = trace.back().seconds;
   const auto place = [&](const DeviceView::Point& p) {
     const double x = 1.0 - (end - p.seconds) / DeviceView::kTraceSeconds;

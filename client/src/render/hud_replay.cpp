@@ -37,9 +37,9 @@ struct Pen {
   // A name: scaled down to the smallest legible size, then cut.
   void name(std::string text, float size, Align align, const glm::vec2& at, const Colour& colour,
             float room, Face face = Face::regular) const {
-    constexpr float kLeastName = 11.0f;  // [px] of a letter's size
+    constexpr float kMinName = 11.0f;  // [px] of a letter's size
     const float wide = width(text, size, face);
-    if (wide > room) size = std::min(size, std::max(size * room / wide, kLeastName / scale));
+    if (wide > room) size = std::min(size, std::max(size * room / wide, kMinName / scale));
     if (width(text, size, face) > 1.01f * room) {  // tolerance for rounding
       const auto shortened = [&] { return text + "\u2026"; };
       while (!text.empty() && width(shortened(), size, face) > room) {
@@ -222,9 +222,9 @@ std::string label_of(ReplayButton button, const ReplayBar& bar) {
   return {};
 }
 
-float scale_of(const glm::ivec2& screen, float least) {
-  return std::max(least, std::min(static_cast<float>(screen.y) / 720.0f,
-                                  static_cast<float>(screen.x) / 960.0f));
+float scale_of(const glm::ivec2& screen, float min) {
+  return std::max(
+      min, std::min(static_cast<float>(screen.y) / 720.0f, static_cast<float>(screen.x) / 960.0f));
 }
 
 }  // namespace
@@ -315,8 +315,8 @@ void draw_replay_bar(UiBatch& ui, const ReplayBar& bar, const glm::ivec2& screen
 
 ReplayListLayout replay_list_layout(const glm::ivec2& screen) {
   ReplayListLayout layout;
-  const float least = std::clamp(static_cast<float>(screen.x) / 630.0f, 0.66f, 0.76f);
-  const float s = layout.scale = scale_of(screen, least);
+  const float min = std::clamp(static_cast<float>(screen.x) / 630.0f, 0.66f, 0.76f);
+  const float s = layout.scale = scale_of(screen, min);
   const auto width = static_cast<float>(screen.x), height = static_cast<float>(screen.y);
   const float half = std::min(0.5f * width - 6.0f, 460.0f * s);
   layout.panel = {{0.5f * width - half, 10.0f * s}, {0.5f * width + half, height - 10.0f * s}};

@@ -98,13 +98,13 @@ struct Traits {
 
 Traits traits_of(const foosball::Characters& characters, const foosball::Character& one) {
   const auto among = [&](auto value) {
-    double least = 1e9, most = -1e9;
+    double min = 1e9, max = -1e9;
     for (const foosball::Character& c : characters) {
-      least = std::min(least, value(c.body));
-      most = std::max(most, value(c.body));
+      min = std::min(min, value(c.body));
+      max = std::max(max, value(c.body));
     }
-    const double span = most - least;
-    return span > 1e-9 * most ? static_cast<float>((value(one.body) - least) / span) : 0.5f;
+    const double span = max - min;
+    return span > 1e-9 * max ? static_cast<float>((value(one.body) - min) / span) : 0.5f;
   };
   using Body = foosball::CharacterBody;
   static constexpr foosball::Tuning kHand;  // beyond it no limit of a character matters
@@ -150,7 +150,7 @@ void draw_character(const HudPen& pen, const foosball::Characters& characters, i
              {high.x - 9.0f, low.y + 18.0f}, chosen ? kInk : kFaint);
   const glm::vec2 text = low + glm::vec2(wide + 12.0f, 0.0f);
   const float room = size.x - wide - 20.0f, line = trait_text_size(size.y);
-  const bool traits_shown = chosen || line * pen.scale >= kLeastRead;
+  const bool traits_shown = chosen || line * pen.scale >= kMinRead;
   pen.text(capitalised(tr(shown.name.c_str())),
            {Face::bold, std::min(18.0f, 0.29f * size.y), 0.0f, Align::left},
            text + glm::vec2(0.0f, traits_shown ? 0.22f * size.y + 6.5f : 0.5f * size.y + 6.5f),
@@ -291,9 +291,9 @@ struct RowHeights {
 // The chosen row is taller if the rows are too low to read all text.
 RowHeights row_heights(float room, int rows, float scale) {
   const float even = std::min(124.0f, room / static_cast<float>(rows));
-  const float least = kLeastRead / (0.175f * scale) + kBetweenRows;
-  if (even >= least) return {even, even};
-  const float chosen = std::min(least, 0.4f * room);
+  const float min = kMinRead / (0.175f * scale) + kBetweenRows;
+  if (even >= min) return {even, even};
+  const float chosen = std::min(min, 0.4f * room);
   return {chosen, (room - chosen) / static_cast<float>(rows - 1)};
 }
 
@@ -520,7 +520,7 @@ void draw_end(const HudPen& whole, const wire::Snapshot& state, const EndWords& 
   const auto fitted = [&] {
     return whole.fitting(kHalf + 10.0f, (height_of() + kAround) * whole.bottom / room);
   };
-  while (rows.size() > 1 && 16.0f * fitted().scale < kLeastRead) rows.pop_back();
+  while (rows.size() > 1 && 16.0f * fitted().scale < kMinRead) rows.pop_back();
   const HudPen pen = fitted();
   const float half = kHalf, height = height_of();
   const float top = 0.5f * (room * whole.scale / pen.scale - height);

@@ -24,7 +24,7 @@ inline const Colour kWarning{1.0f, 0.80f, 0.36f, 1.0f};
 inline const Colour kPanel{0.030f, 0.045f, 0.070f, 0.74f};
 inline const std::array<Colour, 2> kTeamInk{Colour{1.0f, 0.60f, 0.22f, 1.0f},
                                             Colour{0.42f, 0.74f, 1.0f, 1.0f}};
-inline constexpr float kLeastRead = 8.0f;  // [px] of a letter's size: smaller ones are illegible
+inline constexpr float kMinRead = 8.0f;  // [px] of a letter's size: smaller ones are illegible
 // Beside a team's name: distinguishes the teams without colours.
 inline constexpr std::array<const char*, 2> kTeamMark{"●", "▲"};
 

@@ -53,9 +53,9 @@ void draw_menu_row(const HudPen& pen, const MenuRow& row, float y, bool here) {
 }  // namespace
 
 void draw_menu(const HudPen& whole, const MenuPage& page) {
-  const float least = page.device != nullptr ? device_height(*page.device) + 220.0f : 420.0f;
+  const float min = page.device != nullptr ? device_height(*page.device) + 220.0f : 420.0f;
   const HudPen pen =
-      whole.fitting(kHalf + 10.0f, std::max(least, 420.0f)).readable(0.62f, kHalf + 10.0f);
+      whole.fitting(kHalf + 10.0f, std::max(min, 420.0f)).readable(0.62f, kHalf + 10.0f);
   std::vector<std::string> notes;
   if (!page.note.empty())
     notes = pen.wrapped(tr(page.note.c_str()), kNoteStyle, 2.0f * kHalf - 50.0f);

@@ -26,9 +26,9 @@ glm::vec3 ring_point(const LoftRing& ring, float angle) {
 
 }  // namespace
 
-int MeshBuilder::scaled(int count, int least) const {
+int MeshBuilder::scaled(int count, int min) const {
   const int n = static_cast<int>(std::lround(static_cast<float>(count) * detail_));
-  return std::max(least, n - n % 2);
+  return std::max(min, n - n % 2);
 }
 
 std::uint32_t MeshBuilder::vertex(const glm::vec3& position, const glm::vec3& normal) {

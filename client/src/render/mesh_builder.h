@@ -54,7 +54,7 @@ class MeshBuilder {
   void triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c);
   void quad(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d);
   void cap(std::span<const glm::vec3> ring, const glm::vec3& normal);
-  int scaled(int count, int least) const;
+  int scaled(int count, int min) const;
 
   float detail_;
   Paint paint_;

@@ -8,7 +8,7 @@
 namespace client {
 namespace {
 
-constexpr std::size_t kMost = 900;  // more are indistinguishable; software drawing stays cheap
+constexpr std::size_t kMax = 900;  // more are indistinguishable; software drawing stays cheap
 
 const glm::vec3 kHot{1.5f, 1.25f, 0.85f};
 const glm::vec3 kWood{1.1f, 0.75f, 0.35f};
@@ -25,7 +25,7 @@ float Particles::uniform() {
 }
 
 void Particles::add(const Particle& particle) {
-  if (alive_.size() < kMost) alive_.push_back(particle);
+  if (alive_.size() < kMax) alive_.push_back(particle);
 }
 
 void Particles::spark(Material material, const glm::vec3& at, const glm::vec3& towards,
@@ -72,8 +72,8 @@ void Particles::streak(const glm::vec3& ball, const glm::vec3& velocity, float r
   const glm::vec3 light = (reduced_ ? 0.15f : 0.50f) * fade *
                           glm::mix(0.9f * colour, 0.5f * (colour + kHot), fade * fade);
   // As many at 30 frames a second, so that the trail has no gaps.
-  constexpr int kMostBeads = 48;
-  const int beads = std::clamp(static_cast<int>(speed * dt / (0.5f * radius)), 1, kMostBeads);
+  constexpr int kMaxBeads = 48;
+  const int beads = std::clamp(static_cast<int>(speed * dt / (0.5f * radius)), 1, kMaxBeads);
   for (int i = 0; i < beads; ++i) {
     const float back = dt * static_cast<float>(i) / static_cast<float>(beads);
     add({ball - velocity * back, glm::vec3(0), light, 0.80f * radius, back, 0.16f + 0.14f * fade,

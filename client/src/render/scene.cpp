@@ -62,7 +62,7 @@ const glm::mat4 kTextureFromClip{
 float Scene::drawn_ball_radius(const foosball::TableSpec& table, float height) {
   const auto radius = static_cast<float>(table.ball_radius);
   const float above = std::max(height - radius, 0.0f);
-  return radius * (1.0f + kMostBallGrowth * (1.0f - std::exp(-above / kBallGrowthHeight)));
+  return radius * (1.0f + kMaxBallGrowth * (1.0f - std::exp(-above / kBallGrowthHeight)));
 }
 
 bool ball_is_seen(const wire::Snapshot& state) {

@@ -31,8 +31,8 @@ struct SceneView {
 };
 
 // The ball is drawn larger with its height in the snapshot (paper, section 5: "a sense of height
-// cues"): by a quarter for a hop of 30 mm, never to more than 1 + kMostBallGrowth.
-inline constexpr float kMostBallGrowth = 0.9f;
+// cues"): by a quarter for a hop of 30 mm, never to more than 1 + kMaxBallGrowth.
+inline constexpr float kMaxBallGrowth = 0.9f;
 inline constexpr float kBallGrowthHeight = 0.090f;  // [m] at which 63% of the growth is reached
 
 // Moves rods, men and ball along x, so that each rod lines up with its handle outside the screen.

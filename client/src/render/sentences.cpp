@@ -72,13 +72,13 @@ struct Known {
 };
 Known known(std::string_view sentence) {
   Known best;
-  std::size_t most = 0;
+  std::size_t max = 0;
   const auto look = [&](const char* form) {
     auto words = words_in(sentence, form);
     if (!words) return;
     std::size_t own = sentence.size() + 1;
     for (const std::string_view word : *words) own -= word.size();
-    if (own > most) best = {form, std::move(*words)}, most = own;
+    if (own > max) best = {form, std::move(*words)}, max = own;
   };
   for (const char* form : wire::kSentences) look(form);
   for (const char* form : kOwn) look(form);

@@ -90,7 +90,7 @@ struct CharacterField {
   const char* name;
   const char* unit;  // empty: dimensionless
   double T::*value;
-  double least, most;
+  double min, max;
   const char* meaning;  // what it is, and what fails beyond its range
 };
 
@@ -137,7 +137,7 @@ inline constexpr int kVoiceNumbers = static_cast<int>(kVoiceFields.size());
 // False out of the field's range and for NaN.
 template <class T>
 constexpr bool in_range(const CharacterField<T>& field, double value) {
-  return field.least <= value && value <= field.most;
+  return field.min <= value && value <= field.max;
 }
 
 // Largest distance of a foot's corner from the rod's axis. The end wall and the men of the next rod

@@ -10,18 +10,18 @@
 
 namespace foosball {
 
-inline constexpr int kMostGoals = 99;  // to win a set
-inline constexpr int kMostSets = 17;   // of a match (best of)
-inline constexpr std::uint32_t kMostMatchMs = 3'600'000;
+inline constexpr int kMaxGoals = 99;  // to win a set
+inline constexpr int kMaxSets = 17;   // of a match (best of)
+inline constexpr std::uint32_t kMaxMatchMs = 3'600'000;
 inline constexpr int kGoalsBeyond = 3;  // margin of max_goals over goals_to_win: 8 for 5
 inline constexpr std::uint32_t kFirstDate = 1000'01'01, kLastDate = 9999'12'31;
 
 struct GameSetup {
   Mode mode = Mode::match;
   RuleSet rules = RuleSet::arcade;
-  int goals = 0;               // to win a set, 1..kMostGoals; 0: default of the rules
-  int sets = 0;                // best of this number, odd, 1..kMostSets; 0: default of the rules
-  std::uint32_t match_ms = 0;  // playing time of a set [ms], at most kMostMatchMs; 0: no limit
+  int goals = 0;               // to win a set, 1..kMaxGoals; 0: default of the rules
+  int sets = 0;                // best of this number, odd, 1..kMaxSets; 0: default of the rules
+  std::uint32_t match_ms = 0;  // playing time of a set [ms], at most kMaxMatchMs; 0: no limit
   bool change_sides = false;   // between sets
   std::uint32_t date = 0;      // of a challenge, such as 20261122; otherwise 0
 
@@ -63,8 +63,8 @@ constexpr bool is_date(std::uint32_t date) {
 // Every number is in its range.
 constexpr bool in_range(const GameSetup& setup) {
   return static_cast<int>(setup.mode) < kModes && static_cast<int>(setup.rules) < kRuleSets &&
-         setup.goals >= 0 && setup.goals <= kMostGoals && setup.match_ms <= kMostMatchMs &&
-         (setup.sets == 0 || (setup.sets >= 1 && setup.sets <= kMostSets && setup.sets % 2 == 1));
+         setup.goals >= 0 && setup.goals <= kMaxGoals && setup.match_ms <= kMaxMatchMs &&
+         (setup.sets == 0 || (setup.sets >= 1 && setup.sets <= kMaxSets && setup.sets % 2 == 1));
 }
 
 // In range, and consistent with the mode.
@@ -81,11 +81,11 @@ constexpr Rules rules_of(const GameSetup& setup, const Rules& screens = {}) {
                                                : arcade_rules();
   if (setup.match_ms > 0) {
     rules.match_seconds = setup.match_ms / 1000.0;
-    rules.goals_to_win = rules.max_goals = kMostGoals;
+    rules.goals_to_win = rules.max_goals = kMaxGoals;
   }
   if (setup.goals > 0) {
     rules.goals_to_win = setup.goals;
-    rules.max_goals = std::min(kMostGoals, setup.goals + kGoalsBeyond);
+    rules.max_goals = std::min(kMaxGoals, setup.goals + kGoalsBeyond);
   }
   if (setup.sets > 0) rules.sets_to_win = (setup.sets + 1) / 2;
   rules.change_sides = setup.change_sides;
@@ -100,7 +100,7 @@ constexpr Rules rules_of(const GameSetup& setup, const Rules& screens = {}) {
 inline GameSetup setup_of(Mode mode, const Rules& rules, std::uint32_t date = 0) {
   GameSetup setup{.mode = mode, .rules = rules.set};
   const bool timed = rules.match_seconds > 0.0;
-  setup.goals = timed && rules.goals_to_win == kMostGoals ? 0 : rules.goals_to_win;
+  setup.goals = timed && rules.goals_to_win == kMaxGoals ? 0 : rules.goals_to_win;
   setup.sets = 2 * rules.sets_to_win - 1;
   setup.match_ms = static_cast<std::uint32_t>(std::lround(rules.match_seconds * 1000.0));
   setup.change_sides = rules.change_sides;

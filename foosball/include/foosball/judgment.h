@@ -54,7 +54,7 @@ struct JudgmentField {
   const char* name;  // of the member
   const char* unit;  // empty: dimensionless
   double Judgment::*value;
-  double least, most;
+  double min, max;
   const char* meaning;
 };
 
@@ -122,7 +122,7 @@ inline constexpr int kJudgmentValues = static_cast<int>(kJudgmentFields.size());
 static_assert(sizeof(Judgment) == sizeof(double) * kJudgmentValues, "a field is missing");
 
 constexpr bool in_range(const JudgmentField& field, double value) {
-  return field.least <= value && value <= field.most;
+  return field.min <= value && value <= field.max;
 }
 constexpr bool in_range(const Judgment& judgment) {
   bool all = true;

@@ -24,8 +24,8 @@ struct RodTarget {
 
 // Thresholds: a hand has moved its rod if the target changed by at least this much. Sensor noise
 // and a table that somebody leans on stay below.
-inline constexpr double kLeastHandSlide = 0.003;  // [m]
-inline constexpr double kLeastHandTurn = 0.05;    // [rad]
+inline constexpr double kMinHandSlide = 0.003;  // [m]
+inline constexpr double kMinHandTurn = 0.05;    // [rad]
 
 // State of a rod: the slide of the row and the angle of the hand that rotates it.
 struct RodState {

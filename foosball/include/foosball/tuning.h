@@ -46,7 +46,7 @@ struct TuningField {
   const char* name;  // of the member; used in profiles and panels
   const char* unit;  // empty: dimensionless
   double Tuning::*value;
-  double least, most;
+  double min, max;
   const char* meaning;  // one sentence: what it is, and what fails beyond its range
 };
 
@@ -123,7 +123,7 @@ constexpr void visit_fields(Self& tuning, Visit&& visit) {
 
 // False out of the field's range and for NaN.
 constexpr bool in_range(const TuningField& field, double value) {
-  return field.least <= value && value <= field.most;
+  return field.min <= value && value <= field.max;
 }
 constexpr bool in_range(const Tuning& tuning) {
   bool all = true;

@@ -24,7 +24,7 @@ namespace {
 
 constexpr double kLongestFrame = 0.1;  // [s]; a longer delay of a frame is dropped
 // A frame may step for as long as its picture takes to draw, but at least for this time [s].
-constexpr double kLeastStepping = 1.0 / 30.0;
+constexpr double kMinStepping = 1.0 / 30.0;
 
 constexpr Simulation::Clocks kClocks{os::monotonic_ns, os::thread_ns, os::monotonic_ns};
 
@@ -235,7 +235,7 @@ void App::advance(double frame) {
   if (controls_.paused) return;
   if (const auto stop = next_stop())
     frame = std::clamp((*stop - simulation_.time()) / controls_.speed, 0.0, frame);
-  const double budget = std::clamp(drawing_, kLeastStepping, kLongestFrame);
+  const double budget = std::clamp(drawing_, kMinStepping, kLongestFrame);
   const auto stepped = simulation_.advance(frame, controls_.speed, budget);
   if (stepped) return;
   message_ = stepped.error().message;

@@ -74,7 +74,7 @@ tl::expected<Options, draw::Leave> parse_options(int argc, const char* const* ar
   cli.add_flag("--list", list, "print the scenes");
   cli.add_option("--rate", options.rate, "steps a second, 10 to 10000")
       ->capture_default_str()
-      ->check(draw::within(Simulation::kLeastRate, Simulation::kMostRate));
+      ->check(draw::within(Simulation::kMinRate, Simulation::kMaxRate));
   cli.add_option("--speed", options.speed, "share of real time, 0.01 to 10")
       ->capture_default_str()
       ->check(draw::within(0.01, 10.0));

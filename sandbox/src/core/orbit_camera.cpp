@@ -12,7 +12,7 @@ constexpr double kSteepest = 1.5;   // [rad]: at a right angle the up direction 
 constexpr double kTurn = 0.006;     // [rad/px]
 constexpr double kZoomStep = 1.15;  // factor of the distance per wheel step
 constexpr double kNearest = 0.05, kFarthest = 1e5;  // distance to the target [m]
-constexpr double kMostCovered = 0.6;                // of the picture's width
+constexpr double kMaxCovered = 0.6;                 // of the picture's width
 constexpr double kMargin = 1.06;                    // margin factor around a fitted box
 
 glm::vec3 narrow(const vp::Vec3& v) {
@@ -34,7 +34,7 @@ void OrbitCamera::look_from(double yaw, double pitch) {
 }
 
 void OrbitCamera::leave_free(double share) {
-  covered_ = std::clamp(share, 0.0, kMostCovered);
+  covered_ = std::clamp(share, 0.0, kMaxCovered);
 }
 
 // Each corner must be inside the four sides of the view frustum; the largest distance that a corner

@@ -28,8 +28,8 @@ vp::Vec3 pull_impulse(const vp::World& world, const Grip& grip, double dt) {
   const vp::Vec3 cx = column({1, 0, 0}), cy = column({0, 1, 0}), cz = column({0, 0, 1});
   const vp::Sym3 A{cx.x, cy.y, cz.z, cx.y, cy.z, cz.x};
   const vp::Vec3 P = -dt * (vp::inverse(A) * (k * (x - grip.target) + (c + dt * k) * v));
-  const double most = m * kStrongest * dt, size = norm(P);
-  return size > most ? (most / size) * P : P;
+  const double max = m * kStrongest * dt, size = norm(P);
+  return size > max ? (max / size) * P : P;
 }
 
 }  // namespace sandbox

@@ -38,7 +38,7 @@ class Simulation {
     std::int64_t (*stages)() = nullptr;  // measures its stages; null: they are not timed
   };
 
-  static constexpr int kLeastRate = 10, kMostRate = 10'000;  // [Hz]
+  static constexpr int kMinRate = 10, kMaxRate = 10'000;  // [Hz]
 
   Simulation(scenes::SceneWorld world, int rate, const Clocks& clocks);
   // The error names the available scenes, or the part of this scene that the engine does not

@@ -11,7 +11,7 @@ namespace server {
 
 class LogWriter {
  public:
-  static constexpr std::size_t kMostWaiting = 256 * 1024;  // bytes
+  static constexpr std::size_t kMaxWaiting = 256 * 1024;  // bytes
 
   // The caller owns fd. Its flags are left unchanged, since another process may share them.
   explicit LogWriter(int fd);

@@ -95,10 +95,10 @@ void describe_journal_setup(Codec& codec, S& s) {
   codec.integer(
       Integer{"mode", 2, kModeCount - 1, "", "0 match, 1 training, 2 challenge, 3 ladder"}, s.mode);
   codec.integer(Integer{"rule_set", 1, kRuleSetCount - 1, "", "0 arcade, 1 ITSF"}, s.rule_set);
-  codec.integer(Integer{"goals", 7, kMostGoals, "", "that win a set; 0: as the rules have it"},
+  codec.integer(Integer{"goals", 7, kMaxGoals, "", "that win a set; 0: as the rules have it"},
                 s.goals);
-  codec.integer(Integer{"sets", 5, kMostSets, "", "best of; 0: as the rules have it"}, s.sets);
-  codec.integer(Integer{"match_ms", 22, kMostMatchMs, "ms", "of a set; 0: no limit"}, s.match_ms);
+  codec.integer(Integer{"sets", 5, kMaxSets, "", "best of; 0: as the rules have it"}, s.sets);
+  codec.integer(Integer{"match_ms", 22, kMaxMatchMs, "ms", "of a set; 0: no limit"}, s.match_ms);
   codec.integer(Integer{"date", 27, kLastDate, "", "of a challenge, such as 20261122; else 0"},
                 s.date);
   codec.flag(Flag{"change_sides", ""}, s.change_sides);
