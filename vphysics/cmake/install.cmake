@@ -23,6 +23,7 @@ function(vphysics_install target exported)
 endfunction()
 
 vphysics_install(vphysics vphysics VirtualPhysicsTargets)
+vphysics_install(vphysics_packs packs VirtualPhysicsPacksTargets)
 set(without "")
 if(TARGET vphysics_urdf)
   vphysics_install(vphysics_urdf urdf VirtualPhysicsUrdfTargets)

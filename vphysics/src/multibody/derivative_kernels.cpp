@@ -140,6 +140,5 @@ constexpr vphysics_kernels::DerivativeTable derivative_table() {
 #define VP_JOIN(a, b) a##b
 #define VP_DERIVATIVES_OF(table) VP_JOIN(table, Derivatives)
 
-namespace vphysics_kernels {
-const DerivativeTable VP_DERIVATIVES_OF(VP_KERNELS) = vp::detail::derivative_table();
-}
+const vphysics_kernels::DerivativeTable vphysics_kernels::VP_DERIVATIVES_OF(VP_KERNELS) =
+    vp::detail::derivative_table();

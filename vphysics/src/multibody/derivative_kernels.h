@@ -6,6 +6,7 @@
 #include "multibody/kernels.h"
 
 namespace vphysics_kernels {
+inline namespace VP_KERNELS_LIBRARY {
 
 // tree, work and memory: Tree, Work and DerivativesWork; the work has the results of inverse or
 // forward dynamics at the same state. The others as in derivatives.h. Results: derivatives with
@@ -32,4 +33,5 @@ extern const DerivativeTable kBaselineDerivatives;
 extern const DerivativeTable kAvx2Derivatives;
 extern const DerivativeTable kAvx512Derivatives;
 
+}  // namespace VP_KERNELS_LIBRARY
 }  // namespace vphysics_kernels

@@ -1,4 +1,5 @@
-// The scalars for which the library instantiates the algorithms, once.
+// The scalars for which a library instantiates the algorithms, once: numbers in vphysics, packs in
+// vphysics_packs, which is compiled from the same sources with VP_PACKS.
 #pragma once
 
 #include <cstddef>
@@ -13,15 +14,14 @@ using Float8 = PackT<float, 8>;
 using Float16 = PackT<float, 16>;
 }  // namespace vp::detail
 
-#ifdef VP_FEW_SCALARS  // builds for fault detection: the packs share one source
+#ifndef VP_PACKS
 #define VP_FOR_EACH_SCALAR(X) \
   X(double)                   \
-  X(float)                    \
-  X(detail::Double4)
+  X(float)
+#elif defined(VP_FEW_SCALARS)  // builds for fault detection: the packs share one source
+#define VP_FOR_EACH_SCALAR(X) X(detail::Double4)
 #else
 #define VP_FOR_EACH_SCALAR(X) \
-  X(double)                   \
-  X(float)                    \
   X(detail::Double4)          \
   X(detail::Double8)          \
   X(detail::Float8)           \

@@ -241,7 +241,9 @@ VP_FOR_EACH_SCALAR(VP_JACOBIANS)
                               std::span<const T>, int, Frame);                                   \
   template Vec3T<T> point_drift(const ModelT<T>&, const DataT<T>&, std::span<const T>,           \
                                 std::span<const T>, int, const Vec3T<T>&, Frame);
+#ifndef VP_PACKS
 VP_JACOBIAN_RATES(double)
 VP_JACOBIAN_RATES(float)
+#endif
 
 }  // namespace vp

@@ -111,10 +111,8 @@ constexpr vphysics_kernels::Table table() {
 }  // namespace detail
 }  // namespace vp
 
-namespace vphysics_kernels {
 #ifdef VP_SAME_BITS
-const Kernels VP_KERNELS = vp::detail::table();
+const vphysics_kernels::Kernels vphysics_kernels::VP_KERNELS = vp::detail::table();
 #else
-const Table VP_KERNELS = vp::detail::table();
+const vphysics_kernels::Table vphysics_kernels::VP_KERNELS = vp::detail::table();
 #endif
-}  // namespace vphysics_kernels

@@ -3,14 +3,21 @@
 //
 // The baseline gives the same bits everywhere. The wider sets have fused multiply-add and round
 // differently. kernels.cpp is compiled once for each set, in a separate namespace, so that the
-// linker cannot merge inline functions of different sets. Only the types of this header are shared
-// between the namespaces: addresses.
+// linker cannot merge inline functions of different sets, and so is each library's table. Only the
+// types of this header are shared between the namespaces: addresses.
 #pragma once
 
 #include <array>
 #include <cstddef>
 
+#ifdef VP_PACKS
+#define VP_KERNELS_LIBRARY packs
+#else
+#define VP_KERNELS_LIBRARY numbers
+#endif
+
 namespace vphysics_kernels {
+inline namespace VP_KERNELS_LIBRARY {
 
 // The arguments of a call of dynamics.h; unused ones are null. The lengths are those of the tree.
 struct Arguments {
@@ -29,10 +36,12 @@ struct Kernels {
   Kernel kinematics, forward_dynamics, factor_mass, solve_mass, inverse_dynamics, mass_matrix;
 };
 // One for each scalar, in the order of VP_FOR_EACH_SCALAR (instantiate.h).
-#ifdef VP_FEW_SCALARS
-inline constexpr std::size_t kScalars = 3;
+#ifndef VP_PACKS
+inline constexpr std::size_t kScalars = 2;
+#elif defined(VP_FEW_SCALARS)
+inline constexpr std::size_t kScalars = 1;
 #else
-inline constexpr std::size_t kScalars = 6;
+inline constexpr std::size_t kScalars = 4;
 #endif
 
 using Table = std::array<Kernels, kScalars>;
@@ -45,4 +54,5 @@ extern const Table kAvx512;
 extern const Kernels kAvx2SameBits;
 extern const Kernels kAvx512SameBits;
 
+}  // namespace VP_KERNELS_LIBRARY
 }  // namespace vphysics_kernels

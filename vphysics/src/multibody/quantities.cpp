@@ -136,8 +136,10 @@ void centre_of_mass_jacobian(const ModelT<base_t<T>>& model, const DataT<T>& dat
   });
 }
 
+#ifndef VP_PACKS
 template double total_mass(const ModelT<double>&);
 template float total_mass(const ModelT<float>&);
+#endif
 
 #define VP_QUANTITIES(T)                                                                    \
   template void bias_forces(const ModelT<base_t<T>>&, DataT<T>&, std::span<const T>,        \
