@@ -1,5 +1,5 @@
 # Toolchain of the preset "wasm": WebAssembly with WASI, which node runs (scripts/wasi.mjs), by Debian's
-# clang++ 14 and its libraries for wasm32 (docs/decisions/0025).
+# clang++ 14 and its libraries for wasm32 (docs/decisions/0028).
 set(CMAKE_SYSTEM_NAME Generic)
 set(CMAKE_SYSTEM_PROCESSOR wasm32)
 set(CMAKE_C_COMPILER clang)

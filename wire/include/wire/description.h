@@ -8,7 +8,6 @@
 //
 // Bit order: the lowest bit of each byte first, bytes in order. A field of up to 64 bits is
 // therefore little endian at any alignment.
-// endian wherever it happens to be aligned.
 #pragma once
 
 #include <cstdint>
