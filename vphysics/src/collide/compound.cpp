@@ -60,10 +60,10 @@ const char* problem_with_part(const Shape& shape) {
                : "its radius and half height must be from 1e-6 to 1e9 m";
   }
   if (const auto* hull = std::get_if<ConvexHull>(&shape)) {
-    return hull->data() ? nullptr : "its convex hull was moved from; hand in a copy";
+    return hull->data() ? nullptr : "its convex hull was moved from; give a copy";
   }
   if (const auto* compound = std::get_if<Compound>(&shape)) {
-    return compound->data() ? nullptr : "its compound was moved from; hand in a copy";
+    return compound->data() ? nullptr : "its compound was moved from; give a copy";
   }
   return "half-spaces, meshes and height fields are no parts; give each a collider of its own";
 }

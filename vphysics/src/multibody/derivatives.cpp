@@ -101,10 +101,10 @@ Expected<void> report(const char* call, Differentiated how) {
     case Differentiated::done:
       return {};
     case Differentiated::no_derivatives:
-      return tl::make_unexpected(
-          Error{Errc::unsupported, std::string(call) +
-                                       ": a joint of one's own does not say its slopes; override "
-                                       "UserJoint::slopes in it"});
+      return tl::make_unexpected(Error{
+          Errc::unsupported,
+          std::string(call) + ": a user-defined joint has no derivatives of its subspace; override "
+                              "UserJoint::slopes in it"});
     case Differentiated::singular:
       break;
   }

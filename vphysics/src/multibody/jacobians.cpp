@@ -103,10 +103,11 @@ void fill_jacobian(const Tree<base_t<T>>& tree, const Work<T>& work, const View&
 }
 
 Expected<void> no_derivatives(const char* call) {
-  return tl::make_unexpected(Error{
-      Errc::unsupported, std::string(call) +
-                             ": a joint of one's own with several degrees does not say its slopes; "
-                             "override UserJoint::slopes in it"});
+  return tl::make_unexpected(
+      Error{Errc::unsupported,
+            std::string(call) +
+                ": a user-defined joint of several degrees has no derivatives of its subspace; "
+                "override UserJoint::slopes in it"});
 }
 
 template <class T, class View>

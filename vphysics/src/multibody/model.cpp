@@ -251,7 +251,8 @@ Expected<int> ModelBuilder::add(LinkSpec link) {
   if (const auto* user = std::get_if<std::shared_ptr<const UserJoint>>(&link.joint)) {
     const int dofs = *user ? (*user)->degrees_of_freedom() : 0;
     if (dofs < 1 || dofs > 6) {
-      return invalid(link, "a joint of one's own must be there and have 1 to 6 degrees of freedom");
+      return invalid(
+          link, "a user-defined joint must not be null and must have 1 to 6 degrees of freedom");
     }
   }
   const Inertia& J = link.inertia;

@@ -292,7 +292,7 @@ class Checker {
     }
     attributes(*axis, {"xyz"});
     if (!axis->Attribute("xyz")) {
-      note(*axis, "the axis says nothing, and is taken as x");
+      note(*axis, "the axis has no number, and is taken as x");
       joint.DeleteChild(axis);
       return;
     }

@@ -230,7 +230,7 @@ std::optional<std::string> problem_in(const Gear& gear) {
   return "gear: the ratio must not be zero, and at most 1e9 in magnitude";
 }
 std::optional<std::string> problem_in(const UserConstraint& user) {
-  if (!user.constraint) return "constraint: there is none; hand in a pointer to one";
+  if (!user.constraint) return "constraint: the pointer is null; give one";
   const int rows = user.constraint->rows();
   if (rows < 1 || rows > solve::kJointRows) return "constraint: it must have 1 to 6 rows";
   for (int i = 0; i < rows; ++i) {

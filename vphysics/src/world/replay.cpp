@@ -174,7 +174,7 @@ Expected<Replay> Replay::begin(std::vector<std::byte> bytes, RecordedParts parts
   std::vector<std::byte> snapshot;
   in(magic, format);
   if (!in.ok() || magic != recording::kMagic) {
-    return bad("replay: these bytes are no recording; hand in all that a Recorder wrote");
+    return bad("replay: these bytes are no recording; give all bytes that a Recorder wrote");
   }
   if (format != recording::kFormat) {
     return bad("replay: a recording of another version; replay it with the engine that wrote it");
@@ -189,11 +189,11 @@ Expected<Replay> Replay::begin(std::vector<std::byte> bytes, RecordedParts parts
   }
   if (later && !built) {
     return invalid(
-        "replay: the recording began with a world that had been built; hand in one made by the "
+        "replay: the recording began with a world that had been built; give one made by the "
         "same calls");
   }
   if (!later && built) {
-    return invalid("replay: the recording makes its world itself; hand in none");
+    return invalid("replay: the recording creates its world itself; give none");
   }
   if (later) {
     if (const auto restored = built->restore(snapshot); !restored) {
@@ -236,7 +236,7 @@ tl::unexpected<Error> Replay::stop(const Error& error) {
 Expected<void> Replay::play(std::span<const std::byte> bytes) {
   Frame frame;
   if (!frame.read(bytes, parts_, dt_)) {
-    return bad("a value is out of range, or a part is missing; hand in the recorder's parts");
+    return bad("a value is out of range, or a part is missing; give the recorder's parts");
   }
   for (const Frame::Built& item : frame.calls) {
     if (const auto made = make(item.call, item.topology_hash); !made) return made;
@@ -251,7 +251,7 @@ Expected<void> Replay::make(const RecordedCall& call, std::uint64_t topology_has
     return bad("a recorded call is refused: " + made.error().message);
   }
   if (recording::builds(call) && topology_hash != world_.impl_->topology_hash) {
-    return bad("what is built is not what was recorded; hand in the same parts in the same order");
+    return bad("what is created is not what was recorded; give the same parts in the same order");
   }
   return {};
 }

@@ -349,7 +349,7 @@ void World::Impl::adopt(Incoming& from) {
 Expected<void> World::restore(std::span<const std::byte> bytes) {
   constexpr std::size_t kHeader = 7 * sizeof(std::uint64_t), kTail = sizeof(std::uint64_t);
   if (bytes.size() < kHeader + kTail || bytes.size() % sizeof(std::uint64_t) != 0) {
-    return bad("restore: too short to be a snapshot; hand in what snapshot() wrote");
+    return bad("restore: too short to be a snapshot; give what snapshot() wrote");
   }
   if (!impl_->incoming) impl_->incoming = std::make_shared<Impl::Incoming>(*impl_);
   const std::span<const std::byte> words = bytes.first(bytes.size() - kTail);

@@ -26,25 +26,25 @@ struct Report {
 // Indexed by Limit.
 constexpr Report kReports[] = {
     {&StepStatus::impact_limit,
-     "a swept body met more impacts than a step resolves and was held: shorten the step or "
-     "raise max_impacts_per_step"},
+     "a continuous body had more impacts than a step resolves and was stopped: use a shorter step "
+     "or raise max_impacts_per_step"},
     {&StepStatus::non_finite,
      "a body left the range of numbers and was stopped: look for forces, springs or speeds "
      "that are too large for the step"},
     {&StepStatus::bounce_limit,
-     "bounces ran through more bodies than a sub-step's rounds and the rest were stopped: "
-     "take more sub-steps or less restitution"},
+     "restitution propagated through more bodies than a sub-step has iterations, and the remaining "
+     "approach speeds were stopped: use more sub-steps or less restitution"},
     {&StepStatus::manifold_limit,
-     "a shape touched a surface at more slopes than are told apart: make the surface "
-     "coarser, or the shape smaller"},
+     "a shape touched a surface with too many different normals, and some were merged: use a "
+     "coarser surface or a smaller shape"},
     {&StepStatus::distance_limit,
-     "how deep two shapes overlap was not found exactly: make them less flat, or the step "
-     "shorter"},
+     "the penetration depth of two shapes was not found exactly: use less flat shapes or a "
+     "shorter step"},
     {&StepStatus::colour_limit,
-     "a body has more contacts than are solved side by side: the step takes longer"},
+     "a body has more contacts than can be solved in parallel: the step takes longer"},
     {&StepStatus::position_error,
      "shapes overlap deeply, or a joint is far open: look for joints that contradict one "
-     "another and for large ratios of mass, or take more sub-steps"},
+     "another and for large mass ratios, or use more sub-steps"},
 };
 const Report* report_of(Limit limit) {
   const auto index = static_cast<std::size_t>(limit);

@@ -53,13 +53,13 @@ std::optional<std::string> problem_with_shape(const Shape& shape) {
     if (!is_size(k->radius)) return "cone: the radius must be from 1e-6 to 1e9 m";
     if (!is_size(k->half_height)) return "cone: the half height must be from 1e-6 to 1e9 m";
   } else if (const auto* hull = std::get_if<ConvexHull>(&shape)) {
-    if (!hull->data()) return "convex hull: it was moved from; hand in a copy";
+    if (!hull->data()) return "convex hull: it was moved from; give a copy";
   } else if (const auto* mesh = std::get_if<TriangleMesh>(&shape)) {
-    if (!mesh->data()) return "triangle mesh: it was moved from; hand in a copy";
+    if (!mesh->data()) return "triangle mesh: it was moved from; give a copy";
   } else if (const auto* field = std::get_if<HeightField>(&shape)) {
-    if (!field->data()) return "height field: it was moved from; hand in a copy";
+    if (!field->data()) return "height field: it was moved from; give a copy";
   } else if (const auto* compound = std::get_if<Compound>(&shape)) {
-    if (!compound->data()) return "compound: it was moved from; hand in a copy";
+    if (!compound->data()) return "compound: it was moved from; give a copy";
   }
   return std::nullopt;
 }

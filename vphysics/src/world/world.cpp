@@ -139,7 +139,7 @@ Expected<ColliderId> World::add_collider(BodyId body_handle, const ColliderDesc&
                        std::holds_alternative<HeightField>(desc.shape);
   if (surface && body->motion == Motion::dynamic) {
     return invalid(Errc::unsupported,
-                   "add_collider: meshes and height fields are the skin of what nothing pushes; "
+                   "add_collider: meshes and height fields cannot belong to a dynamic body; "
                    "give a dynamic body or a link a compound of convex hulls");
   }
   const bool half_space = std::holds_alternative<HalfSpace>(desc.shape);
