@@ -104,7 +104,7 @@ Expected<void> report(const char* call, Differentiated how) {
       return tl::make_unexpected(Error{
           Errc::unsupported,
           std::string(call) + ": a user-defined joint has no derivatives of its subspace; override "
-                              "UserJoint::slopes in it"});
+                              "UserJoint::subspace_derivatives in it"});
     case Differentiated::singular:
       break;
   }

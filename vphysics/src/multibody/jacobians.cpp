@@ -107,7 +107,7 @@ Expected<void> no_derivatives(const char* call) {
       Error{Errc::unsupported,
             std::string(call) +
                 ": a user-defined joint of several degrees has no derivatives of its subspace; "
-                "override UserJoint::slopes in it"});
+                "override UserJoint::subspace_derivatives in it"});
 }
 
 template <class T, class View>
