@@ -170,6 +170,38 @@ TEST(Impacts, GoOnAsBeforeFromASnapshot) {
   }
 }
 
+// Balls fly after one another at the same velocity. At the limit of impacts the first stops before
+// a wall, and so do those behind it that would pass through it.
+TEST(Impacts, AtTheirLimitStopWhatFollowsAStoppedBody) {
+  for (const double gap : {0.001, 0.005, 0.02}) {
+    WorldDesc desc;
+    desc.gravity = {};
+    desc.max_impacts_per_step = 1;
+    World world(desc);
+    constexpr double kSpeed = 100.0;
+    add_fixed(world, Box{{0.002, 0.5, 0.5}}, kElastic, SE3(Vec3{0.002, 0, 0}));
+    // Two that meet at the start of the step and use up its impacts.
+    add_swept(world, Sphere{kRadius}, {0, 3, 0}, {kSpeed, 0, 0});
+    add_swept(world, Sphere{kRadius}, {2 * kRadius + 2e-4, 3, 0}, {});
+    std::vector<BodyId> balls;
+    for (int i = 0; i < 8; ++i) {
+      balls.push_back(add_swept(world, Sphere{kRadius},
+                                {-kRadius - 0.5 * kSpeed * kStep - i * (2 * kRadius + gap), 0, 0},
+                                {kSpeed, 0, 0}));
+    }
+    int limited = 0;
+    for (int k = 0; k < 30; ++k) {
+      limited += must(world.step(kStep)).impact_limit;
+      for (std::size_t i = 0; i < balls.size(); ++i) {
+        const double next = i == 0 ? kRadius : world.pose(balls[i - 1]).position().x;
+        ASSERT_LT(world.pose(balls[i]).position().x, next - 2 * kRadius + 2e-4)
+            << "step " << k << ", ball " << i << ", gap " << gap;
+      }
+    }
+    EXPECT_GT(limited, 0);
+  }
+}
+
 // A sensor event has the time and point at which a body enters it, although other bodies collide in
 // the same step.
 TEST(Impacts, LeaveASensorItsTime) {

@@ -7,6 +7,7 @@
 // Every impact affects the links whose motion has changed, and the bodies in contacts with links
 // and in row joints.
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "world/impl.h"
@@ -299,8 +300,33 @@ void World::Impl::solve_impact(const Instant& previous, const Instant& now) {
 
 // --- the stage -----------------------------------------------------------------------------------
 
+// Stops the bodies of the swept pairs that would collide within h. A body that stops is in the way
+// of others that it would have stayed ahead of, so its pairs are found again.
+void World::Impl::stop_swept_pairs(const Instant& now, double h) {
+  std::vector<std::uint32_t>& stopped = impacts.concerned;
+  stopped.clear();
+  const auto stop = [&](std::uint32_t body) {
+    if (impacts.stopped[body]) return;
+    hold(body);
+    if (!bodies[body].is_link) return stopped.push_back(body);
+    const auto& links = articulations[bodies[body].articulation].bodies;
+    std::copy_if(links.begin(), links.end(), std::back_inserter(stopped),
+                 [this](std::uint32_t b) { return bodies[b].first_collider != kNone; });
+  };
+  for (std::size_t pair = 0, searched = 0;; ++searched) {
+    for (; pair < impacts.swept_pairs.size(); ++pair) {
+      const SweptPair swept = impacts.swept_pairs[pair];
+      if (swept.sensor || time_of(swept, h) < 0.0) continue;
+      stop(colliders[swept.pair.a].body);
+      stop(colliders[swept.pair.b].body);
+    }
+    if (searched == stopped.size()) break;
+    find_swept_pairs_of(stopped[searched], now, h);
+  }
+  for (const std::uint32_t i : stopped) impacts.concerns[i] = Concern::none;
+}
+
 // The limit of impacts is reached: bodies that would still collide stop for the rest of the step.
-// Each iteration stops at least one more body, so the loop ends.
 void World::Impl::stop_what_would_hit(const Instant& now) {
   status.impact_limit = true;
   const double h = status.time_lost = dt_now - now.time;
@@ -310,21 +336,18 @@ void World::Impl::stop_what_would_hit(const Instant& now) {
   }
   refresh_displacements(h);
   find_swept_pairs(h);
-  for (bool again = true; again;) {
-    again = false;
-    for (const SweptPair& swept : impacts.swept_pairs) {
-      const std::uint32_t a = colliders[swept.pair.a].body, b = colliders[swept.pair.b].body;
-      if (swept.sensor || (impacts.stopped[a] && impacts.stopped[b])) continue;
-      if (time_of(swept, h) < 0.0) continue;
-      again = true;
-      hold(a);
-      hold(b);
-    }
-  }
+  stop_swept_pairs(now, h);
   take_back_forces(h);
   // Lists the sensors that are reached within the rest of the step.
   impacts.queue.clear(bodies.size());
   std::erase_if(impacts.swept_pairs, [](const SweptPair& p) { return !p.sensor; });
+  sort_swept_pairs();
+  const auto is_same = [](const SweptPair& p, const SweptPair& q) {
+    return p.pair.key == q.pair.key;
+  };
+  impacts.swept_pairs.erase(
+      std::unique(impacts.swept_pairs.begin(), impacts.swept_pairs.end(), is_same),
+      impacts.swept_pairs.end());
   queue_swept_pairs(now.time, h);
   Instant none;
   (void)next_impact(now, none);

@@ -212,6 +212,7 @@ struct World::Impl {
   void find_swept_pairs_of(std::uint32_t body, const Instant& now, double h);
   void find_swept_pairs_of_concerned(const Instant& now);
   void solve_impact(const Instant& previous, const Instant& now);
+  void stop_swept_pairs(const Instant& now, double h);
   void stop_what_would_hit(const Instant& now);
   void advance_to_end(const Instant& now);
   void run_impacts(double dt);

@@ -166,10 +166,10 @@ void World::Impl::add_swept_pairs(std::uint32_t index, std::uint32_t other, doub
     const double own = speed + wa * radius_from(ma.x, ca);
     const double far = radius_from(mb.x, ca) + own * h;
     const double margin = desc.contact_slop + (own + wb * far) * h;
-    const collide::Bounds near = grown(ca.bounds, margin);
+    const collide::Bounds near = grown(ca.bounds, margin), from_b = moved(near, -b.T.position());
     for (std::uint32_t j = b.first_collider; j != kNone; j = colliders[j].next) {
       Collider& cb = colliders[j];
-      if (!empty(cb.around_line) && !overlap(near, moved(cb.around_line, b.T.position()))) continue;
+      if (b.is_link && !empty(cb.around_line) && !overlap(from_b, cb.around_line)) continue;
       pose_collider(b, cb);
       if (!overlap(near, cb.bounds) || !should_collide(ca, cb)) continue;
       if (b.continuous && other < index && is_swept(b, cb)) continue;
