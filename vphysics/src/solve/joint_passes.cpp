@@ -3,6 +3,7 @@
 #include "solve/joint_passes.h"
 
 #include <algorithm>
+#include <type_traits>
 
 #include "solve/passes.h"
 
@@ -40,38 +41,48 @@ void find_gone(const BodyRow* rows, const std::array<float, 6>* start, const std
 }
 
 // Runs f(lanes, at) on all slots, kWidth at a time.
-template <class B, class F>
-void for_joints(const typename JointPasses<B>::Run& run, const F& f) {
+template <int kRows, int kLocked, class B, class F>
+void for_lanes_of(const typename JointPasses<B>::Run& run, const F& f) {
   for (std::size_t i = 0; i < run.count; ++i) {
     for (int at = 0; at < kLanes; at += kWidth) {
       if (run.blocks[i].a.lane[at] + run.blocks[i].b.lane[at] == 2 * kWorldRow) break;  // empty
-      JointLanes<kWidth, B> lanes(run.blocks[i], at, run.rows, *run.form);
+      JointLanes<kWidth, B, kRows, kLocked> lanes(run.blocks[i], at, run.rows, *run.form);
       f(lanes, at);
     }
   }
 }
+// The same, with code of its own for hinges without and with a bounded row.
+template <class B, class F>
+void for_joints(const typename JointPasses<B>::Run& run, const F& f) {
+  if constexpr (std::is_same_v<B, AxesBlock>) {
+    if (run.form->locked == 2) {
+      if (run.form->rows == 2) return for_lanes_of<2, 2, B>(run, f);
+      if (run.form->rows == 3) return for_lanes_of<3, 2, B>(run, f);
+    }
+  }
+  for_lanes_of<kAnyRows, kAnyRows, B>(run, f);
+}
 
 template <class B>
 void load_joint_inertias(const typename JointPasses<B>::Run& run) {
-  for_joints<B>(run, [](JointLanes<kWidth, B>& c, int) { c.load_inertias(); });
+  for_joints<B>(run, [](auto& c, int) { c.load_inertias(); });
 }
 template <class B>
 [[gnu::flatten]] bool prepare_joints(const typename JointPasses<B>::Run& run) {
   bool some_far = false;
-  for_joints<B>(run, [&](JointLanes<kWidth, B>& c, int at) {
+  for_joints<B>(run, [&](auto& c, int at) {
     some_far = prepare_lanes(c, run.gone, at, run.max_bias_velocity) || some_far;
   });
   return some_far;
 }
 template <class B>
 [[gnu::flatten]] void warm_start_joints(const typename JointPasses<B>::Run& run) {
-  for_joints<B>(run, [](JointLanes<kWidth, B>& c, int) { warm_start_lanes(c); });
+  for_joints<B>(run, [](auto& c, int) { warm_start_lanes(c); });
 }
 template <class B, bool kSomeFar, bool kFirst>
 [[gnu::flatten]] void solve_joint_run_if(const typename JointPasses<B>::Run& run, float h) {
-  for_joints<B>(run, [&](JointLanes<kWidth, B>& c, int) {
-    solve_lanes<kSomeFar>(c, h, run.max_bias_velocity, kFirst);
-  });
+  for_joints<B>(run,
+                [&](auto& c, int) { solve_lanes<kSomeFar>(c, h, run.max_bias_velocity, kFirst); });
 }
 template <class B, bool kFirst>
 void solve_joint_run(const typename JointPasses<B>::Run& run, float h) {
@@ -80,7 +91,7 @@ void solve_joint_run(const typename JointPasses<B>::Run& run, float h) {
 }
 template <class B>
 [[gnu::flatten]] void relax_joints(const typename JointPasses<B>::Run& run, float h) {
-  for_joints<B>(run, [&](JointLanes<kWidth, B>& c, int) { relax_lanes(c, h); });
+  for_joints<B>(run, [&](auto& c, int) { relax_lanes(c, h); });
 }
 
 template <class B>

@@ -38,7 +38,12 @@ constexpr int factor_index(int i, int j) {
 
 // --- a joint's lanes -----------------------------------------------------------------------------
 
-template <int W, class BLOCK>
+// kRows, kLocked: the numbers of rows and of locked rows in the form, without those of a point, or
+// kAnyRows: the form is known at run time only. With known numbers the compiler unrolls all loops
+// over rows and keeps the rows in registers.
+inline constexpr int kAnyRows = -1;
+
+template <int W, class BLOCK, int kRows = kAnyRows, int kLocked = kAnyRows>
 class JointLanes : public BlockLanes<W, BLOCK> {
  public:
   using Base = BlockLanes<W, BLOCK>;
@@ -53,9 +58,15 @@ class JointLanes : public BlockLanes<W, BLOCK> {
   using Base::put;
 
   // The minimum tells the compiler that the count is within the arrays.
-  int others() const { return std::min<int>(form_.rows, kOthers); }
+  int others() const {
+    if constexpr (kRows >= 0) return kRows;
+    return std::min<int>(form_.rows, kOthers);
+  }
   int count() const { return kPoint + others(); }
-  int locked() const { return kPoint + std::min<int>(form_.locked, kOthers); }
+  int locked() const {
+    if constexpr (kLocked >= 0) return kPoint + kLocked;
+    return kPoint + std::min<int>(form_.locked, kOthers);
+  }
   const JointForm& form() const { return form_; }
   // Whether row i is linear: along an axis, not about it.
   bool is_along(int i) const { return BLOCK::kAxes && kPoint == 0 && form_.slot[i] < kSwingX; }
@@ -164,9 +175,9 @@ class JointLanes : public BlockLanes<W, BLOCK> {
 
 // Computes arms and separation of the point, and axes and coordinates of the rows, at the current
 // poses. `separation` is the residual of the point's rows.
-template <int W, class B>
-void evaluate_lanes(JointLanes<W, B>& c, const Gone* gone, int at, float max_bias_velocity,
-                    Vec3T<Lanes<W>>& separation) {
+template <int W, class B, int kRows, int kLocked>
+void evaluate_lanes(JointLanes<W, B, kRows, kLocked>& c, const Gone* gone, int at,
+                    float max_bias_velocity, Vec3T<Lanes<W>>& separation) {
   using F = Lanes<W>;
   using V = Vec3T<F>;
   const auto a = GoneLanes<W>::of([&](int i) { return gone[c.block().a.lane[at + i]].rotation; });
@@ -259,8 +270,8 @@ void evaluate_lanes(JointLanes<W, B>& c, const Gone* gone, int at, float max_bia
 }
 
 // Computes K without G, the lower triangle with the diagonal.
-template <int W, class B>
-void find_response(const JointLanes<W, B>& c, Lanes<W> (*K)[B::kAll]) {
+template <int W, class B, int kRows, int kLocked>
+void find_response(const JointLanes<W, B, kRows, kLocked>& c, Lanes<W> (*K)[B::kAll]) {
   using F = Lanes<W>;
   using V = Vec3T<F>;
   const auto I_a = c.get(c.block().inertia_a), I_b = c.get(c.block().inertia_b);
@@ -319,8 +330,8 @@ void find_response(const JointLanes<W, B>& c, Lanes<W> (*K)[B::kAll]) {
 }
 
 // The maximum bias velocity of a locked row; unlimited for rows with user-defined softness.
-template <int W, class B>
-Lanes<W> fastest_of(const JointLanes<W, B>& c, int i, float bias) {
+template <int W, class B, int kRows, int kLocked>
+Lanes<W> fastest_of(const JointLanes<W, B, kRows, kLocked>& c, int i, float bias) {
   using F = Lanes<W>;
   const bool linear = i < B::kPointRows || c.is_along(i - B::kPointRows);
   F fastest(linear ? bias : kMaxAngularBias);
@@ -335,8 +346,9 @@ Lanes<W> fastest_of(const JointLanes<W, B>& c, int i, float bias) {
 }
 
 // Returns true if the error of a hard row is too large to be corrected at its full rate.
-template <int W, class B>
-bool prepare_lanes(JointLanes<W, B>& c, const Gone* gone, int at, float max_bias_velocity) {
+template <int W, class B, int kRows, int kLocked>
+bool prepare_lanes(JointLanes<W, B, kRows, kLocked>& c, const Gone* gone, int at,
+                   float max_bias_velocity) {
   using F = Lanes<W>;
   constexpr int kAll = B::kAll;
   c.gather_velocities();
@@ -389,9 +401,9 @@ F clamped(const F& x, const F& min_impulse, const F& max_impulse) {
 }
 
 // The change of a drive's impulse at the speed u. K: the change of that speed by a unit impulse.
-template <int W, class B>
-Lanes<W> drive_change(const JointLanes<W, B>& c, int i, const Lanes<W>& u, const Lanes<W>& K,
-                      float h) {
+template <int W, class B, int kRows, int kLocked>
+Lanes<W> drive_change(const JointLanes<W, B, kRows, kLocked>& c, int i, const Lanes<W>& u,
+                      const Lanes<W>& K, float h) {
   using F = Lanes<W>;
   const BoundPart& bound = c.block().bounds[i];
   const F min_impulse = c.get(bound.min_impulse), max_impulse = c.get(bound.max_impulse);
@@ -411,9 +423,9 @@ Lanes<W> drive_change(const JointLanes<W, B>& c, int i, const Lanes<W>& u, const
 
 // The same for a row locked within bounds. If the bounds allow one sign only, a separation may
 // close.
-template <int W, class B>
-Lanes<W> hold_change(const JointLanes<W, B>& c, int i, const Lanes<W>& u, const Lanes<W>& K,
-                     float h, bool pushes) {
+template <int W, class B, int kRows, int kLocked>
+Lanes<W> hold_change(const JointLanes<W, B, kRows, kLocked>& c, int i, const Lanes<W>& u,
+                     const Lanes<W>& K, float h, bool pushes) {
   using F = Lanes<W>;
   const F zero(0.0f);
   const BoundPart& bound = c.block().bounds[i];
@@ -434,9 +446,9 @@ Lanes<W> hold_change(const JointLanes<W, B>& c, int i, const Lanes<W>& u, const 
 }
 
 // The same for the limits. A positive separation may close; a violated limit gets a bias velocity.
-template <int W, class B>
-Lanes<W> stop_change(const JointLanes<W, B>& c, int i, const Lanes<W>& u, const Lanes<W>& K,
-                     float h, float max_bias_velocity, bool pushes) {
+template <int W, class B, int kRows, int kLocked>
+Lanes<W> stop_change(const JointLanes<W, B, kRows, kLocked>& c, int i, const Lanes<W>& u,
+                     const Lanes<W>& K, float h, float max_bias_velocity, bool pushes) {
   using F = Lanes<W>;
   const F zero(0.0f);
   const BoundPart& bound = c.block().bounds[i];
@@ -465,9 +477,9 @@ Lanes<W> stop_change(const JointLanes<W, B>& c, int i, const Lanes<W>& u, const 
 
 // On entry, u has the speed error of each locked row and the speed of each bounded one. Returns the
 // changes of the impulses in `change`; zero in lanes outside goes_on.
-template <int W, class B>
-void solve_rows(JointLanes<W, B>& c, const LaneMask<W>& goes_on, Lanes<W>* u, Lanes<W>* change,
-                float h, float max_bias_velocity, bool pushes) {
+template <int W, class B, int kRows, int kLocked>
+void solve_rows(JointLanes<W, B, kRows, kLocked>& c, const LaneMask<W>& goes_on, Lanes<W>* u,
+                Lanes<W>* change, float h, float max_bias_velocity, bool pushes) {
   using F = Lanes<W>;
   B& block = c.block();
   const F zero(0.0f);
@@ -512,8 +524,8 @@ void solve_rows(JointLanes<W, B>& c, const LaneMask<W>& goes_on, Lanes<W>* u, La
   }
 }
 
-template <int W, class B>
-void warm_start_lanes(JointLanes<W, B>& c) {
+template <int W, class B, int kRows, int kLocked>
+void warm_start_lanes(JointLanes<W, B, kRows, kLocked>& c) {
   Lanes<W> p[B::kAll];
   for (int i = 0; i < c.count(); ++i) p[i] = c.all_impulse(i);
   c.gather_velocities();
@@ -524,8 +536,9 @@ void warm_start_lanes(JointLanes<W, B>& c) {
 // An iteration with bias velocities. Iterations after the first of a sub-step skip converged
 // joints. kSomeFar: some joints of the world have errors too large to be corrected at their full
 // rate.
-template <bool kSomeFar, int W, class B>
-void solve_lanes(JointLanes<W, B>& c, float h, float max_bias_velocity, bool first) {
+template <bool kSomeFar, int W, class B, int kRows, int kLocked>
+void solve_lanes(JointLanes<W, B, kRows, kLocked>& c, float h, float max_bias_velocity,
+                 bool first) {
   using F = Lanes<W>;
   const F zero(0.0f), one(1.0f);
   B& block = c.block();
@@ -561,8 +574,8 @@ void solve_lanes(JointLanes<W, B>& c, float h, float max_bias_velocity, bool fir
 }
 
 // Removes the bias from the velocities, and accumulates the sub-step's force and torque.
-template <int W, class B>
-void relax_lanes(JointLanes<W, B>& c, float h) {
+template <int W, class B, int kRows, int kLocked>
+void relax_lanes(JointLanes<W, B, kRows, kLocked>& c, float h) {
   using F = Lanes<W>;
   using V = Vec3T<F>;
   F u[B::kAll], change[B::kAll];
