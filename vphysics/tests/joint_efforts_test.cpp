@@ -46,8 +46,7 @@ TEST(JointEffort, OfAMotorKeepsItsLimitInAnImpact) {
   for (const double rate : {1000.0, 240.0, 60.0}) {
     SCOPED_TRACE(rate);
     World world;
-    must(world.add_collider(must(world.create_body({.motion = Motion::fixed})),
-                            {.shape = HalfSpace{}}));
+    add_ground(world, Material{});
     std::vector<LinkSpec> links(3);
     links[0].joint = FreeJoint{};
     links[0].inertia = Inertia(6.0, Vec3{0.1, 0.2, 0.2});
@@ -64,9 +63,10 @@ TEST(JointEffort, OfAMotorKeepsItsLimitInAnImpact) {
     must(world.set_joint_states(id, q, std::vector<double>(8)));
     for (int l = 1; l < 3; ++l) {
       for (const double y : {-0.2, 0.2}) {
-        must(world.add_collider(
-            world.link_body(id, l),
-            {.shape = Sphere{0.03}, .T_body_shape = SE3(Vec3{l == 1 ? 0.25 : -0.25, y, -0.3})}));
+        ColliderDesc foot;
+        foot.shape = Sphere{0.03};
+        foot.T_body_shape = SE3(Vec3{l == 1 ? 0.25 : -0.25, y, -0.3});
+        must(world.add_collider(world.link_body(id, l), foot));
       }
       must(world.set_drive(id, l, 0, {0.0, 0.0, kStiffness, kDamping, kLimit}));
     }
