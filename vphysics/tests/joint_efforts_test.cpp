@@ -2,6 +2,7 @@
 // accelerations of points.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -35,6 +36,55 @@ TEST(JointEffort, IsWhatTheDriveIsTold) {
   must(world.set_drive(id, 0, 0, {0.8, 1e3, 0.0, 0.5, 3.0}));  // at its maximum force
   step(world, dt);
   EXPECT_NEAR(world.joint_effort(id, 0, 0), 3.0, 1e-12);
+}
+
+// A trunk on two driven legs falls on its feet: its motors reach their limit in the impact, in
+// which they are part of the mass matrix at first, and never exceed it. Before and after they
+// follow their force law.
+TEST(JointEffort, OfAMotorKeepsItsLimitInAnImpact) {
+  constexpr double kLimit = 12.0, kStiffness = 80.0, kDamping = 4.0;
+  for (const double rate : {1000.0, 240.0, 60.0}) {
+    SCOPED_TRACE(rate);
+    World world;
+    add_ground(world, Material{});
+    std::vector<LinkSpec> links(3);
+    links[0].joint = FreeJoint{};
+    links[0].inertia = Inertia(6.0, Vec3{0.1, 0.2, 0.2});
+    for (std::size_t k = 1; k < links.size(); ++k) {
+      links[k].parent = 0;
+      links[k].joint = RevoluteJoint{{0, 1, 0}};
+      links[k].T_parent_joint = SE3(Vec3{k == 1 ? 0.2 : -0.2, 0, 0});
+      links[k].inertia = Inertia(0.5, Vec3{0.005, 0.005, 0.001}).InvXform(SE3(Vec3{0, 0, -0.15}));
+      links[k].armature = 0.01;
+    }
+    const auto id = must(world.create_articulation({model_of(links)}));
+    std::vector<double> q = world.model(id)->zero_coordinates();
+    q[2] = 0.6;
+    must(world.set_joint_states(id, q, std::vector<double>(8)));
+    for (int l = 1; l < 3; ++l) {
+      for (const double y : {-0.2, 0.2}) {
+        ColliderDesc foot;
+        foot.shape = Sphere{0.03};
+        foot.T_body_shape = SE3(Vec3{l == 1 ? 0.25 : -0.25, y, -0.3});
+        must(world.add_collider(world.link_body(id, l), foot));
+      }
+      must(world.set_drive(id, l, 0, {0.0, 0.0, kStiffness, kDamping, kLimit}));
+    }
+    const double dt = 1.0 / rate;
+    int at_limit = 0, below = 0;
+    for (int i = 0; i < static_cast<int>(2.0 * rate); ++i) {
+      const double before = world.joint_position(id, 1, 0);
+      step(world, dt);
+      const double effort = world.joint_effort(id, 1, 0), v = world.joint_velocity(id, 1, 0);
+      EXPECT_LE(std::fabs(effort), kLimit + 1e-9);
+      const double told = kStiffness * (-before - dt * v) - kDamping * v;
+      EXPECT_NEAR(effort, std::clamp(told, -kLimit, kLimit), 2e-3 * kLimit);
+      ++(std::fabs(effort) > kLimit - 1e-9 ? at_limit : below);
+    }
+    std::printf("%g Hz: %d steps at the limit, %d below\n", rate, at_limit, below);
+    EXPECT_GT(at_limit, 0);
+    EXPECT_GT(below, 0);
+  }
 }
 
 // Motors, springs, friction, damping and stops of a moving tree: the efforts equal those of inverse

@@ -131,7 +131,7 @@ SixLanes times(const double* J, const double* S) {
 }
 
 VP_FLATTEN bool factor(const void* of_tree, const void* of_work, double damping_time,
-                       const double* inertias, void* of_columns, double* all) {
+                       const double* gains, const double* inertias, void* of_columns, double* all) {
   const Tree<double>& tree = tree_at(of_tree);
   const auto& work = *static_cast<const Work<double>*>(of_work);
   auto* const columns = static_cast<FactorColumn*>(of_columns);
@@ -153,7 +153,8 @@ VP_FLATTEN bool factor(const void* of_tree, const void* of_work, double damping_
       const SixLanes U = times(J, numbers(c.S));
       dse3 wrench{};
       put(numbers(wrench), U);
-      const double omega = c.S * wrench + added;
+      const double gain = gains ? gains[node.v + k] : 0.0;
+      const double omega = c.S * wrench + (added + gain);
       fine = fine && omega > kNoInertia * largest_omega(J, c.S);
       c.g = 1.0 / std::sqrt(omega);
       put(numbers(c.s), c.g * six(numbers(c.S)));

@@ -31,10 +31,11 @@ struct Passes {
   // Updates the twists of the kinematics and the trees' origins. Precondition: the poses in the
   // trees' frames have not changed.
   void (*velocities)(const void* tree, void* work, const double* q, const double* v);
-  // ImpulseFactor::factor(). columns: a FactorColumn for each degree of freedom. J: scratch,
-  // kArticulated numbers for each node. Returns false if a joint moves no inertia.
-  bool (*factor)(const void* tree, const void* work, double damping_time, const double* inertias,
-                 void* columns, double* J);
+  // ImpulseFactor::factor(). gains: one for each degree of freedom, or null. columns: a
+  // FactorColumn for each degree of freedom. J: scratch, kArticulated numbers for each node.
+  // Returns false if a joint moves no inertia.
+  bool (*factor)(const void* tree, const void* work, double damping_time, const double* gains,
+                 const double* inertias, void* columns, double* J);
   // Computes y for three wrenches on the body that `dof` carries: three times `depth` numbers, one
   // wrench after the other.
   void (*rows)(const void* columns, const std::uint32_t* next, std::uint32_t dof,

@@ -91,13 +91,14 @@ void ImpulseFactor::find_inertias(const Model& model, const Data& data) {
 }
 
 bool ImpulseFactor::factor(const Model& model, const Data& data, double damping_time,
-                           bool inertias_are_found) {
+                           bool inertias_are_found, std::span<const double> gains) {
   if (!inertias_are_found) find_inertias(model, data);
   const Tree<double>& tree = model.tree();
   const Work<double>& work = data.work();
   for (CachedRow& cached : joint_rows_) cached.valid = false;
   const bool fine =
-      passes().factor(&tree, &work, damping_time, inertias_.data(), columns_.data(), J_.data());
+      passes().factor(&tree, &work, damping_time, gains.empty() ? nullptr : gains.data(),
+                      inertias_.data(), columns_.data(), J_.data());
   for (std::size_t l = 0; l < links_.size(); ++l) {
     const int node = tree.frames[l].node;
     if (node != kWorld) links_[l].origin = origin_of(work, node);

@@ -37,11 +37,11 @@ class ImpulseFactor {
   // Computes the inertias of the bodies in the configuration of the last call on the data.
   void find_inertias(const Model& model, const Data& data);
   // Factors M in that configuration; computes the inertias first unless inertias_are_found.
-  // damping_time h > 0 factors M + h D instead of M, with the joints' viscous damping D, for
-  // implicit steps. Returns false if a joint moves no inertia; results with the factors are then
-  // unspecified.
+  // damping_time h > 0 factors M + h D + diag(gains) instead of M, with the joints' viscous damping
+  // D and the gains of other implicit joint forces (one each, or none). Returns false if a joint
+  // moves no inertia; results with the factors are then unspecified.
   bool factor(const Model& model, const Data& data, double damping_time = 0.0,
-              bool inertias_are_found = false);
+              bool inertias_are_found = false, std::span<const double> gains = {});
 
   // The degrees of freedom for which a link's rows have entries: the first, the parent of each
   // (next), and their number (depth). None for a link fixed to the world.
@@ -51,6 +51,9 @@ class ImpulseFactor {
   const std::uint32_t* next() const { return next_.data(); }
   std::uint32_t deepest() const { return deepest_; }
   std::size_t dofs() const { return columns_.size(); }
+  // The inertia that a joint coordinate moves, gains and damping included, with all coordinates
+  // nearer to the root locked.
+  double moved_inertia(std::size_t dof) const { return 1.0 / (columns_[dof].g * columns_[dof].g); }
 
   // y of a unit impulse in world axes: a force through a point of the link, or a moment. It has
   // depth(link) entries.

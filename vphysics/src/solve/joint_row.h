@@ -52,7 +52,8 @@ struct JointRow {
   double target = 0.0;
   double softness = 0.0;  // 0: hard
   double lower = 0.0, upper = 0.0;
-  double impulse = 0.0;        // the value before the solve is the warm start
+  double impulse = 0.0;        // the value before the solve is the warm start, as is warm_start
+  double warm_start = 0.0;     // of an articulation's row: for a second solve
   double* remember = nullptr;  // where the world stores the impulse for the next step; may be null
   // Prepared.
   LinkSide side{};                        // of an articulation's own joint

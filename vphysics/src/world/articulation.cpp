@@ -67,6 +67,7 @@ Articulation::Articulation(const Model& model, const Vec3& gravity)
       data_(model, Arithmetic::reproducible),
       factor_(model),
       floating_(FloatingTree::of(model)),
+      implicit_(static_cast<std::size_t>(model.velocities())),
       reactions_(model) {
   const auto n = static_cast<std::size_t>(model.velocities());
   v.resize(n);
@@ -104,6 +105,11 @@ Articulation::Articulation(const Model& model, const Vec3& gravity)
     }
   }
   first_dof_.push_back(model.velocities());
+  for (const FloatingTree& tree : floating_) {  // their roots have no forces of their own
+    const auto& root = model.tree().nodes[static_cast<std::size_t>(tree.root())];
+    for (int k = 0; k < root.dofs; ++k) implicit_.exclude(static_cast<std::size_t>(root.v + k));
+  }
+  start_v_ = v;
   start_q_ = moved_q_ = remote_q_ = q;
   const auto& nodes = model.tree().nodes;
   has_user_joints_ = std::any_of(nodes.begin(), nodes.end(), [](const auto& node) {
@@ -300,8 +306,10 @@ SE3 Articulation::T_world_link(int link) const {
 
 // The factor without damping. Damping belongs only to forces that act during the step.
 void Articulation::update_factor() {
-  const bool damped = factored_ == Factored::for_the_step && damped_;
-  if (factored_ != Factored::no && !damped) return;
+  const bool is_of_masses_alone =
+      factored_ == Factored::without_damping ||
+      (factored_ == Factored::for_the_step && !damped_ && !implicit_.any());
+  if (is_of_masses_alone) return;
   (void)factor_.factor(model_, data_, 0.0, inertias_);
   inertias_ = true;
   factored_ = Factored::without_damping;
@@ -421,6 +429,7 @@ solve::SolverArticulation Articulation::begin_solve(bool whole_step) {
   if (!whole_step || factored_ != Factored::for_the_step) update_factor();
   std::fill(velocity_.begin(), velocity_.end(), 0.0);
   std::fill(shift_.begin(), shift_.end(), 0.0);
+  changes_are_found_ = false;
   return {&factor_, velocity_.data(), shift_.data(), false};
 }
 
@@ -430,7 +439,7 @@ Articulation::Change Articulation::end_solve() {
   };
   const bool moved = pushed(shift_);
   if (!moved && !pushed(velocity_)) return Change::none;
-  factor_.to_velocities(velocity_);
+  if (!changes_are_found_) factor_.to_velocities(velocity_);
   for (std::size_t i = 0; i < v.size(); ++i) v[i] = flush_small_speed(v[i] + velocity_[i]);
   if (damped_ && factored_ == Factored::for_the_step) add_damping_efforts(velocity_);
   if (!moved) {

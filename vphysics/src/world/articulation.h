@@ -12,44 +12,11 @@
 #include "vphysics/multibody/dynamics.h"
 #include "vphysics/world.h"
 #include "world/floating_tree.h"
+#include "world/implicit_forces.h"
+#include "world/joint_dof.h"
 #include "world/joint_reactions.h"
 
 namespace vp {
-
-// The solver rows that a degree of freedom may have.
-enum RowOfDof : std::uint8_t {
-  kMotorRow,
-  kFrictionRow,  // a lock if the friction is infinite
-  kSpringRow,
-  kLowerRow,  // limits: stops or springs
-  kUpperRow,
-  kRowsOfDof
-};
-
-// One degree of freedom.
-struct JointDof {
-  int coordinate = -1;  // index in q; -1 for ball and free joints
-  JointForces forces;
-  double lower = -1e30, upper = 1e30;  // stops
-  bool locked = false;                 // by infinite friction
-  bool passive = false;                // has a spring, friction, or compliant limits
-  JointDrive drive;
-  // Impulses of its rows in the last step: the warm start of the next solve.
-  std::array<double, kRowsOfDof> impulses{};
-};
-
-// The motor of a degree of freedom over h. With f = k (p - q - h v) + d (v_t - v) its impulse is
-// constant - gain v, v being the velocity after it, clamped to +-limit. Without a motor all are 0.
-struct Motor {
-  double constant = 0.0, gain = 0.0, limit = 0.0;
-};
-inline Motor motor_of(const JointDof& dof, double h, double position) {
-  const JointDrive& d = dof.drive;
-  const double limit = h * std::min(d.max_force, dof.forces.motor_limit);
-  const double gain = h * (h * d.stiffness + d.damping);
-  if (!(gain > 0.0 && limit > 0.0)) return {};
-  return {h * (d.stiffness * (d.position - position) + d.damping * d.velocity), gain, limit};
-}
 
 class Articulation {
  public:
@@ -92,7 +59,16 @@ class Articulation {
   // Integrates the forces over dt into v: gravity, velocity-dependent forces, the user's forces and
   // viscous joint damping, the last implicitly. False if a joint moves no inertia. changed: whether
   // v has changed.
+  // Also motors and springs that are in the factor (implicit_forces.h).
   bool integrate_forces(double dt, bool& changed);
+  const ImplicitForces& implicit() const { return implicit_; }
+  // After the solver's iterations (solved), or without them: motors in the factor that exceed their
+  // limit. They become rows; true if there are any. restart_forces() then returns to the velocities
+  // at the start of the step.
+  bool find_saturated_motors(bool solved);
+  void restart_forces();
+  // Stores the impulses of the forces in the factor, at the velocities after the solve.
+  void store_implicit_impulses();
   // Advances q by h [s] at the velocities v.
   void advance(double h);
   // Calls f(link, T_world_link) for all links at the poses after h at the velocities v.
@@ -176,6 +152,7 @@ class Articulation {
   // Stores the coordinates at the start of the step, to which return_to_start() returns at rest.
   void mark_start() {
     start_q_ = q;
+    start_v_ = v;
     reactions_.begin_step(v);
     std::fill(forced_.begin(), forced_.end(), 0.0);
   }
@@ -216,6 +193,7 @@ class Articulation {
   void add_impulse(int link, double dt);
   void add_joint_impulse(std::uint32_t dof, double dt);
   bool add_forces(double dt, bool& changed);
+  bool factor_for_step(double dt);
   void add_damping_efforts(std::span<const double> gained);
   bool add_constant_forces(double dt);
   void advance_floating(double h);
@@ -261,6 +239,9 @@ class Articulation {
   enum class Factored : std::uint8_t { no, without_damping, for_the_step };
   Factored factored_ = Factored::no;  // of the current configuration
   double factored_time_ = 0.0;        // step length of Factored::for_the_step
+  ImplicitForces implicit_;           // of the current step
+  bool implicit_is_chosen_ = false;   // the forces of this step are integrated again
+  bool changes_are_found_ = false;    // velocity_: velocity changes instead of z
   bool inertias_ = false;             // the factor has the inertias of the current configuration
   bool twists_ = false;  // the factor has the links' velocities, otherwise data_ has them
   bool regular_ = false;
@@ -274,8 +255,8 @@ class Articulation {
   std::vector<double> sub_step_velocity_,
       drift_;                   // sub-steps: v while moving; mean velocity less v
   std::vector<double> forced_;  // velocity changes from the forces of this step
-  std::vector<double> start_q_, moved_q_, rate_, change_, force_, zero_, applied_forces_, velocity_,
-      shift_;
+  std::vector<double> start_q_, start_v_, moved_q_, rate_, change_, force_, zero_, applied_forces_,
+      velocity_, shift_;
   std::vector<double> remote_q_;
   std::vector<CompositeBody> composites_;
   std::vector<double> gravity_acceleration_;  // acceleration from gravity if constant_

@@ -5,6 +5,7 @@
 
 #include "multibody/kinematics.h"
 #include "world/articulation.h"
+#include "world/validate.h"
 
 namespace vp {
 
@@ -18,6 +19,9 @@ void Articulation::find_change(double dt, std::span<const double> at) {
   }
   for (std::size_t i = 0; i < v.size(); ++i) {
     change_[i] = dt * (applied_forces_[i] - force_[i] - damping_[i] * v[i]);
+  }
+  if (implicit_.any()) {
+    for (std::size_t i = 0; i < v.size(); ++i) change_[i] += implicit_.impulse(i, v[i]);
   }
   factor_.solve(change_);
 }
@@ -105,6 +109,12 @@ void Articulation::add_joint_impulse(std::uint32_t dof, double dt) {
 }
 
 bool Articulation::integrate_forces(double dt, bool& changed) {
+  if (sub_stepped) {
+    implicit_.clear();
+  } else if (!constant_ && !implicit_is_chosen_) {
+    implicit_.choose(dt, dofs, q);
+  }
+  implicit_is_chosen_ = false;
   for (std::size_t i = 0; i < v.size(); ++i) forced_[i] -= v[i];
   const bool fine = add_forces(dt, changed);
   for (std::size_t i = 0; i < v.size(); ++i) forced_[i] += v[i];
@@ -129,16 +139,78 @@ void Articulation::take_back_forces(double fraction) {
   refresh();
 }
 
+// M + dt D + G, G being the gains of motors and springs. A motor or spring that hardly lets its
+// joint move stays a row: the difference c - G v would lose digits.
+bool Articulation::factor_for_step(double dt) {
+  constexpr double kMaxGain = 1e6;  // times the inertia that the joint moves
+  const double damping_time = damped_ ? dt : 0.0;
+  bool fine = factor_.factor(model_, data_, damping_time, inertias_, implicit_.gains());
+  inertias_ = true;
+  factored_ = Factored::for_the_step;
+  factored_time_ = dt;
+  bool stiff = false;
+  const std::span<const double> gains = implicit_.gains();
+  for (std::size_t i = 0; i < gains.size(); ++i) {
+    if (gains[i] <= kMaxGain / (1.0 + kMaxGain) * factor_.moved_inertia(i)) continue;
+    implicit_.make_row(i);
+    stiff = true;
+  }
+  if (stiff) fine = factor_.factor(model_, data_, damping_time, inertias_, gains);
+  return fine;
+}
+
+bool Articulation::find_saturated_motors(bool solved) {
+  if (!implicit_.any()) return false;
+  if (solved) {
+    factor_.to_velocities(velocity_);
+    changes_are_found_ = true;
+  }
+  bool found = false;
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    if (!implicit_.has_motor(i)) continue;
+    const Motor& motor = implicit_.motor(i);
+    const double impulse = motor.constant - motor.gain * (v[i] + (solved ? velocity_[i] : 0.0));
+    if (std::fabs(impulse) <= motor.limit) continue;
+    dofs[i].impulses[kMotorRow] = std::clamp(impulse, -motor.limit, motor.limit);
+    implicit_.make_row(i);
+    found = true;
+  }
+  return found;
+}
+
+void Articulation::restart_forces() {
+  if (damped_) {
+    for (std::size_t i = 0; i < v.size(); ++i) {
+      reactions_.add_effort(i, factored_time_ * damping_[i] * v[i]);
+    }
+  }
+  implicit_is_chosen_ = true;
+  v = start_v_;
+  twists_ = false;
+  std::fill(forced_.begin(), forced_.end(), 0.0);
+}
+
+void Articulation::store_implicit_impulses() {
+  if (!implicit_.any()) return;
+  const auto impulse_of = [](const Motor& f, double speed) {
+    const double impulse = f.constant - f.gain * speed;
+    return vp::in_range(impulse) ? impulse : 0.0;
+  };
+  for (std::size_t i = 0; i < v.size(); ++i) {
+    if (implicit_.has_motor(i)) dofs[i].impulses[kMotorRow] = impulse_of(implicit_.motor(i), v[i]);
+    if (implicit_.has_spring(i)) {
+      dofs[i].impulses[kSpringRow] = impulse_of(implicit_.spring(i), v[i]);
+    }
+  }
+}
+
 bool Articulation::add_forces(double dt, bool& changed) {
   changed = true;
   if (constant_) {
     changed = add_constant_forces(dt);
     return true;
   }
-  const bool fine = factor_.factor(model_, data_, damped_ ? dt : 0.0, inertias_);
-  inertias_ = true;
-  factored_ = Factored::for_the_step;
-  factored_time_ = dt;
+  const bool fine = factor_for_step(dt);
   if (!has_user_joints_ || !floating_.empty()) factor_.twists(v);
   for (std::size_t i = 0; i < floating_.size(); ++i) {
     composites_[i] = floating_[i].composite_of_twists(data_, factor_);

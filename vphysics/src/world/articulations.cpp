@@ -68,13 +68,17 @@ void World::Impl::integrate_articulations(double dt) {
     if (!art.alive || art.sub_stepped) continue;  // integrated in the sub-steps
     art.mark_start();
     if (art.remote) continue;  // balanced: only its motors exert forces
-    bool changed = false;
-    if (!art.integrate_forces(dt, changed)) {
-      status.non_finite = true;
-      art.return_to_start();
-    }
-    if (changed) follow_velocities(art, false);
+    integrate_forces_of(art, dt);
   }
+}
+
+void World::Impl::integrate_forces_of(Articulation& art, double dt) {
+  bool changed = false;
+  if (!art.integrate_forces(dt, changed)) {
+    status.non_finite = true;
+    art.return_to_start();
+  }
+  if (changed) follow_velocities(art, false);
 }
 
 namespace {
@@ -104,14 +108,15 @@ class JointRows {
     if (motor.limit <= 0.0) return;
     add(kMotorRow, motor.constant / motor.gain, -motor.limit, motor.limit, 1.0 / motor.gain);
   }
-  // Spring, dry friction, and compliant limits.
-  void add_passive(double h) {
+  // Spring, unless it is in the factor, dry friction, and compliant limits.
+  void add_passive(double h, bool with_spring) {
     const JointForces& f = dof_.forces;
     if (f.friction > 0.0 && !dof_.locked) {
       add(kFrictionRow, 0.0, -h * f.friction, h * f.friction);
     }
     if (dof_.coordinate < 0) return;
-    if (f.stiffness > 0.0) add_spring(kSpringRow, h, f.stiffness, 0.0, f.rest, -kAny, kAny);
+    if (f.stiffness > 0.0 && with_spring)
+      add_spring(kSpringRow, h, f.stiffness, 0.0, f.rest, -kAny, kAny);
     if (std::isfinite(f.limit_stiffness)) {
       if (std::isfinite(f.lower)) {
         add_spring(kLowerRow, h, f.limit_stiffness, f.limit_damping, f.lower, 0.0, kAny);
@@ -144,7 +149,7 @@ class JointRows {
     row.softness = softness;
     row.lower = lower;
     row.upper = upper;
-    row.impulse = std::clamp(before_[kind], lower, upper);
+    row.impulse = row.warm_start = std::clamp(before_[kind], lower, upper);
     row.remember = with_memory_ ? &dof_.impulses[kind] : nullptr;
   }
   void add_spring(RowOfDof kind, double h, double stiffness, double damping, double rest,
@@ -184,12 +189,37 @@ void World::Impl::add_joint_rows(double h, double dt, RowsOf of) {
     for (std::uint32_t i = 0; i < art.dofs.size(); ++i) {
       JointRows rows(impacts.joint_rows, a, i, art, first, fraction);
       if (first) {
-        rows.add_motor(h);
-        if (art.dofs[i].passive) rows.add_passive(h);
+        if (!art.implicit().has_motor(i)) rows.add_motor(h);
+        if (art.dofs[i].passive) rows.add_passive(h, !art.implicit().has_spring(i));
       }
       rows.add_stops(h, dt);
     }
   }
+}
+
+// Whether a motor exceeds its limit that was predicted to stay below it: it is a row now, the
+// forces of its articulation are integrated again, and the instant must be solved again.
+bool World::Impl::integrate_saturated_again(double dt, bool solved) {
+  bool again = false;
+  for (Articulation& art : articulations) {
+    if (!art.alive || art.remote || art.sub_stepped || !art.find_saturated_motors(solved)) continue;
+    again = true;
+    art.restart_forces();
+    follow_velocities(art, false);
+    const auto note = [&](const auto& forced) {
+      for (const std::uint32_t b : art.bodies) {
+        if (bodies[b].first_collider != kNone)
+          impacts.forced[b] = forced(bodies[b], impacts.forced[b]);
+      }
+    };
+    note([](const Body& body, const Velocity&) { return Velocity{body.w, body.v}; });
+    integrate_forces_of(art, dt);
+    note([](const Body& body, const Velocity& before) {
+      return Velocity{body.w - before.w, body.v - before.v};
+    });
+  }
+  if (again) restore_warm_starts();
+  return again;
 }
 
 void World::Impl::begin_solve_articulations(bool first) {

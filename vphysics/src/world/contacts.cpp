@@ -23,14 +23,14 @@ bool touches(std::span<const PairRecord> of_pair) {
 
 // The old point with the same feature id; otherwise, since feature ids change when edges pass over
 // each other, the nearest old point within range.
-const PairPoint* point_of(std::span<const PairRecord> of_pair, const collide::ManifoldPoint& p,
-                          double range) {
+const PairPoint* point_of(std::span<const PairRecord> of_pair, std::uint32_t feature,
+                          const Vec3& position, double range) {
   const PairPoint* nearest = nullptr;
   double min_distance_squared = range * range;
   for (const PairRecord& record : of_pair) {
     for (std::uint32_t i = 0; i < record.count; ++i) {
-      if (record.points[i].feature == p.feature) return &record.points[i];
-      const Vec3 d = record.points[i].position - p.position;
+      if (record.points[i].feature == feature) return &record.points[i];
+      const Vec3 d = record.points[i].position - position;
       if (dot(d, d) < min_distance_squared) {
         min_distance_squared = dot(d, d);
         nearest = &record.points[i];
@@ -115,18 +115,42 @@ void World::Impl::add_contact(const ColliderPair& pair, const collide::Manifold&
   set_normal(c, m.normal);
   const Vec3 surface = a.T.rotate(a.surface_velocity) - b.T.rotate(b.surface_velocity);
   for (int k = 0; k < 2; ++k) c.surface_speed[k] = dot(surface, c.tangent[k]);
-  const auto last = warm ? records_of(impacts.records, pair.key) : std::span<const PairRecord>{};
-  c.rolling_impulse = rolling_of(last, part);
   for (int i = 0; i < m.count; ++i) {
     solve::ContactPoint& p = c.points[i];
     p.position = m.points[i].position;
     p.separation = m.points[i].separation;
     p.feature = m.points[i].feature;
-    const PairPoint* old = point_of(last, m.points[i], kSamePoint * desc.contact_slop);
+    if (is_too_deep(a, b, p.separation)) position_error_now = true;
+  }
+  load_warm_start(pair.key, part, warm, c);
+}
+
+// The impulses of the last step.
+void World::Impl::load_warm_start(std::uint64_t key, std::uint32_t part, bool warm,
+                                  solve::ContactConstraint& c) const {
+  const auto last = warm ? records_of(impacts.records, key) : std::span<const PairRecord>{};
+  c.rolling_impulse = rolling_of(last, part);
+  for (int i = 0; i < c.count; ++i) {
+    solve::ContactPoint& p = c.points[i];
+    const PairPoint* old = point_of(last, p.feature, p.position, kSamePoint * desc.contact_slop);
     p.normal_impulse = old ? old->normal_impulse : 0.0;
     p.tangent_impulse[0] = old ? dot(old->friction, c.tangent[0]) : 0.0;
     p.tangent_impulse[1] = old ? dot(old->friction, c.tangent[1]) : 0.0;
-    if (is_too_deep(a, b, p.separation)) position_error_now = true;
+  }
+}
+
+// Before the instant is solved again: what it gave is no warm start, since its motors were too
+// strong.
+void World::Impl::restore_warm_starts() {
+  for (solve::JointRow& row : impacts.joint_rows) {
+    if (row.remember) *row.remember = row.warm_start;
+  }
+  std::uint32_t part = 0;
+  for (std::size_t k = 0; k < impacts.contacts.size(); ++k) {
+    solve::ContactConstraint& c = impacts.contacts[k];
+    part = k > 0 && of_one_pair(impacts.contacts[k - 1], c) ? part + 1 : 0;
+    load_warm_start(make_pair(colliders, c.collider_a, c.collider_b).key, part, true, c);
+    c.consistent = true;
   }
 }
 
@@ -172,6 +196,31 @@ void World::Impl::note_touched_articulations() {
   note_joined_bodies();
 }
 
+RowJointStep World::Impl::row_joint_step(double h, double dt, bool first) const {
+  return {first ? RowsOf::first_instant : RowsOf::impact, dt, h, 1.0, speed_unit};
+}
+
+// Solves impacts.contacts and the rows of joints. False: there are none.
+bool World::Impl::solve_instant(std::span<const std::uint32_t> solved, double h, double dt,
+                                bool first) {
+  const RowJointStep of_joints = row_joint_step(h, dt, first);
+  add_joint_rows(h, dt, of_joints.of);
+  add_row_joints(of_joints);
+  if (impacts.contacts.empty() && impacts.joint_rows.empty()) return false;
+  refresh_solver_bodies(solved);
+  begin_solve_articulations(first);
+  solve::solve({impacts.solver_bodies, impacts.contacts, impacts.joint_rows, impacts.joint_pairs,
+                impacts.solver_articulations, impacts.link_rows, impacts.instant, h, dt,
+                desc.contact_slop, desc.restitution_threshold, desc.velocity_iterations});
+  return true;
+}
+
+void World::Impl::store_implicit_impulses() {
+  for (Articulation& art : articulations) {
+    if (art.alive && !art.remote && !art.sub_stepped) art.store_implicit_impulses();
+  }
+}
+
 // Solves all contacts at the start of a step (first), then those of the bodies that an impact
 // affects.
 void World::Impl::solve_contacts(double h, double dt, bool first) {
@@ -198,16 +247,10 @@ void World::Impl::solve_contacts(double h, double dt, bool first) {
     if (c.swept) impacts.in_contact[c.a] = impacts.in_contact[c.b] = 1;
   }
   note_touched_articulations();
-  const RowJointStep of_joints{first ? RowsOf::first_instant : RowsOf::impact, dt, h, 1.0,
-                               speed_unit};
-  add_joint_rows(h, dt, of_joints.of);
-  add_row_joints(of_joints);
-  if (impacts.contacts.empty() && impacts.joint_rows.empty()) return;
-  refresh_solver_bodies(solved);
-  begin_solve_articulations(first);
-  solve::solve({impacts.solver_bodies, impacts.contacts, impacts.joint_rows, impacts.joint_pairs,
-                impacts.solver_articulations, impacts.link_rows, impacts.instant, h, dt,
-                desc.contact_slop, desc.restitution_threshold, desc.velocity_iterations});
+  bool has_rows = solve_instant(solved, h, dt, first);
+  while (first && integrate_saturated_again(dt, has_rows))
+    has_rows = solve_instant(solved, h, dt, first);
+  if (!has_rows) return first ? store_implicit_impulses() : void();
   for (const std::uint32_t i : solved) {
     Body& body = bodies[i];
     if (body.is_link || body.motion != Motion::dynamic) continue;
@@ -218,7 +261,8 @@ void World::Impl::solve_contacts(double h, double dt, bool first) {
   }
   note_link_impulses(impacts.contacts);
   end_solve_articulations(first);
-  take_back_row_joints(of_joints);
+  if (first) store_implicit_impulses();
+  take_back_row_joints(row_joint_step(h, dt, first));
   apply_corrections(solved);
   for (const solve::ContactConstraint& c : impacts.contacts) {
     counters.contacts += static_cast<std::uint32_t>(c.count);

@@ -151,6 +151,14 @@ struct World::Impl {
   void follow_velocities(const Articulation& articulation, bool carrying);
   void integrate_articulations(double dt);
   void add_joint_rows(double h, double dt, RowsOf of);
+  void integrate_forces_of(Articulation& art, double dt);
+  bool integrate_saturated_again(double dt, bool solved);
+  RowJointStep row_joint_step(double h, double dt, bool first) const;
+  void store_implicit_impulses();
+  void load_warm_start(std::uint64_t key, std::uint32_t part, bool warm,
+                       solve::ContactConstraint& c) const;
+  void restore_warm_starts();
+  bool solve_instant(std::span<const std::uint32_t> solved, double h, double dt, bool first);
   void begin_solve_articulations(bool first);
   void end_solve_articulations(bool first);
   void advance_articulations(double h);
