@@ -250,7 +250,10 @@ void World::Impl::solve_contacts(double h, double dt, bool first) {
   bool has_rows = solve_instant(solved, h, dt, first);
   while (first && integrate_saturated_again(dt, has_rows))
     has_rows = solve_instant(solved, h, dt, first);
-  if (!has_rows) return first ? store_implicit_impulses() : void();
+  if (!has_rows) {
+    if (first) store_implicit_impulses();
+    return;
+  }
   for (const std::uint32_t i : solved) {
     Body& body = bodies[i];
     if (body.is_link || body.motion != Motion::dynamic) continue;
