@@ -3,6 +3,7 @@
 #include "solve/passes.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "solve/contact_passes.h"
 #include "solve/restitution_pass.h"
@@ -59,6 +60,25 @@ void move(BodyRow* rows, const std::uint32_t* bodies, std::size_t count, float h
     lanes::store<8>(row.displacement,
                     lanes::load<8>(row.displacement) + step * lanes::load<8>(row.velocity));
   }
+}
+
+bool find_deviating(const BodyRow* rows, const SearchedMotion* searched,
+                    const std::uint32_t* bodies, std::size_t count, float left,
+                    std::uint8_t* flags) {
+  using F = Lanes<8>;
+  constexpr float kMax = std::numeric_limits<float>::max();
+  const Row8 max = {kMax, kMax, kMax, kMax, kMax, kMax, kMax, kMax};
+  const Row8 used = {left, left, left, left, left, left, 0, 0};
+  bool some = false;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Row8 motion = lanes::load<8>(searched[bodies[i]].velocity);
+    const Row8 limit = __builtin_shufflevector(motion, max, 6, 6, 6, 7, 7, 7, 8, 8);
+    const F change(lanes::load<8>(rows[bodies[i] + 1].velocity) - motion);
+    const bool deviates = !none(F(used) * abs(change) > F(limit));
+    flags[i] = deviates ? 1 : 0;
+    some |= deviates;
+  }
+  return some;
 }
 
 // Runs f(lanes, block, slot) on all slots in use, W at a time.
@@ -151,6 +171,7 @@ const vphysics_solver::Passes vphysics_solver::VP_PASSES = {vp::solve::accelerat
                                                             vp::solve::find_velocity_changes,
                                                             vp::solve::repeat,
                                                             vp::solve::move,
+                                                            vp::solve::find_deviating,
                                                             vp::solve::find_closer,
                                                             vp::solve::contact_passes<1>(),
                                                             vp::solve::contact_passes<4>()};

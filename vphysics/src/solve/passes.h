@@ -68,6 +68,14 @@ struct alignas(32) VelocityChange {
   float velocity[8];
 };
 
+// The velocity by which the last search for contacts extrapolated a body's motion, in the layout of
+// its row, and how far the body may deviate from that motion before the search is repeated: the
+// distance [m] for each component of v, the angle [rad] for each of w.
+struct alignas(32) SearchedMotion {
+  float velocity[6];
+  float distance, angle;
+};
+
 struct Passes {
   // Over bodies. The row of body i is i + 1.
   void (*accelerate)(BodyRow* rows, const std::uint32_t* bodies, std::size_t count, float h);
@@ -82,6 +90,11 @@ struct Passes {
   void (*repeat)(BodyRow* rows, VelocityChange* velocity_changes, const std::uint32_t* bodies,
                  std::size_t count);
   void (*move)(BodyRow* rows, const std::uint32_t* bodies, std::size_t count, float h);
+  // Sets the flag of each body that deviates by more than its limit, over the time `left`, from the
+  // motion of the last search; clears those of the others. Returns whether it has set any.
+  bool (*find_deviating)(const BodyRow* rows, const SearchedMotion* searched,
+                         const std::uint32_t* bodies, std::size_t count, float left,
+                         std::uint8_t* flags);
   // A bit for each speculative pair that may use up its clearance by the end of a step dt.
   void (*find_closer)(SpeculativeBlock* blocks, std::size_t count, BodyRow* rows, float dt,
                       std::uint32_t* bits);

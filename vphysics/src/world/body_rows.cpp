@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "solve/row_vector.h"
 #include "world/free_rotation.h"
@@ -20,6 +21,11 @@ namespace {
 // steps of motion, so that single precision resolves small steps. It also restarts beyond
 // kMaxRotation [rad], since rotations are added as vectors.
 constexpr float kMaxDisplacement = 0.0625f, kFarSteps = 8.0f, kMaxRotation = 0.25f;
+
+// A body that will deviate by more than this many of its half extents within the step from the
+// motion by which its contacts were searched for has them searched for again. Up to about that much
+// it may overlap what it is thrown at. A smaller fraction finds more and costs more.
+constexpr double kDeviation = 0.2;
 
 // The nearest rotation to a matrix with accumulated rounding errors: one step of Newton's method,
 //   M (3 - M^T M) / 2,
@@ -123,6 +129,8 @@ bool BodyRows::load(Body& body, std::uint32_t index) const {
     put(row.rate + 3, loads.is_torqued(body) ? gyroscopic + a.w : gyroscopic);
   }
   std::copy_n(displacement, 6, start_displacements[index].begin());
+  note_searched(index);
+  set_search_limits(body, index);
   const float* v = row.velocity;
   const float speed = std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])});
   const float far = kMaxDisplacement * static_cast<float>(desc.length_unit) +
@@ -132,6 +140,38 @@ bool BodyRows::load(Body& body, std::uint32_t index) const {
                        [limit](float x) { return !(std::fabs(x) <= limit); });  // true also for NaN
   };
   return beyond(0, far) || beyond(3, kMaxRotation);
+}
+
+// What acceleration by forces moves it, it may deviate in addition: the margins allow for that.
+void BodyRows::set_search_limits(const Body& body, std::uint32_t index) const {
+  solve::SearchedMotion& motion = searched[index];
+  motion.distance = motion.angle = std::numeric_limits<float>::max();
+  if (body.motion != Motion::dynamic || body.first_collider == kNone) return;
+  const float* rate = rows[index + 1].rate;
+  const auto by_forces = [&](int first) {
+    const float largest =
+        std::max({std::fabs(rate[first]), std::fabs(rate[first + 1]), std::fabs(rate[first + 2])});
+    return static_cast<float>(0.25 * dt * dt) * largest;
+  };
+  motion.distance = static_cast<float>(kDeviation * body.min_size) + by_forces(0);
+  // A sphere about the centre of mass may rotate as it likes.
+  if (body.bounding_radius <= body.min_size * (1.0 + 1e-9)) return;
+  motion.angle =
+      static_cast<float>(kDeviation * body.min_size / body.bounding_radius) + by_forces(3);
+}
+
+void BodyRows::note_searched(std::uint32_t index) const {
+  std::copy_n(rows[index + 1].velocity, 6, searched[index].velocity);
+}
+
+void BodyRows::show(Body& body, std::uint32_t index) const {
+  const solve::BodyRow& row = rows[index + 1];
+  const float* start = start_displacements[index].data();
+  const Vec3 x = reference_point(body) + vector_of(row.displacement) - vector_of(start);
+  const Vec3 rotation = vector_of(row.displacement + 3) - vector_of(start + 3);
+  body.v = vector_of(row.velocity);
+  body.w = vector_of(row.velocity + 3);
+  place(body, x, rotated(body.T.rotation(), rotation));
 }
 
 // Whether contacts and joints left its rotation unchanged, though it has contact slots. If so, it

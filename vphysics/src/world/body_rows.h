@@ -6,6 +6,7 @@
 #include <span>
 
 #include "solve/body_row.h"
+#include "solve/passes.h"
 #include "world/body.h"
 #include "world/loads.h"
 
@@ -15,6 +16,7 @@ struct BodyRows {
   std::span<solve::BodyRow> rows;  // row i + 1 is of body i
   std::span<std::array<float, 6>>
       start_displacements;  // of each body: displacement of its row when the step began
+  std::span<solve::SearchedMotion> searched;  // of each body
   const BodyLoads& loads;
   const WorldDesc& desc;
   double dt;
@@ -27,8 +29,13 @@ struct BodyRows {
   bool settle(Body& body, std::uint32_t index, Velocity& more) const;
   // The same and the pose, for a dynamic body moved by its row; false if it leaves the range.
   bool advance(Body& body, std::uint32_t index) const;
+  // Between two sub-steps: sets pose and velocities to those of the row.
+  void show(Body& body, std::uint32_t index) const;
+  // The contacts of the body have been searched for at its row's present velocity.
+  void note_searched(std::uint32_t index) const;
 
  private:
+  void set_search_limits(const Body& body, std::uint32_t index) const;
   bool leave_untouched(Body& body, std::uint32_t index) const;
 };
 

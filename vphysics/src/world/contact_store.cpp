@@ -180,6 +180,24 @@ void ContactStore::use_clearance(const Contact& c, const BodySet& on) {
                                        a.arc_error + b.arc_error);
 }
 
+bool ContactStore::may_touch_within(const Contact& c, double time, const BodySet& on) const {
+  const solve::SpeculativePair& pair = speculative.pair(c.speculative_index);
+  const auto gone = [&](std::uint32_t row, const float* x, const float* rotation,
+                        const float* arm) {
+    const float *displacement = on.rows[row].displacement, *velocity = on.rows[row].velocity;
+    const Vec3 by =
+        vector_of(displacement + 3) - vector_of(rotation) + time * vector_of(velocity + 3);
+    const Vec3 moved = vector_of(displacement) - vector_of(x) + time * vector_of(velocity);
+    const Vec3 r = vector_of(arm);
+    return Gone{moved + cross(by, r), by, 0.5 * dot(by, by) * norm(r)};
+  };
+  const Gone a = gone(pair.a, pair.x_a, pair.rotation_a, pair.arm_a);
+  const Gone b = gone(pair.b, pair.x_b, pair.rotation_b, pair.arm_b);
+  const double rotated = static_cast<double>(pair.radius) * norm(b.rotation - a.rotation);
+  return !(norm(b.displacement - a.displacement) + rotated + a.arc_error + b.arc_error <=
+           static_cast<double>(pair.clearance));
+}
+
 // Does nothing if something awake may change the contact: a speculative pair with one body awake or
 // kinematic. A kinematic body that touches a sleeping one is at rest; setting it in motion wakes
 // the other.

@@ -76,6 +76,9 @@ class ContactStore {
   // set.
   void use_clearance(const Contact& contact, const BodySet& on);
 
+  // Whether the two may touch within this time from now [s], at the rows' present velocities.
+  bool may_touch_within(const Contact& contact, double time, const BodySet& on) const;
+
   // --- sleep
   void park(std::uint32_t contact, const BodySet& on);
   void unpark(std::uint32_t contact, const BodySet& on);

@@ -57,6 +57,13 @@ struct SubStepState {
   bool position_error = false;    // the last step ended with one, of contacts or joints
 };
 
+// What find_contacts_within_step() has changed.
+struct SearchedAgain {
+  bool has_new_slots = false;  // contact slots, new or with other points
+  bool has_old_slots = false;  // of those that had impulses before, or woken bodies
+  bool has_woken = false;      // bodies, whose slots have no inertias yet
+};
+
 struct World::Impl {
   WorldDesc given_desc;
   WorldDesc desc;           // the same, in metres and metres per second
@@ -228,7 +235,7 @@ struct World::Impl {
   // bodies.cpp
   void list_bodies();
   BodyRows rows_in(double dt) {
-    return {body_rows, sub_step.start_displacements,      loads, desc,
+    return {body_rows, sub_step.start_displacements,      sub_step.searched, loads, desc,
             dt,        sub_steps_in(desc, speed_unit, dt)};
   }
   void load_rows(double dt);
@@ -271,6 +278,13 @@ struct World::Impl {
   void list_dirty_contacts(double dt, bool first);
   void find_manifolds_of(std::span<const std::uint32_t> contacts, double dt);
   void note_limits(const collide::Manifold& manifold);
+
+  // find_again.cpp
+  void load_inertias_of(const Contact& contact);
+  bool list_deviating_bodies(double left);
+  void advance_within_step(std::uint32_t body);
+  void list_contacts_of_deviating(double left);
+  SearchedAgain find_contacts_within_step(double left);
 
   // link_contacts.cpp
   void find_bodies_on_links();

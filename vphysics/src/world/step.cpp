@@ -76,6 +76,10 @@ void World::Impl::begin_step(double dt) {
   if (!lists.awake_bodies.empty()) contact_store.graph.reserve(lists.awake_bodies.size());
   sub_step.start_displacements.resize(n);
   sub_step.velocity_changes.resize(n);
+  sub_step.searched.resize(n);
+  sub_step.deviating.reserve(n);
+  sub_step.deviates.reserve(n);
+  sub_step.advanced.reserve(64 + n / 8);  // a step in which more of them deviate makes it longer
   impacts.row_joints.clear();
   if (has_impact_stage()) begin_impact_stage(dt);
   sub_step.joints.active.reserve(joints.size());

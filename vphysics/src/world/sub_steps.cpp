@@ -21,6 +21,8 @@ constexpr double kImpulseDecay = 0.07;
 constexpr double kBiasStepRate = 0.02;
 // Iterations with bias velocity in one sub-step.
 constexpr int kIterations = 3;
+// Max searches for contacts in one sub-step: what a found contact throws may meet another body.
+constexpr int kMaxSearches = 8;
 // Max restitution passes in one sub-step: an impact may have to propagate through as many contacts
 // against the order of the colours.
 constexpr int kMaxRestitutionPasses = 64;
@@ -62,6 +64,9 @@ class SubSteps {
  public:
   SubSteps(const SubStepContext& context, float h, const solve::Soft& soft)
       : context_(context), blocks_(context.contacts.number()), h_(h), soft_(soft) {}
+
+  // After contact slots have been added or removed.
+  void number_contacts() { blocks_ = context_.contacts.number(); }
 
   void load_inertias(std::size_t region) const {
     context_.contacts.for_parts_of(
@@ -152,7 +157,7 @@ class SubSteps {
   }
 
   const SubStepContext context_;
-  const std::size_t blocks_;
+  std::size_t blocks_;
   const float h_;
   solve::Soft soft_;
   std::atomic<bool> some_too_deep_ = false;  // contacts are too deep at the end of the sub-steps
@@ -216,17 +221,28 @@ void World::Impl::take_sub_steps(double dt, int n) {
   for (int k = 0; k < n; ++k) {
     const bool last = k == n - 1;
     runs.everywhere([&](std::size_t region) { steps.accelerate(region, repeats && k > 0); });
-    const int bounces = steps.apply_restitution();
-    counters.restitution_iterations += static_cast<std::uint32_t>(bounces);
-    status.bounce_limit |= bounces == kMaxRestitutionPasses;
+    bool warm_starts = k == 0 || !repeats;
+    for (int search = 0; search < kMaxSearches; ++search) {
+      const int bounces = steps.apply_restitution();
+      counters.restitution_iterations += static_cast<std::uint32_t>(bounces);
+      status.bounce_limit |= bounces == kMaxRestitutionPasses;
+      // The velocities of the first sub-step are those of the search, unless something bounces.
+      if (bounces == 0 && (k == 0 || search > 0)) break;
+      const SearchedAgain changed = find_contacts_within_step(static_cast<double>(h) * (n - k));
+      if (!changed.has_new_slots) break;
+      steps.number_contacts();
+      if (changed.has_woken)
+        runs.everywhere([&](std::size_t region) { steps.load_inertias(region); });
+      warm_starts |= changed.has_old_slots;
+    }
     if (links) begin_links(h);
     joint_steps.warm_start();
     if (repeats) {
       runs.everywhere([&](std::size_t region) {
-        k == 0 ? steps.keep_velocities(region) : steps.repeat_velocity_changes(region);
+        warm_starts ? steps.keep_velocities(region) : steps.repeat_velocity_changes(region);
       });
     }
-    if (k == 0 || !repeats) runs.everywhere([&](std::size_t region) { steps.warm_start(region); });
+    if (warm_starts) runs.everywhere([&](std::size_t region) { steps.warm_start(region); });
     if (contacts_alone) {
       // All consecutive operations on one region are done at once, so that its contacts are read
       // from memory once, except by the restitution pass and the first warm start.

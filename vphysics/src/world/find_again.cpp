@@ -1,0 +1,173 @@
+// Finds contacts again between two sub-steps, for bodies whose velocity has changed.
+//
+// The search at the start of a step extrapolates all bodies at their velocities at that time. An
+// impact within the step may throw a body elsewhere. So the search is repeated before a sub-step
+// for each body that will deviate from the extrapolated motion by more than a fraction of its size
+// in the remaining time (SearchedMotion). Its bounds are enlarged by the rest of its motion, and
+// its pairs that may touch in that time are tested at the poses of the sub-step. The other bodies
+// keep their contacts. Contacts of links are not searched for.
+#include <algorithm>
+#include <atomic>
+#include <span>
+
+#include "solve/row_vector.h"
+#include "world/impl.h"
+#include "world/validate.h"
+
+namespace vp {
+namespace {
+// A row that has left the range of numbers stops its body at the end of the step.
+bool is_in_range(const solve::BodyRow& row) {
+  return in_range(vector_of(row.velocity)) && in_range(vector_of(row.velocity + 3)) &&
+         in_range(vector_of(row.displacement)) && in_range(vector_of(row.displacement + 3));
+}
+
+// Whether the geometry of a contact slot will be useless before the step ends: the two will have
+// moved past each other by more than half of the extent of the smaller one.
+bool outruns_its_slot(const Contact& c, double left, const BodySet& on) {
+  const Collider &a = on.colliders[c.a], &b = on.colliders[c.b];
+  const auto v = [&](const Collider& x, int first) {
+    return vector_of(on.rows[end_of(on.bodies, x.body).row].velocity + first);
+  };
+  const double speed =
+      norm(v(b, 0) - v(a, 0)) + vicinity_of(on.bodies, a, b).radius * norm(v(b, 3) - v(a, 3));
+  return speed * left > smaller_size(a, b);
+}
+
+// Copies the bodies' inverse inertias into a slot, as load_inertias does for all at the start.
+template <int P>
+void load_inertias_of(solve::ContactBlock<P>& block, int lane,
+                      std::span<const solve::BodyRow> rows) {
+  const auto load = [&](solve::FieldSym3& to, std::uint32_t row) {
+    const float* from = rows[row].inertia;
+    solve::Field* fields[] = {&to.xx, &to.yy, &to.zz, &to.xy, &to.yz, &to.zx};
+    for (int i = 0; i < 6; ++i) fields[i]->lane[lane] = from[i];
+  };
+  load(block.inertia_a, block.a.lane[lane]);
+  load(block.inertia_b, block.b.lane[lane]);
+}
+
+}  // namespace
+
+void World::Impl::load_inertias_of(const Contact& c) {
+  if (c.slot.points == 0) return;
+  solve::ContactGraph& graph = contact_store.graph;
+  const int lane = solve::ContactGraph::lane(c.slot);
+  c.slot.points == 1 ? vp::load_inertias_of(graph.block<1>(c.slot), lane, std::span(body_rows))
+                     : vp::load_inertias_of(graph.block<4>(c.slot), lane, std::span(body_rows));
+}
+
+bool World::Impl::list_deviating_bodies(double left) {
+  const std::vector<std::uint32_t>& awake = lists.awake_bodies;
+  std::vector<std::uint8_t>& flags = sub_step.deviates;
+  flags.resize(awake.size());
+  std::atomic<bool> some = false;
+  workers.in_parallel(awake.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
+    if (solve::passes().find_deviating(body_rows.data(), sub_step.searched.data(),
+                                       awake.data() + begin, end - begin, static_cast<float>(left),
+                                       flags.data() + begin))
+      some.store(true, std::memory_order_relaxed);
+  });
+  sub_step.deviating.clear();
+  if (!some) return false;
+  for (std::size_t k = 0; k < awake.size(); ++k) {
+    const std::uint32_t i = awake[k];
+    if (flags[k] != 0 && joins_sub_steps(bodies[i]) && is_in_range(body_rows[i + 1]))
+      sub_step.deviating.push_back(i);
+  }
+  return !sub_step.deviating.empty();
+}
+
+// Sets the pose and the velocities of a body to those of the present sub-step.
+void World::Impl::advance_within_step(std::uint32_t index) {
+  Body& body = bodies[index];
+  if (body.advanced || body.asleep || !joins_sub_steps(body)) return;
+  body.advanced = true;
+  sub_step.advanced.push_back({index, body.T, body.w, body.v});
+  rows_in(dt_now).show(body, index);
+}
+
+// Lists in narrow.dirty the contacts to test.
+void World::Impl::list_contacts_of_deviating(double left) {
+  for (const std::uint32_t i : sub_step.deviating) {
+    advance_within_step(i);
+    update_bounds(i, left, true);
+    rows_in(dt_now).note_searched(i);
+  }
+  find_new_contacts();
+  for (const std::uint32_t i : sub_step.deviating) {
+    contact_store.for_each_of(bodies[i], [&](std::uint32_t index, const Contact& c) {
+      if (c.dirty || c.of_link || c.sensor || c.parked || c.is_part()) return;
+      if (c.slot.points > 0 ? outruns_its_slot(c, left, body_set)
+                            : contact_store.may_touch_within(c, left, body_set))
+        contact_store.mark_dirty(index);
+    });
+  }
+  contact_store.take_dirty(narrow.dirty);
+  std::erase_if(narrow.dirty, [&](std::uint32_t index) {
+    const Contact& c = contact_store[index];
+    if (!c.alive || !c.dirty) return true;
+    const std::uint32_t a = colliders[c.a].body, b = colliders[c.b].body;
+    // The joints of a woken island would not be solved in this step.
+    const bool wakes_joints = (bodies[a].asleep || bodies[b].asleep) && !joints.empty();
+    const bool must_wait =
+        wakes_joints || !is_in_range(body_rows[a + 1]) || !is_in_range(body_rows[b + 1]);
+    if (c.sensor || must_wait) narrow.dirty_next_step.push_back(index);
+    if (c.sensor || c.of_link || must_wait) return true;
+    for (const std::uint32_t body : {a, b}) {
+      advance_within_step(body);
+      pose_colliders(bodies[body], colliders);
+    }
+    return false;
+  });
+}
+
+SearchedAgain World::Impl::find_contacts_within_step(double left) {
+  SearchedAgain changed;
+  if (!list_deviating_bodies(left)) return changed;
+  // Contacts that wait for the next step are not tested now.
+  narrow.dirty_next_step.clear();
+  narrow.dirty_next_step.swap(contact_store.dirty);
+  list_contacts_of_deviating(left);
+  for (std::size_t done = 0; done < narrow.dirty.size(); done += narrow.results.size()) {
+    const std::span<const std::uint32_t> waiting = std::span(narrow.dirty).subspan(done);
+    find_manifolds_of(waiting.first(std::min(waiting.size(), kNarrowPhaseBatch)), left);
+    for (const NarrowPhaseResult& found : narrow.results) {
+      Contact& c = contact_store[found.contact];
+      const bool had_slots = c.slot.points > 0 || c.first_part != kNone;
+      // A slot whose impulses are not reported yet is not released.
+      if (c.slot.points > 0 && found.manifold.count == 0) {
+        c.dirty = false;
+        continue;
+      }
+      const std::uint32_t renewed = narrow.renewed;
+      take_over(found);
+      changed.has_new_slots |= narrow.renewed != renewed;
+      const Contact& taken = contact_store[found.contact];  // the pool may have grown
+      load_inertias_of(taken);
+      for (std::uint32_t p = taken.first_part; p != kNone; p = contact_store[p].next_part)
+        load_inertias_of(contact_store[p]);
+      changed.has_old_slots |= had_slots;
+    }
+  }
+  contact_store.dirty.insert(contact_store.dirty.end(), narrow.dirty_next_step.begin(),
+                             narrow.dirty_next_step.end());
+  const std::size_t awake = lists.awake_bodies.size();
+  list_bodies();
+  changed.has_woken = lists.awake_bodies.size() != awake;
+  changed.has_old_slots |= changed.has_woken;
+  sub_step.awake_body_changed.resize(lists.awake_bodies.size());
+  for (const BodyAtStart& start : sub_step.advanced) {
+    Body& body = bodies[start.body];
+    body.T = start.T;
+    body.w = start.w;
+    body.v = start.v;
+    body.advanced = false;
+    body.moved();
+  }
+  sub_step.advanced.clear();
+  changed.has_new_slots |= changed.has_old_slots;
+  return changed;
+}
+
+}  // namespace vp
