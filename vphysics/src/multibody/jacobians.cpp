@@ -102,7 +102,7 @@ void fill_jacobian(const Tree<base_t<T>>& tree, const Work<T>& work, const View&
   }
 }
 
-Expected<void> no_derivatives(const char* call) {
+[[maybe_unused]] Expected<void> no_derivatives(const char* call) {  // not of packs
   return tl::make_unexpected(
       Error{Errc::unsupported,
             std::string(call) +
