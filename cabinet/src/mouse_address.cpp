@@ -89,7 +89,7 @@ tl::expected<std::unique_ptr<MouseSource>, std::string> open_mouse(const std::st
     if (::access(path.c_str(), R_OK) != 0) {
       return tl::unexpected(options.name + ": " + std::strerror(errno) +
                             "; install cabinet/70-space-foosball.rules, or join group input and "
-                            "log in anew (docs/cabinet.md).");
+                            "log in again (docs/cabinet.md).");
     }
     const os::FileDescriptor fd(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
     if (fd && !is_mouse(fd.get())) {

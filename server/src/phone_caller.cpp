@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kMaxHead = 4096;               // bytes of a request's head
 constexpr std::size_t kMaxToControl = 64 * 1024;     // pending bytes
 constexpr auto kFarewell = std::chrono::seconds(1);  // time to read the reason before the end
-constexpr std::string_view kScanAnew = "Scan the code on the game's screen anew.\n";
+constexpr std::string_view kScanAgain = "Scan the code on the game's screen again.\n";
 constexpr std::string_view kNoRoom = "All places for phones are taken: try again later.\n";
 
 // Constant time for every wrong token.
@@ -117,12 +117,12 @@ void PhoneCaller::answer(const Request& request, std::size_t bytes) {
   const bool gets = request.method() == http::verb::get;
   if (target == Target::none || !gets) {
     house_.count(Count::refused);
-    return send_sentence("404 Not Found", kScanAnew, bytes);
+    return send_sentence("404 Not Found", kScanAgain, bytes);
   }
   if (target == Target::page) return send_page();
   if (!websocket::is_upgrade(request)) {
     house_.count(Count::bad_messages);
-    return send_sentence("400 Bad Request", kScanAnew, bytes);
+    return send_sentence("400 Bad Request", kScanAgain, bytes);
   }
   if (!house_.has_room()) {
     house_.count(Count::refused);

@@ -206,7 +206,7 @@ TEST_F(DeviceTest, ADeviceThatNeverSaysAWordIsToldToBeSilent) {
   EXPECT_FALSE(watcher.hear(0));  // it has a second to start
   table.tick(200);
   EXPECT_EQ(notice_text(),
-            "cabinet test is there but sends nothing: plug it in anew, and check its "
+            "cabinet test is there but sends nothing: plug it in again, and check its "
             "firmware");
 }
 
@@ -293,7 +293,7 @@ TEST(DeviceWatch, SaysWhyADeviceThatIsThereCannotBeOpened) {
        "cabinet locked cannot be opened: Device or resource busy; end the other program that uses "
        "it"},
       {EIO,
-       "cabinet locked cannot be opened: Input/output error; plug it in anew, or give another "
+       "cabinet locked cannot be opened: Input/output error; plug it in again, or give another "
        "address"},
   };
   for (const auto& [error, sentence] : reasons) {

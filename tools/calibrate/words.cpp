@@ -116,12 +116,12 @@ std::string rod_words(foosball::Layout layout, int rod) {
 std::string request_words(const Session& session) {
   switch (session.state(session.rod())) {
     case RodState::refused:
-      return session.problem() + " " + tr(N_("Press Enter to begin this rod anew."));
+      return session.problem() + " " + tr(N_("Press Enter to start this rod again."));
     case RodState::fitted:
       return tr(session.all_fitted()
                     ? N_("All rods are calibrated, and their numbers are kept. Leave with Esc.")
                     : N_("This rod is calibrated, and its numbers are kept. Enter: the next rod; "
-                         "Backspace: this one anew."));
+                         "Backspace: this one again."));
     default:
       break;
   }

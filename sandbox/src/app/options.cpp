@@ -112,7 +112,7 @@ tl::expected<Options, draw::Leave> parse_options(int argc, const char* const* ar
   cli.footer(
       "Exit codes: 0 done, 1 failed, 2 bad option or scene, 4 no display.\n"
       "Mouse: left drags a body, or turns the view beside them; right pans, the wheel zooms.\n"
-      "Keys: Space pauses, S steps once, R begins anew, 1 2 3 step at 60, 240, 1000 Hz, - and +\n"
+      "Keys: Space pauses, S steps once, R restarts, 1 2 3 step at 60, 240, 1000 Hz, - and +\n"
       "slow down and speed up, N and B show the next and the last scene, C contacts, I impulses,\n"
       "F frames, M centres of mass, J joints, X bounds, W wires, V colours by speed, T throws a\n"
       "body, Home shows all, Tab hides the panel, Esc leaves.");

@@ -67,7 +67,7 @@ void time_controls(const Simulation& simulation, const Meter& meter, Controls& c
   ImGui::SameLine();
   if (ImGui::Button("Step", {60, 0})) requests.step = true;
   ImGui::SameLine();
-  if (ImGui::Button("Begin anew", {92, 0})) requests.reset = true;
+  if (ImGui::Button("Restart", {92, 0})) requests.reset = true;
   ImGui::SameLine();
   ImGui::Text("%.2f s", simulation.time());
   for (const int rate : kRates) {
@@ -180,7 +180,7 @@ void keys_help() {
   ImGui::TextUnformatted(
       "left: drag a body, or turn the view\n"
       "right: pan     wheel: zoom\n"
-      "Space pause    S one step    R begin anew\n"
+      "Space pause    S one step    R restart\n"
       "1 2 3 rate     - + speed     N B scenes\n"
       "C contacts     I impulses    F frames\n"
       "M centres      J joints      X bounds\n"

@@ -107,10 +107,10 @@ namespace wire {
   /* the server's devices */ \
   X(device_not_allowed, "%1 cannot be opened: %2; install cabinet/70-space-foosball.rules or join the device's group") \
   X(device_busy, "%1 cannot be opened: %2; end the other program that uses it") \
-  X(device_refused, "%1 cannot be opened: %2; plug it in anew, or give another address") \
+  X(device_refused, "%1 cannot be opened: %2; plug it in again, or give another address") \
   X(device_unplugged, "%1 unplugged: its rods hold; plug it in again") \
   X(device_missing, "%1 is not there: plug it in, or give its right address") \
-  X(device_silent, "%1 is there but sends nothing: plug it in anew, and check its firmware") \
+  X(device_silent, "%1 is there but sends nothing: plug it in again, and check its firmware") \
   X(device_garbled, "%1 sends what is no frame: is it the right device, with our firmware?") \
   X(device_too_fast, "%1: a rod moved faster than its sensor can follow; push it to both stops once") \
   X(device_over, "%1 is over: its rods hold") \
