@@ -11,10 +11,31 @@ namespace {
 
 // Motion of one body of a pair: displacement at the centre of the vicinity sphere, rotation, and
 // the error bound of that displacement.
-struct Gone {
+struct PairMotion {
   Vec3 displacement, rotation;
   double arc_error;
 };
+
+// How much nearer the two of a pair may have come since its clearance was set, and will have come
+// after a further `time` [s] at the rows' present velocities. The same bound as find_closer.
+double max_approach(const solve::SpeculativePair& pair, const BodySet& on, double time) {
+  const auto motion = [&](std::uint32_t row, const float* x, const float* rotation,
+                          const float* arm) {
+    const solve::BodyRow& now = on.rows[row];
+    Vec3 moved = vector_of(now.displacement) - vector_of(x);
+    Vec3 by = vector_of(now.displacement + 3) - vector_of(rotation);
+    if (time > 0.0) {
+      moved += time * vector_of(now.velocity);
+      by += time * vector_of(now.velocity + 3);
+    }
+    const Vec3 r = vector_of(arm);
+    return PairMotion{moved + cross(by, r), by, 0.5 * dot(by, by) * norm(r)};
+  };
+  const PairMotion a = motion(pair.a, pair.x_a, pair.rotation_a, pair.arm_a);
+  const PairMotion b = motion(pair.b, pair.x_b, pair.rotation_b, pair.arm_b);
+  const double rotated = static_cast<double>(pair.radius) * norm(b.rotation - a.rotation);
+  return norm(b.displacement - a.displacement) + rotated + a.arc_error + b.arc_error;
+}
 
 }  // namespace
 
@@ -163,39 +184,14 @@ double ContactStore::clearance(const Contact& c) const {
   return static_cast<double>(speculative.pair(c.speculative_index).clearance);
 }
 
-// The same bound as find_closer.
 void ContactStore::use_clearance(const Contact& c, const BodySet& on) {
   solve::SpeculativePair& pair = speculative.pair(c.speculative_index);
-  const auto gone = [&](std::uint32_t row, const float* x, const float* rotation,
-                        const float* arm) {
-    const float* displacement = on.rows[row].displacement;
-    const Vec3 r = vector_of(arm), by = vector_of(displacement + 3) - vector_of(rotation);
-    return Gone{vector_of(displacement) - vector_of(x) + cross(by, r), by,
-                0.5 * dot(by, by) * norm(r)};
-  };
-  const Gone a = gone(pair.a, pair.x_a, pair.rotation_a, pair.arm_a);
-  const Gone b = gone(pair.b, pair.x_b, pair.rotation_b, pair.arm_b);
-  const double rotated = static_cast<double>(pair.radius) * norm(b.rotation - a.rotation);
-  pair.clearance -= static_cast<float>(norm(b.displacement - a.displacement) + rotated +
-                                       a.arc_error + b.arc_error);
+  pair.clearance -= static_cast<float>(max_approach(pair, on, 0.0));
 }
 
 bool ContactStore::may_touch_within(const Contact& c, double time, const BodySet& on) const {
   const solve::SpeculativePair& pair = speculative.pair(c.speculative_index);
-  const auto gone = [&](std::uint32_t row, const float* x, const float* rotation,
-                        const float* arm) {
-    const float *displacement = on.rows[row].displacement, *velocity = on.rows[row].velocity;
-    const Vec3 by =
-        vector_of(displacement + 3) - vector_of(rotation) + time * vector_of(velocity + 3);
-    const Vec3 moved = vector_of(displacement) - vector_of(x) + time * vector_of(velocity);
-    const Vec3 r = vector_of(arm);
-    return Gone{moved + cross(by, r), by, 0.5 * dot(by, by) * norm(r)};
-  };
-  const Gone a = gone(pair.a, pair.x_a, pair.rotation_a, pair.arm_a);
-  const Gone b = gone(pair.b, pair.x_b, pair.rotation_b, pair.arm_b);
-  const double rotated = static_cast<double>(pair.radius) * norm(b.rotation - a.rotation);
-  return !(norm(b.displacement - a.displacement) + rotated + a.arc_error + b.arc_error <=
-           static_cast<double>(pair.clearance));
+  return !(max_approach(pair, on, time) <= static_cast<double>(pair.clearance));
 }
 
 // Does nothing if something awake may change the contact: a speculative pair with one body awake or
