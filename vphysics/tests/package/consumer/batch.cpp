@@ -2,15 +2,10 @@
 #include <cstdio>
 #include <vector>
 
-#include "vphysics/multibody/dynamics.h"
+#include "rod.h"
 
 int main() {
-  vp::LinkSpec rod;  // 2 kg, 1 m, about its end
-  rod.joint = vp::RevoluteJoint{{0, 1, 0}};
-  rod.inertia = vp::Inertia(2.0, {1.0, 0, 0}, {0, 2.0 / 3, 2.0 / 3, 0, 0, 0});
-  vp::ModelBuilder builder;
-  if (!builder.add(rod)) return 1;
-  const auto model = builder.build();
+  const auto model = make_rod();
   if (!model) return 1;
   using Pack = vp::PackT<double, 4>;
   vp::DataT<Pack> data(*model);
