@@ -37,9 +37,9 @@ class ImpulseFactor {
   // Computes the inertias of the bodies in the configuration of the last call on the data.
   void find_inertias(const Model& model, const Data& data);
   // Factors M in that configuration; computes the inertias first unless inertias_are_found.
-  // damping_time h > 0 factors M + h D + diag(gains) instead of M, with the joints' viscous damping
-  // D and the gains of other implicit joint forces (one each, or none). Returns false if a joint
-  // moves no inertia; results with the factors are then unspecified.
+  // For implicit steps it factors M + h D + diag(gains) instead, with h = damping_time, the joints'
+  // viscous damping D, and the gains of other joint forces, one for each degree of freedom or none.
+  // Returns false if a joint moves no inertia; results with the factors are then unspecified.
   bool factor(const Model& model, const Data& data, double damping_time = 0.0,
               bool inertias_are_found = false, std::span<const double> gains = {});
 

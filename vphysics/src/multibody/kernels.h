@@ -3,8 +3,8 @@
 //
 // The baseline gives the same bits everywhere. The wider sets have fused multiply-add and round
 // differently. kernels.cpp is compiled once for each set, in a separate namespace, so that the
-// linker cannot merge inline functions of different sets, and so is each library's table. Only the
-// types of this header are shared between the namespaces: addresses.
+// linker cannot merge inline functions of different sets. Only addresses are passed between the
+// namespaces. vphysics and vphysics_packs have tables of their own, in an inline namespace each.
 #pragma once
 
 #include <array>

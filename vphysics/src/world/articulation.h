@@ -63,9 +63,10 @@ class Articulation {
   bool integrate_forces(double dt, bool& changed);
   const ImplicitForces& implicit() const { return implicit_; }
   // After the solver's iterations (solved), or without them: motors in the factor that exceed their
-  // limit. They become rows; true if there are any. restart_forces() then returns to the velocities
-  // at the start of the step.
-  bool find_saturated_motors(bool solved);
+  // limit. They become rows, or all_become_rows if there are any, which bounds the number of
+  // solves; true if there are any. restart_forces() then returns to the velocities at the start of
+  // the step.
+  bool find_saturated_motors(bool solved, bool all_become_rows);
   void restart_forces();
   // Stores the impulses of the forces in the factor, at the velocities after the solve.
   void store_implicit_impulses();

@@ -159,7 +159,7 @@ bool Articulation::factor_for_step(double dt) {
   return fine;
 }
 
-bool Articulation::find_saturated_motors(bool solved) {
+bool Articulation::find_saturated_motors(bool solved, bool all_become_rows) {
   if (!implicit_.any()) return false;
   if (solved) {
     factor_.to_velocities(velocity_);
@@ -171,9 +171,15 @@ bool Articulation::find_saturated_motors(bool solved) {
     const Motor& motor = implicit_.motor(i);
     const double impulse = motor.constant - motor.gain * (v[i] + (solved ? velocity_[i] : 0.0));
     if (std::fabs(impulse) <= motor.limit) continue;
-    dofs[i].impulses[kMotorRow] = std::clamp(impulse, -motor.limit, motor.limit);
+    dofs[i].impulses[kMotorRow] =
+        vp::in_range(impulse) ? std::clamp(impulse, -motor.limit, motor.limit) : 0.0;
     implicit_.make_row(i);
     found = true;
+  }
+  if (found && all_become_rows) {
+    for (std::size_t i = 0; i < v.size(); ++i) {
+      if (implicit_.has_motor(i)) implicit_.make_row(i);
+    }
   }
   return found;
 }

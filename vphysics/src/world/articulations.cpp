@@ -199,10 +199,12 @@ void World::Impl::add_joint_rows(double h, double dt, RowsOf of) {
 
 // Whether a motor exceeds its limit that was predicted to stay below it: it is a row now, the
 // forces of its articulation are integrated again, and the instant must be solved again.
-bool World::Impl::integrate_saturated_again(double dt, bool solved) {
+bool World::Impl::integrate_saturated_again(double dt, bool solved, bool all_become_rows) {
   bool again = false;
   for (Articulation& art : articulations) {
-    if (!art.alive || art.remote || art.sub_stepped || !art.find_saturated_motors(solved)) continue;
+    if (!art.alive || art.remote || art.sub_stepped ||
+        !art.find_saturated_motors(solved, all_become_rows))
+      continue;
     again = true;
     art.restart_forces();
     follow_velocities(art, false);

@@ -164,7 +164,7 @@ void BodyRows::note_searched(std::uint32_t index) const {
   std::copy_n(rows[index + 1].velocity, 6, searched[index].velocity);
 }
 
-void BodyRows::show(Body& body, std::uint32_t index) const {
+void BodyRows::copy_to_body(Body& body, std::uint32_t index) const {
   const solve::BodyRow& row = rows[index + 1];
   const float* start = start_displacements[index].data();
   const Vec3 x = reference_point(body) + vector_of(row.displacement) - vector_of(start);

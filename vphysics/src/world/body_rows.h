@@ -30,7 +30,7 @@ struct BodyRows {
   // The same and the pose, for a dynamic body moved by its row; false if it leaves the range.
   bool advance(Body& body, std::uint32_t index) const;
   // Between two sub-steps: sets pose and velocities to those of the row.
-  void show(Body& body, std::uint32_t index) const;
+  void copy_to_body(Body& body, std::uint32_t index) const;
   // The contacts of the body have been searched for at its row's present velocity.
   void note_searched(std::uint32_t index) const;
 

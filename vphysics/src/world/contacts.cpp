@@ -248,7 +248,7 @@ void World::Impl::solve_contacts(double h, double dt, bool first) {
   }
   note_touched_articulations();
   bool has_rows = solve_instant(solved, h, dt, first);
-  while (first && integrate_saturated_again(dt, has_rows))
+  for (int again = 0; first && integrate_saturated_again(dt, has_rows, again > 0); ++again)
     has_rows = solve_instant(solved, h, dt, first);
   if (!has_rows) {
     if (first) store_implicit_impulses();

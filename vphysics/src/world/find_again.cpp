@@ -84,7 +84,7 @@ void World::Impl::advance_within_step(std::uint32_t index) {
   if (body.advanced || body.asleep || !joins_sub_steps(body)) return;
   body.advanced = true;
   sub_step.advanced.push_back({index, body.T, body.w, body.v});
-  rows_in(dt_now).show(body, index);
+  rows_in(dt_now).copy_to_body(body, index);
 }
 
 // Lists in narrow.dirty the contacts to test.

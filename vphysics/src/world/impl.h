@@ -159,7 +159,7 @@ struct World::Impl {
   void integrate_articulations(double dt);
   void add_joint_rows(double h, double dt, RowsOf of);
   void integrate_forces_of(Articulation& art, double dt);
-  bool integrate_saturated_again(double dt, bool solved);
+  bool integrate_saturated_again(double dt, bool solved, bool all_become_rows);
   RowJointStep row_joint_step(double h, double dt, bool first) const;
   void store_implicit_impulses();
   void load_warm_start(std::uint64_t key, std::uint32_t part, bool warm,

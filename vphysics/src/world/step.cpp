@@ -79,7 +79,7 @@ void World::Impl::begin_step(double dt) {
   sub_step.searched.resize(n);
   sub_step.deviating.reserve(n);
   sub_step.deviates.reserve(n);
-  sub_step.advanced.reserve(64 + n / 8);  // a step in which more of them deviate makes it longer
+  sub_step.advanced.reserve(64 + n / 8);  // grows in a step in which more bodies deviate
   impacts.row_joints.clear();
   if (has_impact_stage()) begin_impact_stage(dt);
   sub_step.joints.active.reserve(joints.size());
