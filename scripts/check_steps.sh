@@ -74,7 +74,6 @@ build_with_tests() {
 }
 
 step_gcc() { build_with_tests release ON all; }
-# clang++ compiles the rest for step asan.
 step_clang() { build_with_tests clang OFF numbers_tests foosball-replay; }
 
 # run_tests PRESET [ctest options]: under a virtual display; leaves the numbers for the totals.
@@ -113,7 +112,12 @@ sanitized_build() { # sanitized_build PRESET TARGET
   no_address_randomisation bash scripts/common.sh build "$1" "$LOGS/$1-$2-build.log" "$2"
 }
 
-sanitized_tests() { # sanitized_tests PRESET TARGET LABEL [ctest options]
+# sanitized_tests PRESET TARGET LABEL [ctest options]: the fast tests are 20 times as slow here, so that
+# tests of many random cases are told to take fewer: of 500, all, every 37th and each elsewhere.
+sanitized_tests() {
+  export VP_CHURN_SEQUENCES=150 VP_SAMPLES_SHARE=4 SF_FLIPPED_EVERY=149 SF_TRUNCATED_EVERY=5
+  export ASAN_OPTIONS=detect_stack_use_after_return=1:strict_string_checks=1
+  export UBSAN_OPTIONS=print_stacktrace=1 TSAN_OPTIONS=second_deadlock_stack=1
   sanitized_build "$1" "$2"
   rm -rf "build/$1/gtest"
   run_tests "$1" -L "${@:3}"
@@ -131,10 +135,10 @@ count_cases() { # count_cases FOLDER
 }
 
 step_asan() {
-  # Of 500, all, every 37th and each elsewhere: they are 20 times as slow here.
-  export VP_CHURN_SEQUENCES=150 VP_SAMPLES_SHARE=4 SF_FLIPPED_EVERY=149 SF_TRUNCATED_EVERY=5
-  export ASAN_OPTIONS=detect_stack_use_after_return=1:strict_string_checks=1
-  export UBSAN_OPTIONS=print_stacktrace=1
+  sanitized_tests asan-ubsan numbers_tests numbers
+  count_cases build/asan-ubsan/gtest
+}
+step_asan_all() {
   sanitized_tests asan-ubsan all fast
   count_cases build/asan-ubsan/gtest
 }
@@ -142,7 +146,6 @@ step_asan() {
 step_tsan() {
   # Of programs with threads the tests that start none and took half of the time.
   local without='CalibrationGuide|CalibrationFit|MountErrors|Drifting|IndexMark|StateAtTick|CheckpointFile'
-  export TSAN_OPTIONS=second_deadlock_stack=1
   sanitized_tests tsan threads_tests threads -E "$without|ServerProgram.(Refuses|Names)"
 }
 
@@ -178,29 +181,33 @@ step_fuzz() {
   ((status == 0 && good == all))
 }
 
-# A match of two computer players, recorded by the g++ Release server while the other replayers are
-# built, goes through four, each also with save and restore in the middle. The sanitizers' has
-# assertions on, and its libraries are those of step asan.
-step_replay() {
+# replays PRESET...: a match of two computer players, recorded by the g++ Release server, goes through the
+# replayers of these presets, each also with save and restore in the middle. The sanitizers' has
+# assertions on.
+replays() {
   local record=$LOGS/replay.sfr preset hash server_pid
   rm -f "$record"
   build/release/bin/space-foosball-server --port 0 --team0 computer --team1 computer --seed 7 --quiet \
     --seconds 20 --record "$record" &
   server_pid=$!
-  configure debug "$LOGS/debug-configure.log" -DSF_WERROR=ON -DSF_BUILD_TESTS=OFF -DSF_FIRMWARE=OFF
-  build debug "$LOGS/debug-build.log" foosball-replay
   sanitized_build asan-ubsan foosball-replay
   wait "$server_pid"
   : >"$LOGS/replay.hashes"
-  for preset in release debug clang asan-ubsan; do
+  for preset in "$@"; do
     replay_hash "$preset" "$record" >>"$LOGS/replay.hashes"
     replay_hash "$preset" "$record" --restore-at 10000 >>"$LOGS/replay.hashes"
   done
   cat "$LOGS/replay.hashes"
-  [[ $(wc -l <"$LOGS/replay.hashes") == 8 ]]
+  [[ $(wc -l <"$LOGS/replay.hashes") == $((2 * $#)) ]]
   hash=$(awk '{ print $NF }' "$LOGS/replay.hashes" | sort -u)
   [[ $hash =~ ^[0-9a-f]{16}$ ]] || { echo "the replays differ" && return 1; }
-  said "8 replays of one recording, hash $hash"
+  said "$((2 * $#)) replays of one recording, hash $hash"
+}
+step_replay() { replays release asan-ubsan; }
+step_replay_all() {
+  configure debug "$LOGS/debug-configure.log" -DSF_WERROR=ON -DSF_BUILD_TESTS=OFF -DSF_FIRMWARE=OFF
+  build debug "$LOGS/debug-build.log" foosball-replay
+  replays release debug clang asan-ubsan
 }
 
 # replay_hash PRESET FILE [options]: "PRESET options HASH"
