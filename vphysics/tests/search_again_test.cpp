@@ -180,7 +180,7 @@ TEST(FastBodies, WithoutRotationPassThroughNothing) {
 
 // Neither do bodies that rotate up to 1.7 rad in the step in which they arrive.
 TEST(FastBodies, WithRotationPassThroughNothing) {
-  const std::vector<Vec3> corners{{0, -2, -2}, {0, 2, -2}, {0, 2, 2}, {0, -2, 2}};
+  const std::vector<Vec3> corners{{0, -9, -9}, {0, 9, -9}, {0, 9, 9}, {0, -9, 9}};
   const std::vector<TriangleMesh::Triangle> triangles{{0, 1, 2}, {0, 2, 3}};
   MeshOptions options;
   options.two_sided = true;
@@ -189,7 +189,7 @@ TEST(FastBodies, WithRotationPassThroughNothing) {
   int passed = 0;
   for (const Shape& shape :
        {Shape(Capsule{0.02, 0.3}), Shape(Box{{0.3, 0.02, 0.02}}), Shape(Box{{0.1, 0.2, 0.01}})}) {
-    for (const Shape& wall : {Shape(Box{{0.01, 2, 2}}), Shape(sheet)}) {
+    for (const Shape& wall : {Shape(Box{{0.01, 9, 9}}), Shape(sheet)}) {
       for (const double speed : {10.0, 50.0, 200.0}) {
         for (int i = 0; i < 60; ++i) {
           World world(without_gravity());

@@ -9,9 +9,10 @@
 namespace vp {
 namespace {
 
-// In half extents: how far a body that others are swept against may move in the step, and how deep
-// an overlap at the end of the step is left to the contacts of the next one.
-constexpr double kSlowMotion = 0.5, kShallow = 0.5;
+// In half extents of the body: how far rotation moves the outermost point of a body that is swept;
+// how far a body that others are swept against may move; how deep an overlap at the end of the step
+// is left to the contacts of the next one.
+constexpr double kFastRotation = 0.75, kSlowMotion = 0.5, kShallow = 0.5;
 // Of two that touch at the start, poses at these angles [rad] and distances of one reach are
 // tested: a part of a body that enters another one is then still in it.
 constexpr double kSample = 0.4, kMaxSamples = 20.0;
@@ -30,8 +31,7 @@ class FastRotation {
     const Body& body = on_.bodies[index];
     if (body.lanes == 0 || body.motion != Motion::dynamic || !joins_sub_steps(body)) return false;
     const Displacement d = displacement_of(index);
-    return dot(d.w, d.w) > square(static_cast<double>(on_.searched[index].angle)) &&
-           in_range(d.v) && in_range(d.w);
+    return in_range(d.v) && in_range(d.w) && rotates_far(body, d.w);
   }
 
   // The fraction of its displacement at which it meets another body; 1 if it does not.
@@ -46,8 +46,9 @@ class FastRotation {
       if (is_surface(own.geometry) || !moves_slowly(other.body)) return;
       pose_colliders(on_.bodies[index], on_.colliders);
       pose_colliders(on_.bodies[other.body], on_.colliders);
-      fraction = std::min(fraction, impact_of(moving(own), moving(other), shallow(own, other),
-                                              on_.bodies[index].bounding_radius));
+      const Pair pair{moving(own), moving(other), kShallow * smaller_size(own, other),
+                      on_.bodies[index].bounding_radius};
+      fraction = std::min(fraction, impact_of(pair));
     });
     return fraction;
   }
@@ -61,8 +62,6 @@ class FastRotation {
   }
 
  private:
-  static double square(double x) { return x * x; }
-
   Displacement displacement_of(std::uint32_t index) const {
     const float* at = on_.rows[index + 1].displacement;
     const float* start = on_.start_displacements[index].data();
@@ -83,38 +82,53 @@ class FastRotation {
     return {&collider.geometry, collider.T, {reference_point(body), d.v, d.w}};
   }
 
-  static double shallow(const Collider& own, const Collider& other) {
-    return kShallow * smaller_size(own, other);
+  // Whether the rotation moves a corner of the body's bounds by more than a fraction of its
+  // smallest half extent.
+  static bool rotates_far(const Body& body, const Vec3& rotation) {
+    const Vec3 extent = 0.5 * (body.local.upper - body.local.lower),
+               centre = 0.5 * (body.local.upper + body.local.lower) - body.centre,
+               w = transposed_times(body.T.rotation(), rotation);
+    const double x = extent.x + std::fabs(centre.x), y = extent.y + std::fabs(centre.y),
+                 z = extent.z + std::fabs(centre.z);
+    const double wx = std::fabs(w.x), wy = std::fabs(w.y), wz = std::fabs(w.z);
+    const Vec3 shift{wy * z + wz * y, wz * x + wx * z, wx * y + wy * x};
+    return norm(shift) > kFastRotation * std::min({extent.x, extent.y, extent.z});
   }
 
+  // Two colliders, their motions over the step, the depth of an overlap that is left to the
+  // contacts and the distance of the own body's farthest point from its centre.
+  struct Pair {
+    collide::MovingShape own, other;
+    double shallow, reach;
+  };
+
   // The closest points at a fraction of the motion, if they are within the limit.
-  bool nearest_at(double fraction, double limit, const collide::MovingShape& own,
-                  const collide::MovingShape& other, collide::ClosestPoints& points) const {
+  bool nearest_at(double fraction, double limit, const Pair& pair,
+                  collide::ClosestPoints& points) const {
     collide::NearestParts nearest;
-    if (!nearest_parts(*own.shape, pose_at(own, fraction), *other.shape, pose_at(other, fraction),
-                       limit, on_.scratch, nearest))
+    if (!nearest_parts(*pair.own.shape, pose_at(pair.own, fraction), *pair.other.shape,
+                       pose_at(pair.other, fraction), limit, on_.scratch, nearest))
       return false;
     points = nearest.points;
     return true;
   }
-  bool overlaps_deeply(double fraction, double shallow, const collide::MovingShape& own,
-                       const collide::MovingShape& other) const {
+  bool overlaps_deeply(double fraction, double shallow, const Pair& pair) const {
     collide::ClosestPoints points;
-    return nearest_at(fraction, 0.0, own, other, points) && points.distance < -shallow;
+    return nearest_at(fraction, 0.0, pair, points) && points.distance < -shallow;
   }
 
-  double impact_of(const collide::MovingShape& own, const collide::MovingShape& other,
-                   double shallow, double reach) const {
+  double impact_of(const Pair& pair) const {
     // Stops within the slop, so that the next step has the contact.
     const double target = 0.5 * on_.slop, tolerance = 0.25 * on_.slop;
     collide::ClosestPoints start, end;
-    if (nearest_at(0.0, target + tolerance, own, other, start))
-      return end_of_shallow(own, other, shallow + std::max(0.0, -start.distance), reach);
+    if (nearest_at(0.0, target + tolerance, pair, start))
+      return end_of_shallow(pair, pair.shallow + std::max(0.0, -start.distance));
     collide::PartsImpact impact{};
-    if (!first_impact({own, other, 1.0, tolerance}, target, on_.scratch, impact)) return 1.0;
+    if (!first_impact({pair.own, pair.other, 1.0, tolerance}, target, on_.scratch, impact))
+      return 1.0;
     // A shallow overlap on the same side is left to the contacts.
-    const bool left_to_contacts = nearest_at(1.0, on_.slop, own, other, end) &&
-                                  end.distance >= -shallow &&
+    const bool left_to_contacts = nearest_at(1.0, on_.slop, pair, end) &&
+                                  end.distance >= -pair.shallow &&
                                   dot(end.normal, impact.points.normal) > 0.0;
     return left_to_contacts ? 1.0 : impact.time;
   }
@@ -122,27 +136,24 @@ class FastRotation {
   // Of two that touch at the start: the fraction up to which they do not overlap deeply. Poses
   // along the motion are tested. If one overlaps deeply, the motion advances only as far as the
   // overlap cannot become deep at the speed of the fastest point.
-  double end_of_shallow(const collide::MovingShape& own, const collide::MovingShape& other,
-                        double shallow, double reach) const {
-    const double rotation = norm(own.motion.w), shift = norm(own.motion.v - other.motion.v);
+  double end_of_shallow(const Pair& pair, double shallow) const {
+    const double rotation = norm(pair.own.motion.w),
+                 shift = norm(pair.own.motion.v - pair.other.motion.v);
     const int samples =
-        1 + static_cast<int>(std::min(rotation / kSample + shift / reach, kMaxSamples));
+        1 + static_cast<int>(std::min(rotation / kSample + shift / pair.reach, kMaxSamples));
     int k = 1;
-    while (k <= samples && !overlaps_deeply(static_cast<double>(k) / samples, shallow, own, other))
-      ++k;
+    while (k <= samples && !overlaps_deeply(static_cast<double>(k) / samples, shallow, pair)) ++k;
     if (k > samples) return 1.0;
-    const double end = static_cast<double>(k) / samples;
-    const double speed = shift + (rotation + norm(other.motion.w)) * reach;
+    const double speed = shift + (rotation + norm(pair.other.motion.w)) * pair.reach;
     double fraction = static_cast<double>(k - 1) / samples;
     for (int i = 0; i < kMaxAdvances; ++i) {
       collide::ClosestPoints points;
       const double distance =
-          nearest_at(fraction, shallow, own, other, points) ? points.distance : shallow;
+          nearest_at(fraction, shallow, pair, points) ? points.distance : shallow;
       if (distance <= -0.5 * shallow) break;
       fraction += (distance + shallow) / speed;
-      if (fraction >= end) return end;
     }
-    return fraction;
+    return std::min(fraction, static_cast<double>(k) / samples);
   }
 
   const FastRotationContext& on_;

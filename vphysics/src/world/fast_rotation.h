@@ -15,7 +15,6 @@
 
 #include "collide/shape_query.h"
 #include "solve/body_row.h"
-#include "solve/passes.h"
 #include "world/contact_store.h"
 
 namespace vp {
@@ -27,7 +26,6 @@ struct FastRotationContext {
   std::span<const std::uint32_t> awake_bodies;
   std::span<solve::BodyRow> rows;                             // row i + 1 is of body i
   std::span<const std::array<float, 6>> start_displacements;  // of each body
-  std::span<const solve::SearchedMotion> searched;            // of each body
   double slop;                                                // contacts within it rest [m]
   collide::PartsScratch& scratch;
 };
