@@ -13,6 +13,8 @@ namespace {
 // how far a body that others are swept against may move; how deep an overlap at the end of the step
 // is left to the contacts of the next one.
 constexpr double kFastRotation = 0.75, kSlowMotion = 0.5, kShallow = 0.5;
+// Smaller rotations are not looked at [rad].
+constexpr double kMinRotation = 0.005;
 // Of two that touch at the start, poses at these angles [rad] and distances of one reach are
 // tested: a part of a body that enters another one is then still in it.
 constexpr double kSample = 0.4, kMaxSamples = 20.0;
@@ -28,9 +30,11 @@ class FastRotation {
   explicit FastRotation(const FastRotationContext& context) : on_(context) {}
 
   bool rotates_fast(std::uint32_t index) const {
+    const Displacement d = displacement_of(index);
+    if (!(dot(d.w, d.w) > kMinRotation * kMinRotation)) return false;
     const Body& body = on_.bodies[index];
     if (body.lanes == 0 || body.motion != Motion::dynamic || !joins_sub_steps(body)) return false;
-    const Displacement d = displacement_of(index);
+    if (body.first_joint != kNone) return false;  // alone it would leave its joints
     return in_range(d.v) && in_range(d.w) && rotates_far(body, d.w);
   }
 
@@ -161,16 +165,21 @@ class FastRotation {
 
 }  // namespace
 
-void stop_fast_rotating_bodies(const FastRotationContext& context,
-                               std::vector<ShortenedMotion>& found) {
+void stop_fast_rotating_bodies(const FastRotationContext& context, FastRotationScratch& scratch) {
   const FastRotation fast(context);
-  found.clear();
-  for (const std::uint32_t i : context.awake_bodies) {
-    if (!fast.rotates_fast(i)) continue;
-    const double fraction = fast.fraction_of(i);
-    if (fraction < 1.0) found.push_back({i, static_cast<float>(fraction)});
+  const std::span<const std::uint32_t> awake = context.awake_bodies;
+  scratch.rotates_fast.resize(awake.size());
+  context.workers.in_parallel(awake.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k)
+      scratch.rotates_fast[k] = fast.rotates_fast(awake[k]) ? 1 : 0;
+  });
+  scratch.shortened.clear();
+  for (std::size_t k = 0; k < awake.size(); ++k) {
+    if (scratch.rotates_fast[k] == 0) continue;
+    const double fraction = fast.fraction_of(awake[k]);
+    if (fraction < 1.0) scratch.shortened.push_back({awake[k], static_cast<float>(fraction)});
   }
-  for (const ShortenedMotion& motion : found) fast.shorten(motion);
+  for (const ShortenedMotion& motion : scratch.shortened) fast.shorten(motion);
 }
 
 }  // namespace vp

@@ -5,7 +5,8 @@
 // and it may pass. So, after the sub-steps, such a body is swept from its start to its end pose
 // against each body that its contacts name and that does not move far itself. If it has passed
 // through one or overlaps it deeply at the end, its motion ends at the first impact. Its velocity
-// remains: the next step solves the contact. Other fast bodies need BodyDesc::continuous.
+// remains: the next step solves the contact. Bodies with joints are not stopped. These and bodies
+// that meet others that also move far need BodyDesc::continuous.
 #pragma once
 
 #include <array>
@@ -16,6 +17,7 @@
 #include "collide/shape_query.h"
 #include "solve/body_row.h"
 #include "world/contact_store.h"
+#include "world/parallel.h"
 
 namespace vp {
 
@@ -27,6 +29,7 @@ struct FastRotationContext {
   std::span<solve::BodyRow> rows;                             // row i + 1 is of body i
   std::span<const std::array<float, 6>> start_displacements;  // of each body
   double slop;                                                // contacts within it rest [m]
+  const Workers& workers;
   collide::PartsScratch& scratch;
 };
 
@@ -35,9 +38,13 @@ struct ShortenedMotion {
   float fraction;  // of its displacement in the step
 };
 
+struct FastRotationScratch {
+  std::vector<std::uint8_t> rotates_fast;  // of each awake body
+  std::vector<ShortenedMotion> shortened;
+};
+
 // Precondition: the bodies have their poses at the start of the step, the rows their displacements
-// at its end. Shortens displacements, and sets Body::shortened. found: scratch.
-void stop_fast_rotating_bodies(const FastRotationContext& context,
-                               std::vector<ShortenedMotion>& found);
+// at its end. Shortens displacements, and sets Body::shortened.
+void stop_fast_rotating_bodies(const FastRotationContext& context, FastRotationScratch& scratch);
 
 }  // namespace vp

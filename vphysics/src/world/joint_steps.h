@@ -53,7 +53,7 @@ struct SubStepScratch {
   std::vector<std::uint8_t> deviates;
   std::vector<std::uint32_t> deviating;
   std::vector<BodyAtStart> advanced;
-  std::vector<ShortenedMotion> shortened;  // scratch of stop_fast_rotating_bodies()
+  FastRotationScratch fast_rotation;
   // Of each awake body; 1: its row alone does not advance it.
   std::vector<std::uint8_t> awake_body_changed;
   JointScratch joints;
