@@ -76,6 +76,7 @@ class FastRotation {
     const Body& body = on_.bodies[index];
     if (is_still(body)) return true;
     if (!joins_sub_steps(body)) return false;
+    if (body.motion == Motion::kinematic) return true;  // it does not yield
     const Displacement d = displacement_of(index);
     return norm(d.v) + body.bounding_radius * norm(d.w) <= kSlowMotion * body.min_size;
   }
