@@ -122,14 +122,28 @@ double rotation_bound(const MovingShape& m, double radius, double duration) {
   return std::min(norm(m.motion.w) * duration, 2.0) * radius;
 }
 
-// The volume that the first shape sweeps, in the second's frame.
+// Upper bound of the distance of a point that rotates by `angle` about a centre within `radius`
+// from the chord of its path, at the same time: half of the squared angle over four, or the
+// diameter.
+double arc_height(double radius, double angle) {
+  return radius * std::min(0.125 * angle * angle, 2.0);
+}
+
+// The volume that the first shape sweeps, in the second's frame: bounds that move as their centre
+// does from start to end, enlarged as far as they grow and the paths deviate from their chords.
 Sweep sweep_of(const ImpactQuery& q, double more) {
-  const Vec3 offset = q.duration * (q.a.motion.v - q.b.motion.v);
-  const double radius = bounding_radius_of(q.a);
-  const double far = norm(q.a.motion.x - q.b.motion.x) + norm(offset) + radius;
-  const double grow =
-      more + rotation_bound(q.a, radius, q.duration) + rotation_bound(q.b, far, q.duration);
-  return {grown(bounds_of(*q.a.shape, relative_pose(q.b.T, q.a.T)), grow), q.b.T.unrotate(offset)};
+  MovingShape a = q.a;
+  a.motion.v -= q.b.motion.v;
+  const Bounds start = bounds_of(*a.shape, relative_pose(q.b.T, a.T)),
+               end = bounds_of(*a.shape, relative_pose(q.b.T, pose_at(a, q.duration)));
+  const Vec3 displacement = 0.5 * (end.lower + end.upper - start.lower - start.upper);
+  const Vec3 growth = 0.5 * (end.upper - end.lower - start.upper + start.lower);
+  const double radius = bounding_radius_of(a);
+  const double far = norm(a.motion.x - q.b.motion.x) + norm(q.duration * a.motion.v) + radius;
+  const Bounds all = grown(start, more + arc_height(radius, norm(a.motion.w) * q.duration) +
+                                      rotation_bound(q.b, far, q.duration));
+  const Vec3 side{std::max(growth.x, 0.0), std::max(growth.y, 0.0), std::max(growth.z, 0.0)};
+  return {{all.lower - side, all.upper + side}, displacement};
 }
 
 class ImpactFinder {

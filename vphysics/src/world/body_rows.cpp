@@ -96,7 +96,7 @@ Mat3 rotated(const Mat3& R, const Vec3& t) {
 }
 
 bool BodyRows::load(Body& body, std::uint32_t index) const {
-  body.untouched = false;
+  body.untouched = body.shortened = false;
   solve::BodyRow& row = rows[index + 1];
   const bool pushed = body.motion == Motion::dynamic;
   put(row.velocity, body.v);
@@ -178,7 +178,7 @@ void BodyRows::copy_to_body(Body& body, std::uint32_t index) const {
 // rotates freely, in double precision, and the row's rotation is set to that.
 bool BodyRows::leave_untouched(Body& body, std::uint32_t index) const {
   solve::BodyRow& row = rows[index + 1];
-  if (!body.tumbles() || body.first_joint != kNone || body.on_link) return false;
+  if (!body.tumbles() || body.first_joint != kNone || body.on_link || body.shortened) return false;
   if (loads.is_torqued(body)) return false;
   if (hardly_rotates(body.w, dt)) return false;
   const float h = static_cast<float>(dt / sub_steps);

@@ -10,6 +10,7 @@
 #include "solve/body_row.h"
 #include "solve/large_pages.h"
 #include "world/body.h"
+#include "world/fast_rotation.h"
 #include "world/joint.h"
 #include "world/joint_runs.h"
 #include "world/parallel.h"
@@ -52,6 +53,7 @@ struct SubStepScratch {
   std::vector<std::uint8_t> deviates;
   std::vector<std::uint32_t> deviating;
   std::vector<BodyAtStart> advanced;
+  FastRotationScratch fast_rotation;
   // Of each awake body; 1: its row alone does not advance it.
   std::vector<std::uint8_t> awake_body_changed;
   JointScratch joints;

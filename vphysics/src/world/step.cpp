@@ -79,6 +79,8 @@ void World::Impl::begin_step(double dt) {
   sub_step.searched.resize(n);
   sub_step.deviating.reserve(n);
   sub_step.deviates.reserve(n);
+  sub_step.fast_rotation.rotates_fast.reserve(n);
+  sub_step.fast_rotation.shortened.reserve(64 + n / 8);  // grows, as the next
   sub_step.advanced.reserve(64 + n / 8);  // grows in a step in which more bodies deviate
   impacts.row_joints.clear();
   if (has_impact_stage()) begin_impact_stage(dt);
@@ -415,6 +417,10 @@ void World::Impl::run(double dt) {
   sub_step.awake_body_changed.resize(lists.awake_bodies.size());
   counters.awake = static_cast<std::uint32_t>(lists.awake_bodies.size());
   run_sub_steps(dt);
+  stop_fast_rotating_bodies(
+      {bodies, colliders, contact_store, lists.awake_bodies, body_rows,
+       sub_step.start_displacements, desc.contact_slop, workers, narrow.parts_scratch},
+      sub_step.fast_rotation);
   if (!has_impact_stage()) {
     const auto stage = in(Stage::advance);
     advance_all(dt);
