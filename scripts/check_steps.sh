@@ -287,7 +287,7 @@ PYTHON
   has_said '^verdict +the replay differs .* tick 1500:'
   has_said '^written .*/differs.png$'
   expect 4 ./play --headless --replay "$1/cut.sfr" --screenshot "$1/cut.png"
-  has_said '^verdict .*cut.sfr stops early .* match that was played so far'
+  has_said '^verdict .*cut.sfr stops early .* was played so far'
   has_said '^written .*/cut.png$'
 }
 

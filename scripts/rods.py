@@ -142,7 +142,7 @@ def open_path(scheme, path):
 def open_address(address):
     scheme, _, path = address.partition(':')
     if scheme not in ('serial', 'hid', 'file') or not path:
-        refuse(f'"{address}" names no device: write serial:/dev/ttyACM0, hid:/dev/hidraw0 or file:FILE.')
+        refuse(f'"{address}" is not a device: write serial:/dev/ttyACM0, hid:/dev/hidraw0 or file:FILE.')
     descriptor = open_path(scheme, path)
     if scheme == 'serial':
         speed = termios.B1000000
@@ -292,14 +292,14 @@ def number_within(least, most, either_sign=False):
         if least <= (abs(value) if either_sign else value) <= most:
             return value
         sign = ', of either sign' if either_sign else ''
-        raise argparse.ArgumentTypeError(f'"{text}" is no number from {least:g} to {most:g}{sign}')
+        raise argparse.ArgumentTypeError(f'"{text}" is not a number from {least:g} to {most:g}{sign}')
     return parse
 
 
 def rod_number(text):
     if text in map(str, range(1, RODS + 1)):
         return int(text)
-    raise argparse.ArgumentTypeError(f'"{text}" is no rod: they are 1, at team 0\'s goal, to {RODS}')
+    raise argparse.ArgumentTypeError(f'"{text}" is not a rod: they are 1, at team 0\'s goal, to {RODS}')
 
 
 def counts_pair(text):
@@ -401,14 +401,14 @@ def run(arguments):
     verbs = cli.add_subparsers(required=True, metavar='counts, calibration or simulate')
     counts = verbs.add_parser('counts', help='live counts of a controller')
     counts.add_argument('address')
-    counts.add_argument('--seconds', type=number_within(0, 1e6), default=0, help='end after so many')
+    counts.add_argument('--seconds', type=number_within(0, 1e6), default=0, help='end after this time, in seconds')
     counts.set_defaults(run=show_counts)
     calibration = verbs.add_parser('calibration', help='write a calibration file')
     calibration.add_argument('file')
     calibration.add_argument('--diameter-mm', type=number_within(5, 60), default=16, help='of the rods (16)')
     calibration.add_argument('--counts-per-mm', type=number_within(1, 472), default=8, help='of the sensors (8)')
     calibration.add_argument('--rod', type=rod_number, metavar='1..8',
-                             help="only this one, in the file that is there; 1 is at team 0's goal")
+                             help="only this one, in the existing file; 1 is at team 0's goal")
     calibration.add_argument('--stroke', type=counts_pair, metavar='N,M', help='slide and spin counts of all strokes')
     calibration.add_argument('--travel-mm', type=number_within(1, 1e5, True), help='of all these strokes together')
     calibration.add_argument('--turn', type=counts_pair, metavar='P,Q', help='slide and spin counts of all turns')

@@ -152,10 +152,10 @@ test('counts of a rod that is moved are those of the firmware, however the line 
   for (const piece of [7, 48, 1000]) {
     const { port, page } = await connected();
     assert.deepEqual([port.opened.baudRate, page.id('send').disabled], [1000000, true]);
-    assert.match(page.id('state').textContent, /its first frame awaited/);
+    assert.match(page.id('state').textContent, /waiting for its first frame/);
     await hear(port, recording, piece);
     page.later(1000);
-    assert.equal(page.id('state').textContent, 'The ATmega2560 at its serial line is connected.');
+    assert.equal(page.id('state').textContent, 'The ATmega2560 at its serial port is connected.');
     assert.equal(page.id('motors').children[0].disabled, false);
     page.rods.forEach(([, state, slide, spin], rod) => {
       assert.equal(state, 'answers');
@@ -266,7 +266,7 @@ test('settings and pulses go out as COBS of the bytes that the firmware takes', 
   assert.deepEqual(unstuffed(port.written[2]), tell(2), 'whether it has kept them');
   assert.equal(page.id('silent').disabled, true, 'about to be filled');
   await answer(port, 2, { brightness: 64, switches: 1 });
-  assert.equal(page.id('sent').textContent, 'Kept.');
+  assert.equal(page.id('sent').textContent, 'Saved.');
   page.id('motors').children[5].onclick();
   page.id('motors').children[5].onclick();
   await settled();
@@ -284,7 +284,7 @@ test('settings that were not taken are said, and the form shows what the control
     page.id('silent').checked = true;
     await page.id('send').onclick();
     await answer(port, 2, { ...kept, ...other });
-    assert.match(page.id('sent').textContent, is ? /^Kept/ : /^It has not taken them/, JSON.stringify(other));
+    assert.match(page.id('sent').textContent, is ? /^Saved/ : /^The controller did not accept them/, JSON.stringify(other));
     assert.equal(page.id('brightness').value, other.brightness ?? 200);
   }
 });
@@ -308,7 +308,7 @@ test('a question that is lost is put again; firmware of before, which has no ans
   page.later(50);
   await settled();
   assert.equal(port.written.length, 3);
-  assert.match(page.id('told').textContent, /^It does not tell its settings/);
+  assert.match(page.id('told').textContent, /^It cannot report its settings/);
   assert.deepEqual(['send', 'brightness', 'resolution', 'gamepads', 'measure'].map((id) => page.id(id).disabled),
     [false, false, true, true, true]);
   await page.id('send').onclick();
@@ -336,7 +336,7 @@ test('an answer that is not to the last question changes nothing', async () => {
   assert.deepEqual([page.id('brightness').value, page.id('sent').textContent], ['200', 'Sent.']);
   await answer(port, 2, { brightness: 200 });
   await answer(port, 2, { brightness: 77 });
-  assert.deepEqual([page.id('brightness').value, page.id('sent').textContent], [200, 'Kept.']);
+  assert.deepEqual([page.id('brightness').value, page.id('sent').textContent], [200, 'Saved.']);
   page.later(50);
   assert.match(page.id('faults').textContent, /not a frame 0,/);
 });
@@ -365,7 +365,7 @@ test('of a Pico all is filled, sent and compared, and measuring leaves the form 
   assert.deepEqual(device.written[1].slice(1, 17), sealed([1, 3, 0, 0, 0, 0, 0, 0, 60, 64, 0x03, 1, 0, 0]));
   const kept = { abilities: 3, resolution: 60, ps2: 3, switches: 1 };
   device.report(settingsReport(2, kept));
-  assert.match(page.id('sent').textContent, /^Kept\. Sensors/);
+  assert.match(page.id('sent').textContent, /^Saved\. Changed sensors/);
   page.id('brightness').value = '200';  // not kept yet
   await page.id('measure').onclick();
   let frame = unstuffed([...bytes(kGolden)]);
@@ -376,7 +376,7 @@ test('of a Pico all is filled, sent and compared, and measuring leaves the form 
   assert.deepEqual(device.written[3].slice(1, 17), sealed([1, 4, 0, 0, 5, 1, 0, 0, 44, 1, 100, 0, 0, 0]));
   assert.match(page.id('measured').textContent, /^Sent: rods 6/);
   device.report(settingsReport(3, { ...kept, stick: [5, -300, 100] }));
-  assert.deepEqual([page.id('measured').textContent, page.id('brightness').value], ['Kept.', '200']);
+  assert.deepEqual([page.id('measured').textContent, page.id('brightness').value], ['Saved.', '200']);
   assert.match(page.id('scales').textContent, /rod 6 300 along, 100 around/);
 });
 
@@ -415,7 +415,7 @@ test('a controller that takes no commands is not asked', async () => {
   page.later(50);
   await settled();
   assert.deepEqual([device.written.length, page.id('told').textContent, page.id('send').disabled],
-    [0, 'This controller takes no settings.', true]);
+    [0, 'This controller has no settings.', true]);
 });
 
 // CRC-16/CCITT-FALSE as in wire/tests: of "123456789" 29B1h.
@@ -469,7 +469,7 @@ test('troubles are said: in use, silent, no frames, unplugged, no way to control
   assert.match(page.id('state').textContent, /sends nothing/);
   await hear(port, bytes('00' + kBroken));
   page.later(50);
-  assert.match(page.id('state').textContent, /sends what is no frame/);
+  assert.match(page.id('state').textContent, /sends no valid frames/);
   await hear(port, bytes(kGolden));
   page.later(50);
   assert.equal(page.id('state').className, 'good');

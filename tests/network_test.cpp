@@ -189,7 +189,7 @@ TEST(Network, AWrongPasswordIsSaidAndLetsNobodyIn) {
   options.trust_this_machine = true;  // without any password
   const auto mallory = started(options);
   ASSERT_TRUE(eventually([&] { return mallory->status().link == Link::refused; }));
-  EXPECT_NE(mallory->status().detail.find("password is wanted"), std::string::npos);
+  EXPECT_NE(mallory->status().detail.find("password is needed"), std::string::npos);
 }
 
 TEST(Network, AHostFromAfarIsHost) {

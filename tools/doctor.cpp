@@ -22,34 +22,35 @@ std::string without_stop(std::string sentence) {
 
 int main(int argc, char** argv) {
   CLI::App cli{
-      "Says what is connected that can move rods: controllers, mice, gamepads; listens to them\n"
-      "while nobody touches the rods; and says what to do about every trouble. It opens the "
-      "serial\n"
-      "lines of boards that our firmware is for, and no other unless --device names it.\n\n"
-      "Exit codes: 0 all is well; 1 there are troubles; 2 a bad option.",
+      "Lists the connected devices that can move rods: controllers, mice, gamepads; listens to\n"
+      "them while nobody touches the rods; and prints a remedy for every fault. It opens the\n"
+      "serial ports of boards that our firmware is for, and no other unless --device names it.\n\n"
+      "Exit codes: 0 no fault; 1 faults found; 2 a bad option.",
       "space-foosball-doctor"};
   cabinet::DoctorOptions options;
   std::vector<std::string> devices;
   bool json = false;
   cli.add_flag("--json", json, "print one JSON object");
   cli.add_option("--device", devices,
-                 "look at this one too: serial:/dev/ttyUSB0, hid:/dev/hidraw0 or "
+                 "also examine this device: serial:/dev/ttyUSB0, hid:/dev/hidraw0 or "
                  "evdev:/dev/input/event5; may be given more than once")
       ->check([](const std::string& text) {
         const auto address = cabinet::parse_doctor_address(text);
         return address ? std::string() : without_stop(address.error());
       });
-  cli.add_option("--calibration", options.calibration,
-                 "of the cabinet's sensors; without it, the one that is kept for each controller");
+  cli.add_option(
+      "--calibration", options.calibration,
+      "calibration of the cabinet's sensors; default: the one stored for each controller");
   cli.add_option("--seconds", options.seconds,
-                 "to listen to each controller, and then to all mice and gamepads together")
+                 "time to listen to each controller, and then to all mice and gamepads together, "
+                 "in seconds")
       ->check(CLI::Range(0.1, 3600.0))
       ->check(server::check_not_nan)
       ->capture_default_str();
-  cli.add_option("--dev", options.dev, "where device nodes are")
+  cli.add_option("--dev", options.dev, "folder of the device files")
       ->check(CLI::ExistingDirectory)
       ->capture_default_str();
-  cli.add_option("--sys", options.sys, "where the kernel describes them")
+  cli.add_option("--sys", options.sys, "folder in which the kernel describes them")
       ->check(CLI::ExistingDirectory)
       ->capture_default_str();
   try {

@@ -64,16 +64,17 @@ int replay(const Options& options, server::Playback& playback, foosball::Match& 
 
 int main(int argc, char** argv) {
   CLI::App cli{
-      "Plays a recorded match without a screen and compares it with what was played.\n\n"
+      "Replays a recorded match without a screen and compares it with the original.\n\n"
       "Exit codes: 0 the same; 1 it differs; 2 a bad option or file; 4 the same, but the "
       "recording\n"
       "stops early.",
       "foosball-replay"};
   Options options;
   cli.add_option("FILE", options.file, "a journal, as --record writes it")->required();
-  cli.add_option("--until", options.until, "stop after so many ticks")->check(CLI::PositiveNumber);
+  cli.add_option("--until", options.until, "stop after this number of ticks")
+      ->check(CLI::PositiveNumber);
   cli.add_option("--restore-at", options.restore_at,
-                 "after so many ticks, save the match and go on in another one");
+                 "after this number of ticks, save the match and continue in another one");
   try {
     cli.parse(argc, argv);
   } catch (const CLI::CallForHelp&) {

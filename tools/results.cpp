@@ -30,7 +30,7 @@ int print(const std::string& text) {
 int list(const Options& options, const std::vector<results::MatchResult>& matches) {
   if (options.format == "csv") return print(results::matches_csv(matches));
   if (options.format == "json") return print(results::matches_json(matches));
-  if (matches.empty()) return print("no match that was won is in " + options.file + "\n");
+  if (matches.empty()) return print("no match with a winner in " + options.file + "\n");
   return print(results::matches_table(matches));
 }
 
@@ -39,7 +39,8 @@ int write(const std::string& path, const std::string& text) {
   file << text;
   file.close();
   return file ? server::kExitOk
-              : fail(server::kExitFailed, "cannot write " + path + "; is there space, may it be?");
+              : fail(server::kExitFailed,
+                     "cannot write " + path + "; check the disk space and the permissions");
 }
 
 // Prints the summary, or in CSV the answers.
@@ -84,12 +85,15 @@ int main(int argc, char** argv) {
     return command;
   };
   CLI::App* matches = common(cli.add_subcommand("matches", "finished matches, the newest last"));
-  matches->add_option("--newest", options.newest, "only so many")->check(CLI::Range(1, 1'000'000));
-  matches->add_option("--player", options.player, "only those in which this player was");
+  matches->add_option("--newest", options.newest, "only this number of rows")
+      ->check(CLI::Range(1, 1'000'000));
+  matches->add_option("--player", options.player, "only those of this player");
   CLI::App* fame =
       common(cli.add_subcommand("fame", "the hall of fame: players by their rating (Elo)"));
-  fame->add_option("--top", options.newest, "only so many")->check(CLI::Range(1, 1'000'000));
-  fame->add_option("--least", options.min_matches, "only who has played so many matches (1)")
+  fame->add_option("--top", options.newest, "only this number of rows")
+      ->check(CLI::Range(1, 1'000'000));
+  fame->add_option("--least", options.min_matches,
+                   "only players with at least this number of matches (default 1)")
       ->check(CLI::Range(1, 1'000'000));
   CLI::App* asked = common(cli.add_subcommand(
       "questionnaire",

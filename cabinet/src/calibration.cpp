@@ -74,7 +74,7 @@ Failure check_rod(const RodCalibration& rod) {
            "motions and calibrate it again";
   }
   if (slide < kMinMetres || slide > kMaxMetres || arc < kMinMetres || arc > kMaxMetres) {
-    return "has a scale that no sensor has: " + millimetres(slide) + " along the rod and " +
+    return "has an impossible scale: " + millimetres(slide) + " along the rod and " +
            millimetres(arc) + " around it a count, where " + millimetres(kMinMetres) + " to " +
            millimetres(kMaxMetres) +
            " are possible; write metres and radians per count, as in "
@@ -92,9 +92,8 @@ Failure check_rod(const RodCalibration& rod) {
   if (rod.index &&
       !(std::abs(rod.index->angle) <= 2 * M_PI && rod.index->width >= kMinMark &&
         rod.index->width <= kMaxMark && std::abs(rod.index->lag) <= rod.index->width)) {
-    return "has an index mark that no magnet has: its middle within a turn, 0.01 to 1.6 radians "
-           "wide "
-           "and lagging by no more than that; calibrate it again, or leave the mark out";
+    return "has an impossible index mark: its centre must be within a turn, its width 0.01 to 1.6 "
+           "radians, its lag at most its width; calibrate it again, or omit the mark";
   }
   return {};
 }
@@ -223,7 +222,7 @@ tl::expected<std::string, std::string> read_text(const std::string& path) {
   struct stat about {};
   if (file.fd < 0 || fstat(file.fd, &about) != 0) {
     return tl::unexpected(sentence(
-        path, "can not be opened (" + system_error() +
+        path, "cannot be opened (" + system_error() +
                   "); give an existing file, or copy cabinet/calibration.example.json there"));
   }
   if (!S_ISREG(about.st_mode)) return tl::unexpected(sentence(path, "is not a file; give one"));
@@ -233,7 +232,7 @@ tl::expected<std::string, std::string> read_text(const std::string& path) {
     const ssize_t got = ::read(file.fd, text.data() + size, text.size() - size);
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) {
-      return tl::unexpected(sentence(path, "can not be read (" + system_error() + "); try again"));
+      return tl::unexpected(sentence(path, "cannot be read (" + system_error() + "); try again"));
     }
     if (got == 0) break;
     size += static_cast<std::size_t>(got);
@@ -346,7 +345,7 @@ tl::expected<void, std::string> save_calibration(const Calibration& calibration,
   const std::string why = system_error();
   ::unlink(beside.c_str());
   return tl::unexpected(
-      sentence(path, "can not be written (" + why + "); give a folder you may write to"));
+      sentence(path, "cannot be written (" + why + "); give a folder you may write to"));
 }
 
 }  // namespace cabinet

@@ -37,9 +37,9 @@ tl::expected<Address, std::string> parse_address(const std::string& text) {
     if (scheme == "hid") return Address{Scheme::hid, path};
     if (scheme == "file") return Address{Scheme::file, path};
   }
-  return tl::unexpected("\"" + text +
-                        "\" names no device: write serial:/dev/ttyACM0, hid:/dev/hidraw0 or "
-                        "file:recording.bin.");
+  return tl::unexpected(
+      "\"" + text +
+      "\" is not a device: write serial:/dev/ttyACM0, hid:/dev/hidraw0 or file:recording.bin.");
 }
 
 // Empty, or the error sentence. A device may be connected later, but a missing recording is an

@@ -191,7 +191,7 @@ tl::expected<DoctorAddress, std::string> parse_doctor_address(const std::string&
   const bool serial = scheme == "serial";
   if (colon == std::string::npos || colon + 1 == text.size() || (!serial && scheme != "hid"))
     return tl::unexpected("\"" + text +
-                          "\" names no device: write serial:/dev/ttyACM0, hid:/dev/hidraw0 or "
+                          "\" is not a device: write serial:/dev/ttyACM0, hid:/dev/hidraw0 or "
                           "evdev:/dev/input/event5.");
   return DoctorAddress{serial ? DeviceKind::serial_controller : DeviceKind::hid_controller,
                        text.substr(colon + 1)};

@@ -47,30 +47,30 @@ KindWords words_of(DeviceKind kind) {
 Trouble not_readable(const FoundDevice& device) {
   const std::string what = words_of(device.kind).named;
   const std::string sentence =
-      fmt::format("{} may not be read: {}", what, std::strerror(device.error));
+      fmt::format("{} cannot be read: {}", what, std::strerror(device.error));
   switch (device.error) {
     case EACCES:
     case EPERM:
       if (device.kind == DeviceKind::serial_controller)
         return {device.path, sentence,
-                "join the group of the line (sudo usermod -aG dialout $USER) and log in again"};
+                "join the group of the port (sudo usermod -aG dialout $USER) and log in again"};
       return {device.path, sentence,
               "install cabinet/70-space-foosball.rules and plug it in again, or join group input "
               "and log in again"};
     case EBUSY:
       return {device.path, what + " is in use",
-              "end the server, or the other program, that has it"};
+              "end the server, or the other program, that uses it"};
     case ENOENT:
     case ENOTDIR:
       if (device.named)
-        return {device.path, what + " is not there",
+        return {device.path, what + " is not connected",
                 "plug it in, or name it as \"ls /dev/ttyACM* /dev/ttyUSB* /dev/hidraw* "
                 "/dev/input/event*\" has it"};
-      return {device.path, what + " is known to the kernel but has no node",
+      return {device.path, what + " is known to the kernel but has no device file",
               "start udev; in a container pass the device in"};
     case ENOTTY:
       return {device.path, std::string("this is no ") + words_of(device.kind).a_class,
-              "name one that is; without --device those are listed that are connected"};
+              "give one that is; without --device, all connected devices are listed"};
     default:
       return {device.path, sentence, "plug it in again, into another socket or with another cable"};
   }
@@ -84,14 +84,14 @@ void judge_frames(const FoundDevice& device, std::vector<Trouble>& troubles) {
   const double rate = frames_per_s(device);
   const double min = device.kind == DeviceKind::hid_controller ? kHidFrames : kSerialFrames;
   if (rate < min)
-    add(fmt::format("{:.0f} frames a second come, of {:.0f}", rate, min / 0.9),
+    add(fmt::format("{:.0f} frames a second arrive, of {:.0f}", rate, min / 0.9),
         "plug it into the machine itself, not into a hub, and flash the firmware of this version");
   if (c.lost * 1000 > c.frames)
     add(fmt::format("{} frames of {} were lost", c.lost, c.frames + c.lost),
-        "take another cable, and another socket than a disk's or a camera's");
+        "use another cable, and a port that no disk or camera shares");
   if (c.bad > 0)
-    add(fmt::format("{} pieces of what came are no frames", c.bad),
-        "take a shorter cable, away from motors and mains; check that the firmware is ours");
+    add(fmt::format("{} received pieces are not frames", c.bad),
+        "use a shorter cable, away from motors and mains; check that the firmware is ours");
   if (c.line_errors > 0)
     add(fmt::format("{} errors on the lines between sensors and controller", c.line_errors),
         "shorten the sensors' wires, twist clock and data with ground, check the pull-ups");
@@ -99,7 +99,7 @@ void judge_frames(const FoundDevice& device, std::vector<Trouble>& troubles) {
     add(fmt::format("{} reports of a sensor that overflowed", c.overflows),
         "set the sensors to a coarser resolution (docs/cabinet.md, How fast a hand may be)");
   if (c.impossible > 0)
-    add(fmt::format("{} motions came that no rod can make", c.impossible),
+    add(fmt::format("{} impossible motions of a rod", c.impossible),
         "check the distance of the sensor to its rod, and shade it");
   for (std::size_t rod = 0; rod < c.index_disagreements.size(); ++rod) {
     if (c.index_disagreements[rod] == 0) continue;
@@ -107,7 +107,7 @@ void judge_frames(const FoundDevice& device, std::vector<Trouble>& troubles) {
             "the index mark of rod {} disagrees: it passed {} times more than a quarter turn "
             "from where the counts have it",
             rod + 1, c.index_disagreements[rod]),
-        "see that its magnet, collar and switch sit firmly, and calibrate that rod again");
+        "check that its magnet, collar and switch are firm, and calibrate that rod again");
   }
   if (mean_latency_us(c) > kLatencyUs)
     add(fmt::format("frames wait {:.1f} ms until they are read", mean_latency_us(c) * 1e-3),
@@ -144,12 +144,12 @@ void judge_mouse(const FoundDevice& device, std::vector<Trouble>& troubles) {
                                     "it listened",
                                     1e3 * check.slide_range, kDegrees * check.angle_range),
                         "leave it alone and try again; if nobody touched it, clean its sensor and "
-                        "lay it on a matt ground"});
+                        "put it on a matt surface"});
   if (by_hand && device.reports_per_s > 0 && device.reports_per_s < kMouseReports)
     troubles.push_back({device.path,
-                        fmt::format("{:.0f} reports a second come while it moves, of 125 or more",
+                        fmt::format("{:.0f} reports a second arrive while it moves, of 125 or more",
                                     device.reports_per_s),
-                        "take a mouse with a cable, or bring its receiver nearer, plugged into the "
+                        "use a mouse with a cable, or bring its receiver nearer, plugged into the "
                         "machine itself"});
 }
 
@@ -159,9 +159,9 @@ void judge_gamepad(const FoundDevice& device, std::vector<Trouble>& troubles) {
   if (off > double{kStickDeadZone})
     troubles.push_back(
         {device.path,
-         fmt::format("a stick was {:.0f} % off its middle while it listened", 100 * off),
-         fmt::format("let go of it and try again; if nobody touched it, it is worn or "
-                     "wants to be calibrated: {:.0f} % are ignored",
+         fmt::format("a stick was {:.0f} % off its centre while it listened", 100 * off),
+         fmt::format("let go of it and try again; if nobody touched it, it is worn or needs "
+                     "calibration: {:.0f} % are ignored",
                      100 * double{kStickDeadZone})});
 }
 
@@ -180,7 +180,7 @@ void judge_reports(const FoundDevice& device, std::vector<Trouble>& troubles) {
 
 void judge_input(const FoundDevice& device, std::vector<Trouble>& troubles) {
   if (device.state != DeviceState::live) {
-    troubles.push_back({device.path, fmt::format("{} went away", words_of(device.kind).named),
+    troubles.push_back({device.path, fmt::format("{} disappeared", words_of(device.kind).named),
                         "plug it in again; if it happens by itself, change the cable"});
     return;
   }
@@ -202,8 +202,8 @@ void judge_controller(const FoundDevice& device, bool another_is_live,
     case DeviceState::refused:
       if (!is_it && another_is_live && device.counters.frames == 0) return;
       troubles.push_back({device.path,
-                          device.counters.frames > 0 ? "the controller went away"
-                                                     : "it hung up before it sent a frame",
+                          device.counters.frames > 0 ? "the controller disappeared"
+                                                     : "it disconnected before it sent a frame",
                           "plug it in again; if it happens by itself, change the cable"});
       return;
     default:
@@ -212,19 +212,19 @@ void judge_controller(const FoundDevice& device, bool another_is_live,
   if (!is_it && another_is_live) return;
   const bool silent = device.state == DeviceState::silent;
   troubles.push_back(
-      {device.path, silent ? "it is there but sends nothing" : "it sends what is no frame",
-       serial ? "flash our firmware, if it is the controller; any other device may stay as it is"
+      {device.path, silent ? "it is connected but sends nothing" : "it sends no valid frames",
+       serial ? "flash our firmware, if it is the controller; ignore this for any other device"
               : "plug it in again, and flash the firmware of this version"});
 }
 
 void judge_calibration(const CalibrationCheck& check, std::vector<Trouble>& troubles) {
   if (!check.error.empty()) {
-    troubles.push_back({check.path, check.error, "name another file, or calibrate again"});
+    troubles.push_back({check.path, check.error, "give another file, or calibrate again"});
   } else if (check.days > kOldDays) {
     troubles.push_back({check.path, fmt::format("the calibration is {:.0f} days old", check.days),
-                        "calibrate again: rods and sensors do not stay where they were"});
+                        "calibrate again: rods and sensors shift with time"});
   } else if (check.days < -1) {
-    troubles.push_back({check.path, "the calibration is of a day to come",
+    troubles.push_back({check.path, "the calibration's date is in the future",
                         "set this machine's clock, or calibrate again"});
   }
 }
@@ -237,23 +237,24 @@ void judge_calibrations(const Diagnosis& diagnosis, std::vector<Trouble>& troubl
     if (!device.calibration_conflict.empty())
       troubles.push_back({device.path, device.calibration_conflict,
                           "run space-foosball calibrate --device " + address_of(device) +
-                              ", or name its own file by --calibration"});
+                              ", or give its own file with --calibration"});
     if (device.state == DeviceState::live && !device.calibrated)
       troubles.push_back(
           {device.path,
-           "there is no calibration, so that every rod is off by its sensor's mounting",
+           "there is no calibration, so every rod has the error of its sensor's mounting",
            "run space-foosball calibrate --device " + address_of(device) +
-               ", or name a file by --calibration"});
+               ", or give a file with --calibration"});
   }
 }
 
 void judge_none(const Diagnosis& diagnosis, std::vector<Trouble>& troubles) {
   if (std::ranges::any_of(diagnosis.devices, &FoundDevice::listens)) return;
   const bool lines = !diagnosis.devices.empty();
-  troubles.push_back({"", "no controller, mouse or gamepad is connected",
-                      std::string("plug one in; in a container pass /dev/input, /dev/hidraw* and "
-                                  "/sys in") +
-                          (lines ? "; if a line above is a controller, name it by --device" : "")});
+  troubles.push_back(
+      {"", "no controller, mouse or gamepad is connected",
+       std::string("plug one in; in a container pass /dev/input, /dev/hidraw* and "
+                   "/sys in") +
+           (lines ? "; if one of the ports above is a controller, give it with --device" : "")});
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ const char* name_of(RodStatus status) {
 std::string lines_of_controller(const FoundDevice& device) {
   const SourceCounters& c = device.counters;
   std::string text = fmt::format(
-      "         {:.0f} frames a second, {} lost, {} no frames, {} errors on the sensors' lines\n"
+      "         {:.0f} frames a second, {} lost, {} not frames, {} errors on the sensors' lines\n"
       "         from arrival to tick {:.0f} us, at most {}\n",
       frames_per_s(device), c.lost, c.bad, c.line_errors, mean_latency_us(c), c.latency_max_us);
   for (std::size_t rod = 0; rod < device.rods.size(); ++rod) {
@@ -72,16 +72,16 @@ std::string lines_of_controller(const FoundDevice& device) {
 std::string lines_of_input(const FoundDevice& device) {
   const SourceCounters& c = device.counters;
   if (c.frames == 0)
-    return "         nothing moved; move it while this listens to see its rate and latency\n";
+    return "         nothing moved; move it during the measurement to see its rate and latency\n";
   std::string text = fmt::format(
       "         {} reports, {:.0f} a second, {} times lost\n"
-      "         from the kernel to here {:.0f} us, at most {}\n",
+      "         from the kernel to this program {:.0f} us, at most {}\n",
       c.frames, device.reports_per_s, c.lost, mean_latency_us(c), c.latency_max_us);
   if (device.kind == DeviceKind::mouse)
     text += fmt::format("         a rod of it moved {:.2f} mm and {:.1f} degrees\n",
                         1e3 * device.rods[0].slide_range, kDegrees * device.rods[0].angle_range);
   if (device.kind == DeviceKind::gamepad)
-    text += fmt::format("         its sticks went to {:.0f} %, and rest within {:.0f} %\n",
+    text += fmt::format("         its sticks reached {:.0f} %, and rest within {:.0f} %\n",
                         100 * device.stick_peak, 100 * device.stick_rest);
   return text;
 }
@@ -90,7 +90,7 @@ std::string lines_of(const FoundDevice& device) {
   std::string text = fmt::format("{:<8} {}{}{}\n", name_of(device.kind), address_of(device),
                                  device.name.empty() ? "" : "  ", printable(device.name));
   if (!device.listens)
-    return text + "         not opened, as it may be any device; if it is a controller, add " +
+    return text + "         not opened, since it may be any device; if it is a controller, add " +
            "--device " + address_of(device) + "\n";
   if (device.error != 0) return text;
   if (is_controller(device)) return device.seconds > 0 ? text + lines_of_controller(device) : text;
@@ -152,7 +152,7 @@ std::string diagnosis_text(const Diagnosis& diagnosis) {
     text += fmt::format("\ntrouble: {}{}{}.\n  do: {}.\n", trouble.device,
                         trouble.device.empty() ? "" : ": ", trouble.what, trouble.cure);
   }
-  if (diagnosis.troubles.empty()) text += "\nall is well.\n";
+  if (diagnosis.troubles.empty()) text += "\nno fault found.\n";
   return text;
 }
 

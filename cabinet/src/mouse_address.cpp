@@ -66,17 +66,16 @@ tl::expected<MouseAddress, std::string> parse_mouse_address(const std::string& a
   if (names_rod || letter) {
     if (rod.size() != 1 || rod[0] < '1' || rod[0] > '8') {
       return tl::unexpected(
-          "\"" + address + "\" names no rod: write one from 1 (at team 0's goal) " +
+          "\"" + address + "\" has no rod: append one from 1 (at team 0's goal) " +
           "to 8, such as " + std::string(kScheme) + parsed.path.substr(0, colon) + ":4.");
     }
     parsed.rod = rod[0] - '1';
     parsed.path.resize(colon);
   }
   if (!parsed.path.empty() && parsed.path[0] == '/') return parsed;
-  return tl::unexpected(
-      "\"" + address +
-      "\" names no mouse: write evdev:/dev/input/eventN, or with a rod from 1 to 8 "
-      "evdev:/dev/input/eventN:4; space-foosball-doctor lists the mice.");
+  return tl::unexpected("\"" + address +
+                        "\" is not a mouse: write evdev:/dev/input/eventN, or with a rod from 1 to "
+                        "8 evdev:/dev/input/eventN:4; space-foosball-doctor lists the mice.");
 }
 
 tl::expected<std::unique_ptr<MouseSource>, std::string> open_mouse(const std::string& path,
@@ -93,7 +92,7 @@ tl::expected<std::unique_ptr<MouseSource>, std::string> open_mouse(const std::st
     }
     const os::FileDescriptor fd(::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
     if (fd && !is_mouse(fd.get())) {
-      return tl::unexpected(options.name + ": no mouse; space-foosball-doctor lists the mice.");
+      return tl::unexpected(options.name + ": not a mouse; space-foosball-doctor lists the mice.");
     }
   }
   auto keeper = std::make_shared<LineKeeper>([path] { return open_mouse_line(path.c_str()); });

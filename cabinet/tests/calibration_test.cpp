@@ -172,10 +172,10 @@ INSTANTIATE_TEST_SUITE_P(
         BadFile{"MarkIsWord", corrected(R"("index_angle_rad": "1", "index_width_rad": 0.4)"),
                 "(rod 6) has no number \"index_angle_rad\""},
         BadFile{"MarkIsTooWide", corrected(R"("index_angle_rad": 1, "index_width_rad": 3)"),
-                "(rod 6) has an index mark that no magnet has"},
+                "(rod 6) has an impossible index mark"},
         BadFile{"MarkLagsTooFar",
                 corrected(R"("index_angle_rad": 1, "index_width_rad": 0.4, "index_lag_rad": -0.5)"),
-                "(rod 6) has an index mark that no magnet has"},
+                "(rod 6) has an impossible index mark"},
         BadFile{"NoRods", R"({"version": 1})", "has 0 rods instead of 8"},
         BadFile{"SevenRods", file_json(kGoodRod, 7), "has 7 rods instead of 8"},
         BadFile{"NineRods", file_json(kGoodRod, 9), "has 9 rods instead of 8"},
@@ -194,21 +194,21 @@ INSTANTIATE_TEST_SUITE_P(
                 "(rod 6) is singular"},
         BadFile{"Zero", file_json(rod_json("[0, 0]", "[0, 0]")), "(rod 6) is singular"},
         BadFile{"MetresForMillimetres", file_json(rod_json("[0.125, 0]", "[0, 0.0156]")),
-                "(rod 6) has a scale that no sensor has: 125 mm along the rod and 0.125 mm"},
+                "(rod 6) has an impossible scale: 125 mm along the rod and 0.125 mm"},
         BadFile{"ThousandTimesTheExample", file_json(rod_json("[0.1, 0]", "[0, 12.5]")),
                 "where 0.00053 mm to 4 mm are possible; write metres"},
         BadFile{"TenTimesTheCoarsestSensor", file_json(rod_json("[0.01, 0]", "[0, 1.25]")),
-                "(rod 6) has a scale that no sensor has"},
+                "(rod 6) has an impossible scale"},
         BadFile{"TenTimesTheFinestSensor", file_json(rod_json("[2.1e-7, 0]", "[0, 2.6e-5]")),
-                "(rod 6) has a scale that no sensor has"},
+                "(rod 6) has an impossible scale"},
         BadFile{"Tiny", file_json(rod_json("[0.000125, 0]", "[0, 1e-9]")),
-                "(rod 6) has a scale that no sensor has"}),
+                "(rod 6) has an impossible scale"}),
     [](const auto& test) { return test.param.what; });
 
 TEST(CalibrationFile, MissingFileAndFolderAreSentences) {
   const auto missing = load_calibration("/nowhere/c.json");
   ASSERT_FALSE(missing.has_value());
-  EXPECT_NE(missing.error().find("Calibration /nowhere/c.json can not be opened (No such file or "
+  EXPECT_NE(missing.error().find("Calibration /nowhere/c.json cannot be opened (No such file or "
                                  "directory); give an existing file"),
             std::string::npos)
       << missing.error();
@@ -220,7 +220,7 @@ TEST(CalibrationFile, MissingFileAndFolderAreSentences) {
 TEST(CalibrationFile, AFailedSaveSaysSoAndLeavesTheOldFile) {
   const auto nowhere = save_calibration(nominal_calibration(), "/nowhere/c.json");
   ASSERT_FALSE(nowhere.has_value());
-  EXPECT_NE(nowhere.error().find("can not be written"), std::string::npos) << nowhere.error();
+  EXPECT_NE(nowhere.error().find("cannot be written"), std::string::npos) << nowhere.error();
 
   const Folder folder;
   ASSERT_TRUE(save_calibration(nominal_calibration(), folder.file()).has_value());

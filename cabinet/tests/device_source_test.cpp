@@ -292,7 +292,7 @@ TEST(OpenDevice, RefusesWhatIsNoDeviceWithASentence) {
     return source ? std::string() : source.error();
   };
   for (const char* wrong : {"", "serial", "serial:", "usb:/dev/x", "/dev/ttyACM0", ":", "file:"}) {
-    EXPECT_NE(sentence(wrong).find("names no device: write serial:/dev/ttyACM0"), std::string::npos)
+    EXPECT_NE(sentence(wrong).find("is not a device: write serial:/dev/ttyACM0"), std::string::npos)
         << wrong << " -> " << sentence(wrong);
   }
   EXPECT_NE(sentence("file:/nowhere/a.bin").find("give the path of an existing recording"),

@@ -184,7 +184,7 @@ TEST_F(Doctor, AControllerThatDoesAllRightIsWell) {
   const FoundDevice& found = diagnosis.devices[0];
   EXPECT_EQ(found.state, DeviceState::live);
   EXPECT_NEAR(static_cast<double>(found.counters.frames) / found.seconds, 1'000, 10);
-  EXPECT_NE(diagnosis_text(diagnosis).find("all is well"), std::string::npos);
+  EXPECT_NE(diagnosis_text(diagnosis).find("no fault found"), std::string::npos);
   const auto json = nlohmann::json::parse(diagnosis_json(diagnosis));
   EXPECT_TRUE(json["healthy"]);
   EXPECT_EQ(json["devices"][0]["kind"], "serial");
@@ -244,13 +244,13 @@ TEST_F(Doctor, WhatMayNotBeReadIsSaidWithItsCure) {
   const Diagnosis diagnosis = examine(options);
   ASSERT_EQ(::setresuid(0, 0, 0), 0);
   ASSERT_EQ(diagnosis.troubles.size(), 1u);
-  EXPECT_NE(diagnosis.troubles[0].what.find("the mouse may not be read"), std::string::npos);
+  EXPECT_NE(diagnosis.troubles[0].what.find("the mouse cannot be read"), std::string::npos);
   EXPECT_NE(diagnosis.troubles[0].cure.find("70-space-foosball.rules"), std::string::npos);
 }
 
 TEST_F(Doctor, AControllerWithoutANodeNeedsUdev) {
   describe_hid();
-  expect_trouble("has no node", "start udev");
+  expect_trouble("has no device file", "start udev");
 }
 
 TEST_F(Doctor, AControllerInUseIsSaid) {
@@ -270,7 +270,7 @@ TEST_F(Doctor, WhatIsNoFrameIsSaid) {
   plug_serial();
   every = 1'000'000;
   before_frame = [this] { (void)line_.master.send_what_fits(Bytes(40, 0x55)); };
-  expect_trouble("sends what is no frame", "flash our firmware");
+  expect_trouble("sends no valid frames", "flash our firmware");
 }
 
 TEST_F(Doctor, TooFewFramesAreSaid) {
@@ -279,7 +279,7 @@ TEST_F(Doctor, TooFewFramesAreSaid) {
   change = [this](wire::DeviceFrame& frame) {
     frame.sequence = static_cast<std::uint16_t>(device.sequence / 2);
   };
-  expect_trouble("frames a second come, of 1000", "not into a hub");
+  expect_trouble("frames a second arrive, of 1000", "not into a hub");
 }
 
 TEST_F(Doctor, LostFramesAreSaid) {
@@ -296,7 +296,7 @@ TEST_F(Doctor, PiecesThatAreNoFramesAreSaid) {
   before_frame = [this, sent = 0]() mutable {
     if (++sent == 100) (void)line_.master.send_what_fits({1, 2, 3, 0});
   };
-  expect_trouble("1 pieces of what came are no frames", "shorter cable");
+  expect_trouble("1 received pieces are not frames", "shorter cable");
 }
 
 TEST_F(Doctor, ErrorsOnTheSensorsLinesAreSaid) {
@@ -314,7 +314,7 @@ TEST_F(Doctor, AnOverflowIsSaid) {
 TEST_F(Doctor, MotionsThatNoRodCanMakeAreSaid) {
   plug_serial();
   before_frame = [this] { device.slide[2] += device.sequence == 60 ? 20'000 : 0; };
-  expect_trouble("1 motions came that no rod can make", "distance of the sensor");
+  expect_trouble("1 impossible motions of a rod", "distance of the sensor");
 }
 
 // A person turns the rod to and fro during the examination, past a mark that comes a third of a
@@ -369,7 +369,7 @@ TEST_F(Doctor, AControllerThatGoesAwayIsSaid) {
   before_frame = [this, sent = 0]() mutable {
     if (++sent == 100) line_.unplug();
   };
-  expect_trouble("went away", "change the cable");
+  expect_trouble("disappeared", "change the cable");
 }
 
 TEST_F(Doctor, AnotherSerialDeviceIsNoTroubleBesideAController) {
@@ -398,7 +398,7 @@ TEST_F(Doctor, ALineThatIsNotKnownAsOursIsNotOpenedUnlessItIsNamed) {
 TEST_F(Doctor, OnlyLinesThatAreNotOpenedIsATroubleThatSaysHowToNameThem) {
   plug_line("dev/ttyUSB0");
   describe_usb("tty", "ttyUSB0", "0403", "6001");
-  expect_trouble("no controller, mouse or gamepad is connected", "name it by --device");
+  expect_trouble("no controller, mouse or gamepad is connected", "give it with --device");
 }
 
 TEST_F(Doctor, WhatIsNamedIsLookedAtWhereverItIs) {
@@ -421,20 +421,20 @@ TEST_F(Doctor, AnAddressOfNoDeviceIsRefusedWithASentence) {
 
 TEST_F(Doctor, WhatIsNamedAndNotThereOrNoDeviceIsSaid) {
   options.devices = {*parse_doctor_address("serial:" + options.dev + "/ttyACM7")};
-  expect_trouble("the controller is not there", "plug it in");
+  expect_trouble("the controller is not connected", "plug it in");
   ASSERT_EQ(::mkfifo((root_ / "pipe").c_str(), 0600), 0);
   for (const char* path : {"pipe", "table.json", "dev"}) {
     options.devices = {*parse_doctor_address("hid:" + (root_ / path).string())};
-    expect_trouble("this is no HID device", "name one that is");
+    expect_trouble("this is no HID device", "give one that is");
   }
   options.devices = {*parse_doctor_address("evdev:/dev/null")};
-  expect_trouble("this is no mouse", "name one that is");
+  expect_trouble("this is no mouse", "give one that is");
 }
 
 TEST_F(Doctor, ALineThatHangsUpAtOnceIsSaid) {
   options.calibration.clear();  // none needed for a line that is not a controller
   options.devices = {*parse_doctor_address("serial:/dev/null")};
-  expect_trouble("hung up before it sent a frame", "plug it in again");
+  expect_trouble("disconnected before it sent a frame", "plug it in again");
 }
 
 TEST_F(Doctor, AFloodOfGarbageIsSaid) {
@@ -446,7 +446,7 @@ TEST_F(Doctor, AFloodOfGarbageIsSaid) {
       byte = static_cast<std::uint8_t>((x = x * 1'664'525 + 1) >> 24);
     (void)line_.master.send_what_fits(bytes);
   };
-  expect_trouble("sends what is no frame", "flash our firmware");
+  expect_trouble("sends no valid frames", "flash our firmware");
 }
 
 TEST_F(Doctor, NoCalibrationABadOneAndAnOldOneAreSaid) {
@@ -454,9 +454,9 @@ TEST_F(Doctor, NoCalibrationABadOneAndAnOldOneAreSaid) {
   options.now_s = kMade + std::int64_t{201} * 86'400;
   expect_trouble("201 days old", "calibrate again");
   options.now_s = kMade - std::int64_t{2} * 86'400;
-  expect_trouble("of a day to come", "clock");
+  expect_trouble("date is in the future", "clock");
   write("table.json", "{}");
-  expect_trouble("table.json", "name another file");
+  expect_trouble("table.json", "give another file");
   EXPECT_EQ(diagnosis_text(examine(options)).find(".."), std::string::npos);
   options.calibration.clear();
   expect_trouble("there is no calibration", "space-foosball calibrate --device ");
@@ -527,7 +527,7 @@ TEST_F(Doctor, AMouseThatReportsSeldomLateOrWithGapsIsSaid) {
     happen(mouse, EV_REL, REL_X, 50, late_us);
     happen(mouse, EV_SYN, SYN_REPORT, 0, late_us);
   };
-  expect_trouble("50 reports a second come while it moves", "with a cable");
+  expect_trouble("50 reports a second arrive while it moves", "with a cable");
   period_ms = 8;
   late_us = 4'000;
   expect_trouble("reports wait 4.0 ms", "busy");
@@ -556,7 +556,7 @@ TEST_F(Doctor, AStickThatRestsOffItsMiddleIsSaid) {
   };
   EXPECT_TRUE(examine(options).troubles.empty()) << "a worn stick is allowed for";
   value = 9'000;
-  expect_trouble("a stick was 27 % off its middle", "let go of it");
+  expect_trouble("a stick was 27 % off its centre", "let go of it");
 }
 
 TEST_F(Doctor, AGamepadInAHandHasARateAndALatency) {
@@ -580,7 +580,7 @@ TEST_F(Doctor, AMouseOrAGamepadThatGoesAwayOrIsInUseIsSaid) {
   before_poll = [&, ms = 0]() mutable {
     if (++ms == 100) mouse.master.close();
   };
-  expect_trouble("the mouse went away", "change the cable");
+  expect_trouble("the mouse disappeared", "change the cable");
   before_poll = {};
   SerialLine& pad = plug_gamepad();
   fs::remove_all(root_ / "sys/class/input/event7");

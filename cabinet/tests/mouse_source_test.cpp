@@ -272,7 +272,7 @@ TEST(MouseAddress, NamesAMouseAndARod) {
        {"evdev:/dev/input/event5:0", "evdev:/dev/input/event5:9", "evdev:/dev/input/event5:1.5",
         "evdev:/dev/input/event5:1,2", "evdev:/dev/input/event5:a", "evdev:/dev/input/event5:-1"}) {
     ASSERT_FALSE(parse_mouse_address(wrong)) << wrong;
-    EXPECT_NE(parse_mouse_address(wrong).error().find("names no rod: write one from 1"),
+    EXPECT_NE(parse_mouse_address(wrong).error().find("has no rod: append one from 1"),
               std::string::npos);
   }
 }
@@ -285,7 +285,7 @@ TEST(OpenMouse, WhatIsNoMouseIsRefusedWithASentence) {
     return source ? std::string() : source.error();
   };
   EXPECT_NE(sentence("/etc/passwd").find("not a device; space-foosball-doctor"), std::string::npos);
-  EXPECT_NE(sentence("/dev/null").find("no mouse; space-foosball-doctor"), std::string::npos);
+  EXPECT_NE(sentence("/dev/null").find("not a mouse; space-foosball-doctor"), std::string::npos);
   EXPECT_EQ(sentence("/dev/input/event-that-comes-later"), "");
 }
 

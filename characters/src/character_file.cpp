@@ -119,11 +119,10 @@ Problem take_text(const toml::node& node, const char* name, std::size_t min, std
 Problem take_name(const toml::node& node, std::string_view file, std::string& name) {
   const Problem problem = take_text(node, "name", 1, foosball::kMaxCharacterName, file, name);
   if (problem || wire::clean_name(name) == name) return problem;
-  return at(
-      file, node.source(),
-      fmt::format("name must have a letter, single spaces within and nothing that is not seen; "
-                  "write name = \"{}\"",
-                  wire::clean_name(name)));
+  return at(file, node.source(),
+            fmt::format("name must have a letter, single spaces within and nothing invisible; "
+                        "write name = \"{}\"",
+                        wire::clean_name(name)));
 }
 
 // "#rrggbb"
@@ -239,7 +238,7 @@ tl::expected<std::vector<std::string>, std::string> files_of(const std::string& 
     }
   }
   if (error) {
-    return tl::unexpected(fmt::format("{} cannot be read ({}); name a folder of character files",
+    return tl::unexpected(fmt::format("{} cannot be read ({}); give a folder of character files",
                                       folder, error.message()));
   }
   std::ranges::sort(files);
@@ -333,7 +332,7 @@ tl::expected<Character, std::string> load_character(const std::string& path) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-    return tl::unexpected(path + " is a folder, a pipe or a device; name a file of a character");
+    return tl::unexpected(path + " is a folder, a pipe or a device; give a file of a character");
   }
   auto bytes = wire::read_file(path, kMaxBytes);
   if (!bytes) return tl::unexpected(bytes.error());
@@ -376,7 +375,7 @@ tl::expected<Characters, std::string> load_more_characters(Characters base,
 
 std::string format_character(const Character& c) {
   std::string text =
-      "# A character of Space Foosball. Lines may be left out: then the average counts.\n";
+      "# A character of Space Foosball. Lines may be omitted: then the average is used.\n";
   text += fmt::format("name = {}\nspecialty = {}\n", toml_text(c.name), toml_text(c.specialty));
   text += "\n[body]" + format_numbers(foosball::kBodyFields, c.body);
   text += fmt::format(

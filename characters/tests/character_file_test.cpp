@@ -186,12 +186,12 @@ TEST(CharacterFile, RefusesAFootThatWouldMeetTheNextRodsMen) {
 
 TEST_F(CharacterFolder, RefusesFilesThatAreNone) {
   EXPECT_TRUE(says(load_character("/nowhere/x.toml").error(), "check its name"));
-  EXPECT_TRUE(says(load_character("/").error(), "name a file of a character"));
-  EXPECT_TRUE(says(load_character("/dev/zero").error(), "name a file of a character"));
+  EXPECT_TRUE(says(load_character("/").error(), "give a file of a character"));
+  EXPECT_TRUE(says(load_character("/dev/zero").error(), "give a file of a character"));
   const std::string fifo = folder + "/fifo.toml";
   ASSERT_EQ(::mkfifo(fifo.c_str(), 0600), 0);
-  EXPECT_TRUE(says(load_character(fifo).error(), "name a file of a character"));
-  EXPECT_TRUE(says(load_characters(folder).error(), "name a file of a character")) << "nor in one";
+  EXPECT_TRUE(says(load_character(fifo).error(), "give a file of a character"));
+  EXPECT_TRUE(says(load_characters(folder).error(), "give a file of a character")) << "nor in one";
   const std::string large = write("large.toml", std::string(10 << 20, '#'));
   EXPECT_TRUE(says(load_character(large).error(), "larger than 65536 bytes"));
 }
@@ -200,7 +200,7 @@ TEST_F(CharacterFolder, RefusesFilesThatAreNone) {
 
 TEST_F(CharacterFolder, IsReadInTheOrderOfItsFilesAndHoldsOneToTheMost) {
   EXPECT_TRUE(says(load_characters(folder).error(), "at least one character"));
-  EXPECT_TRUE(says(load_characters(folder + "/none").error(), "name a folder"));
+  EXPECT_TRUE(says(load_characters(folder + "/none").error(), "give a folder"));
   for (int i = 0; i < kMaxCharacters; ++i) {
     const char letter = static_cast<char>('z' - i);
     write(std::string(1, letter) + ".toml", std::string("name = \"") + letter + "\"");

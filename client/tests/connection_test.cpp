@@ -110,7 +110,7 @@ TEST_F(ConnectionTest, AServerThatTalksNonsenseIsLeftAndTriedAgain) {
   const std::vector<std::byte> nonsense(64, std::byte{0xFF});  // a length far above the limit
   server.send_bytes(nonsense);
   EXPECT_TRUE(
-      eventually([&] { return connection->status().detail == "it sends what is no message"; }));
+      eventually([&] { return connection->status().detail == "it sends invalid messages"; }));
   join(42);
 }
 

@@ -242,7 +242,7 @@ TEST(CrewAssists, NoRodIsMovedBetweenPlaysOrInAPause) {
 // --- how they are called -------------------------------------------------------------------------
 
 struct NamesTest : testing::Test {
-  std::optional<wire::Names> told(bool in_match = false) {
+  std::optional<wire::Names> reported(bool in_match = false) {
     return names.update(table.crew, settings, in_match);
   }
   Table table{kAll};
@@ -251,29 +251,29 @@ struct NamesTest : testing::Test {
 };
 
 TEST_F(NamesTest, AreToldOnceAndAgainAfterEachJoin) {
-  ASSERT_TRUE(told());
-  EXPECT_FALSE(told());
+  ASSERT_TRUE(reported());
+  EXPECT_FALSE(reported());
   settings.names[0] = "Ann";
-  const auto now = told();
+  const auto now = reported();
   ASSERT_TRUE(now);
   EXPECT_EQ(now->name, "Ann");
   EXPECT_EQ(now->players, wire::RodPlayers{});
-  EXPECT_FALSE(told());
+  EXPECT_FALSE(reported());
   EXPECT_EQ(names.set_names()[0], "Ann");
   names.joined();
-  EXPECT_TRUE(told()) << "the seat may have names of before";
+  EXPECT_TRUE(reported()) << "the seat may have names of before";
 }
 
 TEST_F(NamesTest, SeveralPeopleAtOneWindowHaveNamesOfTheirOwn) {
   for (const int rod : {0, 1}) table.crew.give(rod, kPad1);
   for (const int rod : {2, 4, 6, 7}) table.crew.give(rod, kPad2);
-  auto now = told();
+  auto now = reported();
   ASSERT_TRUE(now);
   EXPECT_EQ(now->players, (wire::RodPlayers{"player 2", "player 2", "player 3", "", "player 3", "",
                                             "player 3", "player 3"}));
   EXPECT_EQ(names.set_names(), wire::RodPlayers{}) << "nobody has said so";
   settings.names = {"", "Ben", "", ""};
-  now = told();
+  now = reported();
   ASSERT_TRUE(now);
   EXPECT_EQ(now->players[0], "Ben");
   EXPECT_EQ(now->players[2], "player 3");
@@ -283,16 +283,16 @@ TEST_F(NamesTest, SeveralPeopleAtOneWindowHaveNamesOfTheirOwn) {
 // By the rules for leaving, the old name would have lost the match.
 TEST_F(NamesTest, NobodyIsRenamedInAMatch) {
   table.crew.give(2, kPad2);
-  EXPECT_EQ(told()->players[2], "player 2");
+  EXPECT_EQ(reported()->players[2], "player 2");
   settings.names = {"Ann", "Ben", "Cleo", ""};
-  EXPECT_FALSE(told(true));
+  EXPECT_FALSE(reported(true));
   // A person joins whose device precedes the others.
   table.crew.give(0, kPad1);
-  const auto joined = told(true);
+  const auto joined = reported(true);
   ASSERT_TRUE(joined);
   EXPECT_EQ(joined->players[0], "player 3");
   EXPECT_EQ(joined->players[2], "player 2") << "as before";
-  const auto after = told();
+  const auto after = reported();
   ASSERT_TRUE(after);
   EXPECT_EQ(after->name, "Ann");
   EXPECT_EQ(after->players[0], "Ben") << "in the order of the devices again";

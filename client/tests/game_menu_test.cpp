@@ -25,7 +25,7 @@ wire::Game usual() {
 
 class GamePage : public testing::Test {
  protected:
-  GamePage() { menu.hear(1, told, true, ""); }
+  GamePage() { menu.hear(1, reported, true, ""); }
   const MenuRow& row(const std::string& label) {
     shown = menu.page(0);
     for (const MenuRow& one : shown.rows)
@@ -47,32 +47,32 @@ class GamePage : public testing::Test {
     for (const std::int64_t end = now + long_us; now < end; now += 16'000) {
       if (const auto game = menu.ask(now)) {
         ++asked;
-        told = last = *game;
-        const bool dated = told.mode == number(wire::Mode::challenge);
-        if (dated) told.level = 4, told.style = 1, told.date = 20261122;
+        reported = last = *game;
+        const bool dated = reported.mode == number(wire::Mode::challenge);
+        if (dated) reported.level = 4, reported.style = 1, reported.date = 20261122;
       }
-      menu.hear(1, told, true, "");
+      menu.hear(1, reported, true, "");
     }
     return asked;
   }
-  wire::Game told = usual(), last;
+  wire::Game reported = usual(), last;
   std::int64_t now = kSecond;
   GameMenu menu;
   MenuPage shown;
 };
 
 TEST_F(GamePage, ShowsWhatTheServerTells) {
-  told.mode = number(wire::Mode::ladder);
-  told.rule_set = number(wire::RuleSet::itsf);
-  told.goals = 7;
-  told.sets = 5;
-  told.match_ms = 90'000;
-  told.change_sides = true;
-  menu.hear(1, told, true, "");
+  reported.mode = number(wire::Mode::ladder);
+  reported.rule_set = number(wire::RuleSet::itsf);
+  reported.goals = 7;
+  reported.sets = 5;
+  reported.match_ms = 90'000;
+  reported.change_sides = true;
+  menu.hear(1, reported, true, "");
   EXPECT_EQ(value("Mode"), "ladder");
   EXPECT_EQ(value("Rules"), "tournament (ITSF)");
   EXPECT_EQ(value("Goals that win a set"), "7");
-  EXPECT_EQ(value("Best of so many sets"), "5");
+  EXPECT_EQ(value("Best of how many sets"), "5");
   EXPECT_EQ(value("Minutes of a set"), "1.5");
   EXPECT_EQ(value("Change sides between sets"), "on");
   EXPECT_EQ(grant(), 0) << "nothing was changed";
@@ -83,8 +83,8 @@ TEST_F(GamePage, EveryModeIsReachedAndAskedForOnceAlone) {
   for (unsigned i = 0; i < wire::kModeCount; ++i) {
     turn("Mode", 1);
     EXPECT_EQ(grant(), 1);
-    modes.insert(told.mode);
-    EXPECT_EQ(menu.wanted().mode, told.mode);
+    modes.insert(reported.mode);
+    EXPECT_EQ(menu.wanted().mode, reported.mode);
   }
   EXPECT_EQ(modes.size(), wire::kModeCount);
 }
@@ -110,7 +110,7 @@ TEST_F(GamePage, WhatTheModeDecidesIsFixedAndNotAskedFor) {
   EXPECT_EQ(last.date, 0u);
   for (const char* label :
        {"Computer's level", "Computer's style", "Rules", "Goals that win a set",
-        "Best of so many sets", "Minutes of a set", "Change sides between sets"})
+        "Best of how many sets", "Minutes of a set", "Change sides between sets"})
     EXPECT_TRUE(row(label).fixed) << label;
   EXPECT_EQ(value("Computer's level"), "4") << "the day's opponent is shown";
   EXPECT_EQ(value("Minutes of a set"), "2");
@@ -132,7 +132,7 @@ TEST_F(GamePage, WhatTheModeDecidesIsFixedAndNotAskedFor) {
 TEST_F(GamePage, NumbersStayInTheirRanges) {
   for (int i = 0; i < 130; ++i) {
     for (const char* label :
-         {"Goals that win a set", "Best of so many sets", "Minutes of a set", "Computer's level"})
+         {"Goals that win a set", "Best of how many sets", "Minutes of a set", "Computer's level"})
       turn(label, 1);
   }
   grant();
@@ -141,7 +141,7 @@ TEST_F(GamePage, NumbersStayInTheirRanges) {
   EXPECT_EQ(last.match_ms, 3'600'000u);
   EXPECT_EQ(last.level, 5);
   for (int i = 0; i < 130; ++i) {
-    for (const char* label : {"Goals that win a set", "Best of so many sets", "Computer's level"})
+    for (const char* label : {"Goals that win a set", "Best of how many sets", "Computer's level"})
       turn(label, -1);
   }
   EXPECT_EQ(value("Goals that win a set"), "no limit") << "time ends it";
@@ -157,14 +157,14 @@ TEST_F(GamePage, NumbersStayInTheirRanges) {
 
 TEST_F(GamePage, OtherRulesComeWithTheirOwnGoalsAndSets) {
   turn("Rules", 1);
-  EXPECT_EQ(value("Best of so many sets"), "5");
+  EXPECT_EQ(value("Best of how many sets"), "5");
   grant();
   turn("Rules", 1);
-  EXPECT_EQ(value("Best of so many sets"), "1");
+  EXPECT_EQ(value("Best of how many sets"), "1");
 }
 
 TEST_F(GamePage, OnlyAHostChanges) {
-  menu.hear(1, told, false, "");
+  menu.hear(1, reported, false, "");
   for (const MenuRow& one : menu.page(0).rows) EXPECT_TRUE(one.fixed) << one.label;
   EXPECT_NE(menu.page(0).note, "");
   for (int i = 0; i < menu.rows(); ++i) EXPECT_FALSE(menu.step(i, {.right = 1, .confirm = true}));
@@ -174,10 +174,10 @@ TEST_F(GamePage, OnlyAHostChanges) {
 TEST_F(GamePage, AGameThatWaitsIsSaidAndBegunByARestart) {
   const int begin = menu.rows() - 1;
   EXPECT_TRUE(menu.page(begin).rows.back().fixed);
-  EXPECT_FALSE(menu.step(begin, {.confirm = true})) << "nothing waits";
+  EXPECT_FALSE(menu.step(begin, {.confirm = true})) << "no game is waiting";
   const std::string before = menu.page(0).note;
-  told.waits = true;
-  menu.hear(1, told, true, "");
+  reported.waits = true;
+  menu.hear(1, reported, true, "");
   EXPECT_NE(menu.page(0).note, before);
   EXPECT_FALSE(menu.step(begin, {.right = 1})) << "no match ends by a slip";
   EXPECT_TRUE(menu.step(begin, {.confirm = true}));
@@ -188,7 +188,7 @@ TEST_F(GamePage, ARefusedRequestIsGivenUpAndItsReasonShown) {
   int asked = 0;
   for (const std::int64_t end = now + 10 * kSecond; now < end; now += 16'000) {
     asked += menu.ask(now) ? 1 : 0;
-    menu.hear(1, told, true, asked > 0 ? "why not" : "");
+    menu.hear(1, reported, true, asked > 0 ? "why not" : "");
   }
   EXPECT_EQ(asked, GameMenu::kTries);
   EXPECT_EQ(menu.page(0).detail, "why not");
@@ -197,7 +197,7 @@ TEST_F(GamePage, ARefusedRequestIsGivenUpAndItsReasonShown) {
 
 TEST_F(GamePage, WhatWasWantedOfAnotherSessionIsForgotten) {
   turn("Mode", 1);
-  menu.hear(2, told, true, "");
+  menu.hear(2, reported, true, "");
   EXPECT_FALSE(menu.ask(now + kSecond));
   EXPECT_EQ(value("Mode"), "match");
   menu.hear(2, std::nullopt, true, "");
@@ -209,9 +209,9 @@ TEST(Menu, AsksForARestartFromThePageOfTheGame) {
   Settings settings;
   const SeatsView nothing;
   Menu menu("");
-  wire::Game told = usual();
-  told.waits = true;
-  menu.game().hear(1, told, true, "");
+  wire::Game reported = usual();
+  reported.waits = true;
+  menu.game().hear(1, reported, true, "");
   const Menu::Context context{settings, nothing, nullptr};
   menu.toggle(Menu::Page::game);
   EXPECT_EQ(menu.page(context).title, "Game");

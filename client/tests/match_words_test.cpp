@@ -12,12 +12,12 @@ namespace {
 
 constexpr int kFirstMidfield = 3, kFirstAttack = 5, kSecondMidfield = 4;  // rods
 
-struct Told {
+struct Shown {
   wire::Snapshot state = scripted_play(0.35);
   HudState hud;
-  Told() { hud.state = &state; }
-  Told(const Told&) = delete;
-  Told& operator=(const Told&) = delete;
+  Shown() { hud.state = &state; }
+  Shown(const Shown&) = delete;
+  Shown& operator=(const Shown&) = delete;
   void stop(wire::Screen screen, bool ball_in_goal) {
     state.screen = number(screen);
     state.ball_in_play = false;
@@ -88,149 +88,149 @@ TEST(MatchWords, NoClockRunsWhereNobodyHasTheBall) {
 // --- the line of the rules -----------------------------------------------------------------------
 
 TEST(MatchWords, TheServeIsToldBeforeItAndAWhileAfter) {
-  Told told;
-  told.state.next_server = 1;
-  EXPECT_EQ(rules_line(told.hud), "");
-  told.hud.since_serve = 0.5f;
-  EXPECT_EQ(rules_line(told.hud), "Serve: ▲ VEGA");
-  told.hud.since_serve = 3.0f;
-  EXPECT_EQ(rules_line(told.hud), "");
-  told.state.ball_in_play = false;
-  EXPECT_EQ(rules_line(told.hud), "Serve: ▲ VEGA");
-  told.state.fouled = true;
-  told.state.last_foul = number(wire::Foul::possession);
-  told.hud.since_foul = 0.2f;
-  EXPECT_EQ(rules_line(told.hud), "Foul: ● ORION, held too long  -  Serve: ▲ VEGA");
+  Shown shown;
+  shown.state.next_server = 1;
+  EXPECT_EQ(rules_line(shown.hud), "");
+  shown.hud.since_serve = 0.5f;
+  EXPECT_EQ(rules_line(shown.hud), "Serve: ▲ VEGA");
+  shown.hud.since_serve = 3.0f;
+  EXPECT_EQ(rules_line(shown.hud), "");
+  shown.state.ball_in_play = false;
+  EXPECT_EQ(rules_line(shown.hud), "Serve: ▲ VEGA");
+  shown.state.fouled = true;
+  shown.state.last_foul = number(wire::Foul::possession);
+  shown.hud.since_foul = 0.2f;
+  EXPECT_EQ(rules_line(shown.hud), "Foul: ● ORION, held too long  -  Serve: ▲ VEGA");
 }
 
 TEST(MatchWords, AGoldenGoalIsToldWhileTheNextOneDecides) {
-  Told told;
-  told.state.golden_goal = true;
-  EXPECT_EQ(rules_line(told.hud), "golden goal: the next one decides");
-  told.state.time_out_seconds = 12.0f;
-  told.state.time_out_team = 0;
-  EXPECT_EQ(rules_line(told.hud), "Time-out: ● ORION 12 s");
+  Shown shown;
+  shown.state.golden_goal = true;
+  EXPECT_EQ(rules_line(shown.hud), "golden goal: the next one decides");
+  shown.state.time_out_seconds = 12.0f;
+  shown.state.time_out_team = 0;
+  EXPECT_EQ(rules_line(shown.hud), "Time-out: ● ORION 12 s");
 }
 
 TEST(MatchWords, TrainingTellsTheShotBesideAnyFoulAndNoServe) {
-  Told told;
-  told.state.mode = number(wire::Mode::training);
-  told.state.last_shot = {0, 5, 1, 7.25f, 0.1745f};
-  told.state.feed_rod = 1;
-  told.state.feed_man = 1;
-  told.hud.since_serve = 0.1f;
-  EXPECT_EQ(rules_line(told.hud), "Ball for: ● ORION, Defence 2  -  Last shot: 7.2 m/s, 10°");
-  told.state.fouled = true;
-  told.state.last_foul = number(wire::Foul::serve);
-  told.hud.since_foul = 0.2f;
+  Shown shown;
+  shown.state.mode = number(wire::Mode::training);
+  shown.state.last_shot = {0, 5, 1, 7.25f, 0.1745f};
+  shown.state.feed_rod = 1;
+  shown.state.feed_man = 1;
+  shown.hud.since_serve = 0.1f;
+  EXPECT_EQ(rules_line(shown.hud), "Ball for: ● ORION, Defence 2  -  Last shot: 7.2 m/s, 10°");
+  shown.state.fouled = true;
+  shown.state.last_foul = number(wire::Foul::serve);
+  shown.hud.since_foul = 0.2f;
   EXPECT_EQ(
-      rules_line(told.hud),
+      rules_line(shown.hud),
       "Foul: ● ORION, faulty serve  -  Ball for: ● ORION, Defence 2  -  Last shot: 7.2 m/s, 10°");
 }
 
 // --- ceremonies ----------------------------------------------------------------------------------
 
 TEST(MatchWords, AGoalNamesItsScorerAndWhoServesNext) {
-  Told told;
-  told.stop(wire::Screen::ceremony, true);
-  told.state.last_scorer = 0;
-  told.hud.goal = {.team = 0, .scorer_rod = 5, .scorer_man = 1, .speed = 7.4f};
-  const CeremonyWords words = ceremony_words(told.hud);
+  Shown shown;
+  shown.stop(wire::Screen::ceremony, true);
+  shown.state.last_scorer = 0;
+  shown.hud.goal = {.team = 0, .scorer_rod = 5, .scorer_man = 1, .speed = 7.4f};
+  const CeremonyWords words = ceremony_words(shown.hud);
   EXPECT_EQ(words.call, "GOAL");
   EXPECT_EQ(words.line, "Goal for ● ORION  -  Serve: ▲ VEGA");
   EXPECT_EQ(words.detail, "● ORION, Attack 2, 7.4 m/s");
 }
 
 TEST(MatchWords, ASetThatEndsOnTheClockIsNoGoal) {
-  Told told;
-  told.stop(wire::Screen::ceremony, false);
-  told.state.last_scorer = 1;
-  told.state.score = {1, 2};
-  told.state.sets = {1, 1};
-  told.hud.goal = {.team = 0, .scorer_rod = 5, .scorer_man = 1, .speed = 7.4f};  // an earlier one
-  const CeremonyWords words = ceremony_words(told.hud);
+  Shown shown;
+  shown.stop(wire::Screen::ceremony, false);
+  shown.state.last_scorer = 1;
+  shown.state.score = {1, 2};
+  shown.state.sets = {1, 1};
+  shown.hud.goal = {.team = 0, .scorer_rod = 5, .scorer_man = 1, .speed = 7.4f};  // an earlier one
+  const CeremonyWords words = ceremony_words(shown.hud);
   EXPECT_EQ(words.call, "TIME");
   EXPECT_EQ(words.line, "Set for ▲ VEGA");
   EXPECT_EQ(words.detail, "2 : 1, sets 1 : 1");
 }
 
 TEST(MatchWords, AGoalThatWinsASetSaysSo) {
-  Told told;
-  told.stop(wire::Screen::ceremony, true);
-  told.state.last_scorer = 1;
-  told.hud.set_over = true;
-  EXPECT_EQ(ceremony_words(told.hud).line, "Goal and set for ▲ VEGA");
-  EXPECT_EQ(ceremony_words(told.hud).call, "GOAL");
-  told.state.golden_goal = true;
-  EXPECT_EQ(ceremony_words(told.hud).call, "GOLDEN GOAL");
+  Shown shown;
+  shown.stop(wire::Screen::ceremony, true);
+  shown.state.last_scorer = 1;
+  shown.hud.set_over = true;
+  EXPECT_EQ(ceremony_words(shown.hud).line, "Goal and set for ▲ VEGA");
+  EXPECT_EQ(ceremony_words(shown.hud).call, "GOAL");
+  shown.state.golden_goal = true;
+  EXPECT_EQ(ceremony_words(shown.hud).call, "GOLDEN GOAL");
 }
 
 // --- the end of a match --------------------------------------------------------------------------
 
 TEST(MatchWords, AMatchOfSetsIsToldInSetsWithTheGoalsOfEach) {
-  Told told;
-  told.stop(wire::Screen::end, true);
-  told.state.last_scorer = 0;
-  told.state.score = {5, 3};
-  told.state.sets = {3, 1};
-  told.hud.sets = {{5, 4}, {2, 5}, {5, 1}, {5, 3}};
-  EndWords words = end_words(told.hud, 0);
+  Shown shown;
+  shown.stop(wire::Screen::end, true);
+  shown.state.last_scorer = 0;
+  shown.state.score = {5, 3};
+  shown.state.sets = {3, 1};
+  shown.hud.sets = {{5, 4}, {2, 5}, {5, 1}, {5, 3}};
+  EndWords words = end_words(shown.hud, 0);
   EXPECT_EQ(words.title, "● ORION WINS");
   EXPECT_EQ(words.result, (std::array<int, 2>{3, 1}));
   EXPECT_EQ(words.details, std::vector<std::string>{"sets  5:4   2:5   5:1   5:3"});
-  EXPECT_EQ(end_words(told.hud, 1).details,
+  EXPECT_EQ(end_words(shown.hud, 1).details,
             std::vector<std::string>{"sets  4:5   5:2   1:5   3:5"});
-  told.hud.sets = {{5, 1}, {5, 3}};  // joined late
-  EXPECT_EQ(end_words(told.hud, 0).details, std::vector<std::string>{"last set 5:3"});
-  told.state.sets = {1, 0};
-  words = end_words(told.hud, 0);
+  shown.hud.sets = {{5, 1}, {5, 3}};  // joined late
+  EXPECT_EQ(end_words(shown.hud, 0).details, std::vector<std::string>{"last set 5:3"});
+  shown.state.sets = {1, 0};
+  words = end_words(shown.hud, 0);
   EXPECT_EQ(words.result, (std::array<int, 2>{5, 3})) << "one set: its goals";
   EXPECT_TRUE(words.details.empty());
 }
 
 TEST(MatchWords, TheLadderNamesRungOpponentNextRungAndChampion) {
-  Told told;
-  told.state.mode = number(wire::Mode::ladder);
-  told.state.computer = {false, true};
-  told.state.rung = 2;
-  EXPECT_EQ(mode_lines(told.state, 0),
+  Shown shown;
+  shown.state.mode = number(wire::Mode::ladder);
+  shown.state.computer = {false, true};
+  shown.state.rung = 2;
+  EXPECT_EQ(mode_lines(shown.state, 0),
             (std::array<std::string, 2>{"Rung 3 of 5", "level 3, passer"}));
-  told.stop(wire::Screen::end, true);
-  told.state.sets = {1, 0};
-  EXPECT_EQ(end_words(told.hud, 0).call, "push a rod for the next rung: level 4, passer");
-  told.state.sets = {0, 1};
-  told.state.last_scorer = 1;
-  EXPECT_EQ(end_words(told.hud, 0).call, "push a rod to play again") << "lost";
-  told.state.computer = {true, false};
-  told.state.rung = 4;
-  const EndWords top = end_words(told.hud, 0);
+  shown.stop(wire::Screen::end, true);
+  shown.state.sets = {1, 0};
+  EXPECT_EQ(end_words(shown.hud, 0).call, "push a rod for the next rung: level 4, passer");
+  shown.state.sets = {0, 1};
+  shown.state.last_scorer = 1;
+  EXPECT_EQ(end_words(shown.hud, 0).call, "push a rod to play again") << "lost";
+  shown.state.computer = {true, false};
+  shown.state.rung = 4;
+  const EndWords top = end_words(shown.hud, 0);
   EXPECT_EQ(top.title, "CHAMPION OF THE LADDER");
   EXPECT_EQ(top.details, std::vector<std::string>{"▲ VEGA has beaten every opponent"});
-  told.state.attract = true;
-  EXPECT_EQ(mode_lines(told.state, 0)[0], "") << "computers show a match, nobody climbs";
-  EXPECT_EQ(end_words(told.hud, 0).title, "▲ VEGA WINS");
+  shown.state.attract = true;
+  EXPECT_EQ(mode_lines(shown.state, 0)[0], "") << "computers show a match, nobody climbs";
+  EXPECT_EQ(end_words(shown.hud, 0).title, "▲ VEGA WINS");
 }
 
 TEST(MatchWords, AChallengeTellsWhatIsLeftAndThePoints) {
-  Told told;
-  told.state.mode = number(wire::Mode::challenge);
-  told.state.timed = true;
-  told.state.seconds_left = 71.4f;
-  told.state.score = {2, 1};
-  EXPECT_EQ(mode_lines(told.state, 0)[0], "Challenge of the day");
-  EXPECT_EQ(mode_lines(told.state, 0)[1], "1:12 left, goals 2 : 1");
-  EXPECT_EQ(mode_lines(told.state, 1)[1], "1:12 left, goals 1 : 2");
+  Shown shown;
+  shown.state.mode = number(wire::Mode::challenge);
+  shown.state.timed = true;
+  shown.state.seconds_left = 71.4f;
+  shown.state.score = {2, 1};
+  EXPECT_EQ(mode_lines(shown.state, 0)[0], "Challenge of the day");
+  EXPECT_EQ(mode_lines(shown.state, 0)[1], "1:12 left, goals 2 : 1");
+  EXPECT_EQ(mode_lines(shown.state, 1)[1], "1:12 left, goals 1 : 2");
 }
 
 TEST(MatchWords, AreInThePersonsLanguage) {
   use_language("de", CLIENT_CATALOGUES);
-  Told told;
-  told.stop(wire::Screen::ceremony, false);
-  EXPECT_EQ(ceremony_words(told.hud).call, "ZEIT");
+  Shown shown;
+  shown.stop(wire::Screen::ceremony, false);
+  EXPECT_EQ(ceremony_words(shown.hud).call, "ZEIT");
   use_language("ko", CLIENT_CATALOGUES);
-  told.state.mode = number(wire::Mode::ladder);
-  told.state.rung = 2;
-  EXPECT_EQ(mode_lines(told.state, 0)[0], "사다리 5단 중 3단");
+  shown.state.mode = number(wire::Mode::ladder);
+  shown.state.rung = 2;
+  EXPECT_EQ(mode_lines(shown.state, 0)[0], "사다리 5단 중 3단");
   use_language("en", CLIENT_CATALOGUES);
 }
 

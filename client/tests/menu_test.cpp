@@ -38,7 +38,7 @@ class TuningPanel : public testing::Test {
                    .string()),
         menu(folder) {
     std::filesystem::create_directories(folder);
-    menu.hear(1, told, true);
+    menu.hear(1, reported, true);
   }
   ~TuningPanel() override { std::filesystem::remove_all(folder); }
   int row(const std::string& label) const { return row_of(menu.page(0), label); }
@@ -48,14 +48,14 @@ class TuningPanel : public testing::Test {
     for (const std::int64_t end = now + long_us; now < end; now += 16'000) {
       for (const wire::MatchRequest& request : menu.requests(now)) {
         all.push_back(request);
-        told.*foosball::kTuningFields[request.value].value = request.amount;
+        reported.*foosball::kTuningFields[request.value].value = request.amount;
       }
-      menu.hear(session, told, true);
+      menu.hear(session, reported, true);
     }
     return all;
   }
   std::string folder;
-  foosball::Tuning told;
+  foosball::Tuning reported;
   std::int64_t now = kSecond;
   TuningMenu menu;
 };
@@ -78,7 +78,7 @@ TEST_F(TuningPanel, AsksNoFasterThanAServerHearsAndUntilItIsGranted) {
   const foosball::Tuning wanted = menu.wanted();
   const auto asked = grant(4 * kSecond);
   EXPECT_EQ(asked.size(), foosball::kTuningFields.size());
-  EXPECT_TRUE(told == wanted);
+  EXPECT_TRUE(reported == wanted);
   EXPECT_GE(4 * kSecond / TuningMenu::kEveryUs, static_cast<std::int64_t>(asked.size()));
   EXPECT_TRUE(grant(kSecond).empty());
 }
@@ -88,24 +88,24 @@ TEST_F(TuningPanel, GivesUpARequestThatHasNoEffectAndSaysSo) {
   int asked = 0;
   for (int i = 0; i < 600; ++i, now += 16'000) {
     asked += static_cast<int>(menu.requests(now).size());
-    menu.hear(1, told, true);
+    menu.hear(1, reported, true);
   }
   EXPECT_EQ(asked, TuningMenu::kTries);
   EXPECT_NE(menu.page(0).problem.find("gravity"), std::string::npos);
-  EXPECT_TRUE(menu.wanted() == told);
+  EXPECT_TRUE(menu.wanted() == reported);
 }
 
 TEST_F(TuningPanel, ForgetsWhatWasWantedOfAServerThatRestarted) {
   menu.step(row("gravity"), {.right = 5});
   menu.hear(2, std::nullopt, true);
   EXPECT_TRUE(menu.requests(now).empty());
-  menu.hear(2, told, true);
+  menu.hear(2, reported, true);
   EXPECT_TRUE(menu.requests(now).empty());
 }
 
 TEST_F(TuningPanel, ShowsTheValuesToOthersAndAsksNothingForThem) {
-  told.gravity = 9.5;
-  menu.hear(1, told, false);
+  reported.gravity = 9.5;
+  menu.hear(1, reported, false);
   for (int i = 0; i < menu.rows(); ++i) {
     if (i == row("Save as this profile")) continue;
     menu.step(i, {.right = 1});
@@ -131,14 +131,14 @@ TEST_F(TuningPanel, WritesValuesInUnitsThatPeopleRead) {
 TEST_F(TuningPanel, SavesLoadsAndResets) {
   menu.step(row("gravity"), {.right = 5});
   grant(kSecond);
-  const foosball::Tuning mine = told;
+  const foosball::Tuning mine = reported;
   menu.step(row("Save as this profile"), {.confirm = true});
   menu.step(row("All values to their defaults"), {.confirm = true});
   grant(kSecond);
-  EXPECT_TRUE(told == foosball::Tuning{});
+  EXPECT_TRUE(reported == foosball::Tuning{});
   menu.step(row("Load the profile"), {.confirm = true});
   grant(kSecond);
-  EXPECT_TRUE(told == mine);
+  EXPECT_TRUE(reported == mine);
   EXPECT_TRUE(profile::load_tuning(folder + "/profile-1.toml").value() == mine);
 }
 
@@ -272,15 +272,15 @@ class ControllersPage : public testing::Test {
   // A controller with 1000 frames per second, of which every 50th is lost; frames are 0.4 ms old
   // when used.
   void hear(double seconds) {
-    wire::Devices told{std::llround(1e6 * seconds), {{}}};
-    wire::DeviceReport& device = told.devices[0];
+    wire::Devices reported{std::llround(1e6 * seconds), {{}}};
+    wire::DeviceReport& device = reported.devices[0];
     device.name = "cabinet";
     device.state = number(wire::DeviceState::live);
     device.frames = device.stamped = static_cast<std::uint64_t>(980 * seconds);
     device.lost = static_cast<std::uint64_t>(20 * seconds);
     device.latency_sum_us = 400 * device.frames;
     device.rods[2] = {number(wire::RodStatus::live), std::llround(100 * seconds), -7, 0.0f, 0.0f};
-    menu.hear(told);
+    menu.hear(reported);
   }
   DevicesMenu menu;
 };

@@ -68,18 +68,18 @@ TEST_P(RenderedWords, APlayerIsToldTheKeysWhereAChoiceIsToBeMadeAndWhenAskingFor
     hud.show_help = asked;
     return written(state, hud);
   };
-  const auto told = [&](std::uint8_t screen, bool paused, bool asked) {
+  const auto reported = [&](std::uint8_t screen, bool paused, bool asked) {
     wire::Snapshot state = scripted_play(0.35);
     state.screen = screen;
     state.paused = paused;
     const glm::ivec2 below{kSize.x / 2, kSize.y - 25};
     return changed(words(state, -1, false), words(state, 0, asked), below, 25) > 200;
   };
-  EXPECT_TRUE(told(0, false, false));
-  EXPECT_TRUE(told(1, false, false));
-  EXPECT_TRUE(told(2, true, false));
-  EXPECT_FALSE(told(2, false, false)) << "the view of the play is free";
-  EXPECT_TRUE(told(2, false, true));
+  EXPECT_TRUE(reported(0, false, false));
+  EXPECT_TRUE(reported(1, false, false));
+  EXPECT_TRUE(reported(2, true, false));
+  EXPECT_FALSE(reported(2, false, false)) << "the view of the play is free";
+  EXPECT_TRUE(reported(2, false, true));
 }
 
 // The page with its longest texts: of the row, the value and the error.

@@ -43,7 +43,7 @@ CLI::Validator within(double low, double high) {
         const bool number = CLI::detail::lexical_cast(text, value);
         if (number && value >= low && value <= high) return std::string();
         std::ostringstream sentence;
-        sentence << "\"" << text << "\" is no number from " << low << " to " << high;
+        sentence << "\"" << text << "\" is not a number from " << low << " to " << high;
         return sentence.str();
       },
       "NUMBER");

@@ -25,10 +25,11 @@ std::string footer() {
             "\n";
   }
   return text +
-         "\nEvery seed is played twice with the sides changed over. What the figures mean:\n"
+         "\n"
+         "Every seed is played twice, with exchanged sides. The statistics are explained in\n"
          "docs/match-runner.md.\n\n"
          "Exit codes: 0 done; 1 something failed, a ball was stuck (--stuck-balls), or stopped\n"
-         "before it was done; 2 a bad option.";
+         "before the end; 2 a bad option.";
 }
 
 // "5@FILE" with the file's name replaced by its values.
@@ -76,22 +77,24 @@ void add_options(CLI::App& cli, Options& o, Raw& raw) {
   cli.add_option("--tuning", raw.tuning,
                  "profile of tuning values, TOML; space-foosball-server --list-tuning shows one");
   cli.add_option("--characters", raw.characters,
-                 "folder of character files, in place of the built-in ones: docs/characters.md");
-  cli.add_option("--seed", raw.seed, "of the first pair of matches; the next has the next")
+                 "folder of character files, instead of the built-in ones: docs/characters.md");
+  cli.add_option("--seed", raw.seed,
+                 "seed of the first pair of matches; each further pair has the next seed")
       ->check(server::check_seed);
-  auto* passive = cli.add_flag("--passive", raw.passive,
-                               "the same as --away idle: what an idle side makes of play");
+  auto* passive =
+      cli.add_flag("--passive", raw.passive, "the same as --away idle: play against an idle side");
   passive->excludes(away);
-  auto* matches = cli.add_option("--matches", o.matches, "to play; in pairs, so an even number")
-                      ->check(CLI::Range(2, 100'000'000));
-  cli.add_option("--max-minutes", o.max_minutes, "a match is over after so much simulated time")
+  auto* matches =
+      cli.add_option("--matches", o.matches, "number of matches; in pairs, so an even number")
+          ->check(CLI::Range(2, 100'000'000));
+  cli.add_option("--max-minutes", o.max_minutes, "a match ends after this simulated time")
       ->check(CLI::Range(0.05, 600.0))
       ->check(server::check_not_nan);
-  cli.add_option("--jobs", o.jobs, "threads that play; as many as there are cores")
+  cli.add_option("--jobs", o.jobs, "number of threads; default: the number of cores")
       ->check(CLI::Range(1, 1024));
   auto* report = cli.add_flag("--report", raw.report,
-                              "figures of play, each beside its goal, also against an idle side, a "
-                              "spinner, with one rod, and of each character against the others");
+                              "statistics of play with their goals, also against an idle side and "
+                              "a spinner, with one rod, and of each character against the others");
   auto* stuck = cli.add_flag("--stuck-balls", raw.stuck_balls,
                              "how long nobody can reach the ball, or nobody plays it: --matches of "
                              "each level 1 to 5 against itself in each layout; exit code 1 if that "
@@ -102,11 +105,11 @@ void add_options(CLI::App& cli, Options& o, Raw& raw) {
                    ->type_name("OLD NEW")
                    ->expected(2)
                    ->check(check_player);
-  auto* robin =
-      cli.add_option("--round-robin", raw.round_robin, "A B ...: each against each, and their Elo")
-          ->type_name("PLAYER ...")
-          ->expected(2, 64)
-          ->check(check_player);
+  auto* robin = cli.add_option("--round-robin", raw.round_robin,
+                               "A B ...: each against each other, with Elo ratings")
+                    ->type_name("PLAYER ...")
+                    ->expected(2, 64)
+                    ->check(check_player);
   auto* balance = cli.add_flag("--balance", raw.balance,
                                "every pair of characters, played by --home: is any beyond 60:40?");
   for (auto* mode : {sprt, robin, balance}) {
@@ -115,29 +118,29 @@ void add_options(CLI::App& cli, Options& o, Raw& raw) {
   }
   for (auto* mode : {sprt, robin}) mode->excludes(home)->excludes(balance);
   sprt->excludes(robin);
-  auto* study = cli.add_flag("--study", raw.study,
-                             "what the tuning values do to play, varied about those of --tuning: "
-                             "--matches at each point of a design, in both layouts, played by "
-                             "--home (docs/tuning-study.md)");
+  auto* study = cli.add_flag(
+      "--study", raw.study,
+      "the effect of the tuning values on play, varied around those of --tuning: --matches at each "
+      "point of a design, in both layouts, played by --home (docs/tuning-study.md)");
   study->excludes(report)->excludes(stuck)->excludes(sprt)->excludes(robin)->excludes(balance);
   study->excludes(away)->excludes(passive);
   auto* vary = cli.add_option(
       "--vary", raw.vary,
       "NAME:KEY=LOW:HIGH:STEPS, as in \"jumper:mass=0.05:0.09:5\": the points of a character "
       "against all others by one of its numbers, --matches at each value, played by --home");
-  auto* traits = cli.add_flag("--traits", raw.traits,
-                              "what sets characters apart: each against itself, --matches each, "
-                              "played by --home");
+  auto* traits = cli.add_flag(
+      "--traits", raw.traits,
+      "the differences between characters: each against itself, --matches each, played by --home");
   for (auto* mode : {vary, traits}) {
     mode->excludes(report)->excludes(stuck)->excludes(sprt)->excludes(robin);
     mode->excludes(balance)->excludes(study);
     mode->excludes(away)->excludes(passive);
   }
   vary->excludes(traits);
-  auto* screen = cli.add_flag("--screen", raw.screen,
-                              "what each value of --home's judgment does to the share of goals "
-                              "against --opponents, --matches at each point of a design, in both "
-                              "layouts");
+  auto* screen =
+      cli.add_flag("--screen", raw.screen,
+                   "the effect of each value of --home's judgment on the fraction of goals against "
+                   "--opponents, --matches at each point of a design, in both layouts");
   auto* train = cli.add_flag("--train", raw.train,
                              "search for the judgment with which --home scores most against "
                              "--opponents, and test it on new seeds (docs/match-runner.md)");
@@ -148,17 +151,18 @@ void add_options(CLI::App& cli, Options& o, Raw& raw) {
   }
   screen->excludes(train);
   match::TrainPlan& t = o.training;
-  cli.add_option("--opponents", t.opponents, "of --screen and --train; else 5 and classic:0.9")
+  cli.add_option("--opponents", t.opponents, "of --screen and --train; default: 5 and classic:0.9")
       ->type_name("PLAYER ...")
       ->expected(1, 16)
       ->check(check_player);
   cli.add_option("--parameters", raw.parameters,
-                 "NAME,NAME,...: the values that --screen or --train may change; else all");
+                 "NAME,NAME,...: the values that --screen or --train may change; default: all");
   cli.add_option("--generations", t.generations, "of --train")->check(CLI::Range(1, 100'000));
-  cli.add_option("--population", t.population, "samples of a generation; else 4 + 3 ln n, even")
+  cli.add_option("--population", t.population, "samples of a generation; default: 4 + 3 ln n, even")
       ->check(CLI::Range(4, 10'000));
   cli.add_option("--step", t.step,
-                 "as a share of each range: of --screen; of --train, the first samples' deviation")
+                 "as a fraction of each range: the step of --screen; for --train, the deviation of "
+                 "the first samples")
       ->check(CLI::Range(0.01, 0.5))
       ->check(server::check_not_nan);
   cli.add_option("--validate", t.validation,
@@ -173,20 +177,21 @@ void add_options(CLI::App& cli, Options& o, Raw& raw) {
       ->check(CLI::Range(0, 100'000));
   cli.add_option("--elo0", o.elo0, "sequential test: H0, NEW is better by no more than this");
   cli.add_option("--elo1", o.elo1, "sequential test: H1, NEW is better by this");
-  cli.add_option("--alpha", o.alpha, "share of wrong decisions for H1")
+  cli.add_option("--alpha", o.alpha, "fraction of wrong decisions for H1")
       ->check(CLI::Range(1e-6, 0.5))
       ->check(server::check_not_nan);
-  cli.add_option("--beta", o.beta, "share of wrong decisions for H0")
+  cli.add_option("--beta", o.beta, "fraction of wrong decisions for H0")
       ->check(CLI::Range(1e-6, 0.5))
       ->check(server::check_not_nan);
-  cli.add_option("--max-matches", o.max_matches, "a sequential test gives up after so many")
+  cli.add_option("--max-matches", o.max_matches,
+                 "a sequential test stops after this number of matches")
       ->check(CLI::Range(2, 100'000'000));
   cli.add_option("--record", o.record, "folder for a recording of each match, for foosball-replay")
       ->check(CLI::ExistingDirectory);
   cli.add_option("--checkpoint", o.checkpoint,
-                 "file that keeps finished matches; the same command goes on from there");
+                 "file that stores finished matches; the same command continues from there");
   cli.add_option("--results", o.results,
-                 "add each match that is played to this file; space-foosball-results lists them");
+                 "add each match to this file; space-foosball-results lists them");
   cli.add_option("--csv", o.csv, "write the results there too, - for standard output");
   cli.add_option("--json", o.json, "write the results there too, - for standard output");
   cli.add_flag("--quiet", o.quiet, "no progress");
@@ -236,11 +241,11 @@ std::string objection_to_mode(const CLI::App& cli, Mode mode) {
     if (std::ranges::find(rule.modes, mode) != rule.modes.end()) continue;
     std::string names;
     for (const Mode read : rule.modes) names += (names.empty() ? "" : " or ") + name_of(read);
-    return std::string(rule.option) + " is read with " + names + " only";
+    return std::string(rule.option) + " is used with " + names + " only";
   }
   const Mode both[] = {Mode::stuck_balls, Mode::study, Mode::screen, Mode::train};
   if (cli.get_option("--layout")->count() > 0 && std::ranges::find(both, mode) != std::end(both))
-    return name_of(mode) + " plays in both layouts: leave --layout out";
+    return name_of(mode) + " plays in both layouts: omit --layout";
   return {};
 }
 

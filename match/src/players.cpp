@@ -161,7 +161,7 @@ Made make_computer(const PlayerDesc& desc) {
 Made make_one_rod(const PlayerDesc& desc, const std::string& argument) {
   // Nested one-rod players could overflow the stack.
   if (argument.starts_with("one-rod"))
-    return tl::unexpected(std::string("one-rod is of another player: give one such as one-rod:2"));
+    return tl::unexpected(std::string("one-rod needs another player: give one such as one-rod:2"));
   auto inner = make_player({argument.empty() ? "classic" : argument, desc.team, desc.seed});
   if (!inner) return inner;
   return std::make_unique<OneRod>(desc.team, std::move(*inner));
@@ -213,7 +213,7 @@ tl::expected<std::unique_ptr<Player>, std::string> make_player(const PlayerDesc&
   }
   const std::string level = name.substr(0, name.find('@'));
   if (level.size() == 1 && level[0] >= '0' && level[0] <= '9') return make_computer(desc);
-  return tl::unexpected("\"" + desc.name + "\" is no player: give one of " + all_syntax());
+  return tl::unexpected("\"" + desc.name + "\" is not a player: give one of " + all_syntax());
 }
 
 std::string default_player() {

@@ -120,11 +120,11 @@ tl::expected<std::vector<std::size_t>, std::string> parse_fields(const std::stri
     const int index = foosball::judgment_index(name);
     if (index < 0) {
       return tl::unexpected("\"" + name +
-                            "\" is no value of judgment: --list-judgment 5 shows their names");
+                            "\" is not a value of judgment: --list-judgment 5 shows their names");
     }
     const auto field = static_cast<std::size_t>(index);
     if (std::ranges::find(fields, field) != fields.end())
-      return tl::unexpected(name + " is named twice: name it once");
+      return tl::unexpected(name + " is given twice: give it once");
     fields.push_back(field);
     at = comma + 1;
   }

@@ -22,8 +22,8 @@ refuses() {
   [[ $(wc -l <"$folder/err") == 1 && ! -s $folder/out ]] || fail "$*: not one line: $(cat "$folder/err")"
   grep -q -- "$sentence" "$folder/err" || fail "$*: said $(cat "$folder/err")"
 }
-refuses 'is no player: give one of' --home nobody
-refuses 'one-rod is of another player' --home one-rod:one-rod:1
+refuses 'is not a player: give one of' --home nobody
+refuses 'one-rod needs another player' --home one-rod:one-rod:1
 refuses 'a skill is a number from 0 to 1' --away classic:1.5
 refuses 'paper' --layout square
 refuses 'excludes' --sprt classic idle --report
@@ -33,21 +33,21 @@ refuses '--matches' --matches many
 refuses 'not exist' --record "$folder/none"
 refuses 'choose a file' --checkpoint "$folder/none/file"
 refuses '--nonsense' --nonsense
-for seed in -1 18446744073709551616 1x; do refuses 'is no whole number from 0 to' --seed "$seed"; done
-refuses 'is no number' --max-minutes nan
-refuses 'is no number' --sprt idle classic --alpha nan
-refuses 'is no number' --sprt idle classic --beta nan
-refuses 'is no number' --train --home 5 --step nan
+for seed in -1 18446744073709551616 1x; do refuses 'is not a whole number from 0 to' --seed "$seed"; done
+refuses 'is not a number' --max-minutes nan
+refuses 'is not a number' --sprt idle classic --alpha nan
+refuses 'is not a number' --sprt idle classic --beta nan
+refuses 'is not a number' --train --home 5 --step nan
 # What the mode does not read is not taken in silence.
-refuses '--opponents is read with --screen or --train only' --opponents 5
-refuses '--step is read with' --report --step 0.2
-refuses '--parameters is read with' --parameters shot_bar
-refuses '--write is read with --train only' --screen --write "$folder/file"
-refuses '--samples is read with --study only' --samples 3
-refuses '--max-matches is read with --sprt or --round-robin or --balance only' --max-matches 10
-refuses '--alpha is read with' --report --alpha 0.1
-for option in --elo0 --elo1 --beta; do refuses "$option is read with --sprt or --round-robin only" --balance $option 0.1; done
-refuses 'leave --layout out' --stuck-balls --layout paper
+refuses '--opponents is used with --screen or --train only' --opponents 5
+refuses '--step is used with' --report --step 0.2
+refuses '--parameters is used with' --parameters shot_bar
+refuses '--write is used with --train only' --screen --write "$folder/file"
+refuses '--samples is used with --study only' --samples 3
+refuses '--max-matches is used with --sprt or --round-robin or --balance only' --max-matches 10
+refuses '--alpha is used with' --report --alpha 0.1
+for option in --elo0 --elo1 --beta; do refuses "$option is used with --sprt or --round-robin only" --balance $option 0.1; done
+refuses 'omit --layout' --stuck-balls --layout paper
 refuses 'both go to standard output' --csv - --json -
 refuses "--csv and --json both go to $folder/./same" --csv "$folder/same" --json "$folder/./same"
 mkfifo "$folder/pipe"
@@ -62,7 +62,7 @@ printf 'gravity = 9.0\nhop_gain = true\n' >"$folder/garbage.toml"
 refuses 'garbage.toml:2: hop_gain must be a number' --tuning "$folder/garbage.toml"
 refuses 'cannot be read' --tuning "$folder/none.toml"
 refuses 'has no judgment' --train --home classic
-refuses 'is no value of judgment' --train --home 5 --parameters shot_bar,bar
+refuses 'is not a value of judgment' --train --home 5 --parameters shot_bar,bar
 refuses 'excludes' --train --home 5 --report
 printf 'shot_bar = 0.4\n\npatience = "long"\n' >"$folder/hasty.toml"
 refuses 'hasty.toml:3: patience must be a number from 0.1 to 3 s' --home "5@$folder/hasty.toml"
@@ -117,7 +117,7 @@ grep -qx "$digest" "$folder/out" || fail "--results changes the matches"
 while IFS=, read -r _ _ _ _ _ _ _ _ _ recording _; do
   [[ $recording == recording || -f $recording ]] || fail "no recording $recording"
 done <"$folder/rows"
-refuses 'no database of results' --results "$folder/whole"
+refuses 'not a database of results' --results "$folder/whole"
 refuses 'cannot be opened' --results "$folder/none/file"
 python3 - "$folder/matches.sqlite" <<'SQL'
 import sqlite3, sys

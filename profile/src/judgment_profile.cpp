@@ -19,7 +19,7 @@ tl::expected<Judgment, std::string> load_judgment(const std::string& path, const
 }
 
 std::string format_judgment(const Judgment& judgment, const Judgment& base) {
-  return "# Judgment of a computer player. Lines may be left out: then the level's own value "
+  return "# Judgment of a computer player. Lines may be omitted: then the level's own value "
          "counts.\n" +
          write_fields(judgment, base, foosball::kJudgmentFields);
 }

@@ -22,7 +22,7 @@ tl::expected<Tuning, std::string> load_tuning(const std::string& path) {
 }
 
 std::string format_tuning(const Tuning& tuning) {
-  return "# Tuning values of Space Foosball. Lines may be left out: then the default counts.\n" +
+  return "# Tuning values of Space Foosball. Lines may be omitted: then the default is used.\n" +
          write_fields(tuning, Tuning{}, kTuningFields);
 }
 

@@ -36,9 +36,9 @@ std::string problem_with(const MatchResult& result) {
            result.finished_at.substr(0, 40);
   }
   if (!is_text(result.layout) || !is_text(result.recording)) return "a text is too long";
-  if (!is_amount(result.play_seconds)) return "the match's length is no number of seconds";
+  if (!is_amount(result.play_seconds)) return "the match's length is not a number of seconds";
   if (const auto& s = result.shot_speeds; s && !(is_amount(s->median) && is_amount(s->fastest))) {
-    return "a shot's speed is no number";
+    return "a shot's speed is not a number";
   }
   for (const Team& team : result.teams) {
     if (team.players.empty() || team.players.size() > kMaxPlayersOfTeam) {
@@ -49,14 +49,14 @@ std::string problem_with(const MatchResult& result) {
         return "a player's name is empty or too long";
       }
       if (!is_amount(player.share) || player.share > 1.0) {
-        return "a player's share of the match is no number from 0 to 1";
+        return "a player's fraction of the match is not a number from 0 to 1";
       }
     }
     if (team.statistics && !is_amount(team.statistics->possession_seconds)) {
-      return "a team's possession is no number of seconds";
+      return "a team's possession is not a number of seconds";
     }
     if (team.statistics && !is_amount(team.statistics->fastest_shot.value_or(0.0)))
-      return "a shot's speed is no number";
+      return "a shot's speed is not a number";
   }
   return {};
 }

@@ -48,8 +48,8 @@ QuestionSummary summary_of(std::span<const Answers> all, std::size_t question) {
 }  // namespace
 
 std::string problem_with(const Answers& answers) {
-  if (answers.team < 0 || answers.team >= kTeams) return "a player's team is none";
-  if (answers.rods == 0 || answers.rods > 0xff) return "a player's rods are none";
+  if (answers.team < 0 || answers.team >= kTeams) return "a player has an invalid team";
+  if (answers.rods == 0 || answers.rods > 0xff) return "a player has no valid rods";
   bool any = false;
   for (const int score : answers.scores) {
     if (score < 0 || score > kMaxScore) return "an answer is beyond the scale";

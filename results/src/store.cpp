@@ -183,7 +183,7 @@ std::string what_is_wrong(sqlite3* database) {
     case SQLITE_LOCKED:
       return "another program has them locked; end it and try again";
     case SQLITE_NOTADB:
-      return "the file is no database of results; choose another file";
+      return "the file is not a database of results; choose another file";
     case SQLITE_CORRUPT:
       return "the file is damaged; move it away, a new one is made";
     case SQLITE_CANTOPEN:
@@ -225,7 +225,8 @@ std::optional<std::string> problem_with_file(const std::string& path, Access acc
     if (access == Access::create) return std::nullopt;
     return "there is no such file; a server writes it when it is started with --results";
   }
-  if (kind != std::filesystem::file_type::regular) return "it is no ordinary file; choose another";
+  if (kind != std::filesystem::file_type::regular)
+    return "it is not a regular file; choose another";
   return std::nullopt;
 }
 
@@ -257,7 +258,7 @@ tl::expected<Store, std::string> Store::open(const std::string& path, Access acc
   if (!version || !ours || !tables) return refused(what_is_wrong(opened));
   const bool fresh = *version == 0 && *ours == 0 && *tables == 0;
   if (!fresh && *ours != kApplicationId) {
-    return refused("the file is no database of results; choose another file");
+    return refused("the file is not a database of results; choose another file");
   }
   if (*version > kSchemaVersion) {
     return refused("they are of version " + std::to_string(*version) + ", this program knows " +
@@ -360,7 +361,7 @@ tl::expected<std::int64_t, std::string> Store::add(const Answers& answers) {
     return Statement(db, sql).bind(answers.match, answers.rods).row();
   };
   if (!exists("SELECT 1 FROM match WHERE id = ?1 AND ?2 > 0")) {
-    return tl::unexpected(sentence(path_, "answers belong to no match that is there"));
+    return tl::unexpected(sentence(path_, "answers belong to a match that is not in the file"));
   }
   if (exists("SELECT 1 FROM sheet WHERE match = ?1 AND (rods & ?2) != 0")) {
     return tl::unexpected(sentence(path_, "this player has answered for the match already"));

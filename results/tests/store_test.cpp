@@ -281,15 +281,15 @@ TEST_F(StoreTest, SaysWhichVersionItNeeds) {
 
 TEST_F(StoreTest, LeavesFilesOfOthersAlone) {
   execute("CREATE TABLE theirs (x)");
-  EXPECT_NE(refused(Access::create).find("no database of results"), std::string::npos);
+  EXPECT_NE(refused(Access::create).find("not a database of results"), std::string::npos);
   const std::string text(5000, 'x');
   std::ofstream(path_) << text;
-  EXPECT_NE(refused(Access::create).find("no database of results"), std::string::npos);
+  EXPECT_NE(refused(Access::create).find("not a database of results"), std::string::npos);
   EXPECT_EQ(fs::file_size(path_), text.size());
   fs::remove(path_);
   EXPECT_NE(refused(Access::read_only).find("no such file"), std::string::npos);
   fs::create_directory(path_);
-  EXPECT_NE(refused(Access::create).find("no ordinary file"), std::string::npos);
+  EXPECT_NE(refused(Access::create).find("not a regular file"), std::string::npos);
   path_ = "/nowhere/at/all.sqlite";
   EXPECT_NE(refused(Access::create).find("cannot be opened"), std::string::npos);
 }

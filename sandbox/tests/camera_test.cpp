@@ -90,15 +90,15 @@ TEST(OrbitCamera, NeverTurnsOverItsHeadNorZoomsThroughItsTarget) {
 
 TEST(StepTimes, FiguresAreOfTheLastOnesByRank) {
   StepTimes times(100);
-  EXPECT_EQ(times.figures().median, 0.0);
+  EXPECT_EQ(times.statistics().median, 0.0);
   for (int i = 1; i <= 250; ++i) times.add(i);
   EXPECT_EQ(times.size(), 100u);
-  const StepTimes::Figures all = times.figures();  // of 151 .. 250
+  const StepTimes::Statistics all = times.statistics();  // of 151 .. 250
   EXPECT_EQ(all.median, 200.0);
   EXPECT_EQ(all.p99, 249.0);
   EXPECT_EQ(all.max, 250.0);
   EXPECT_EQ(times.last(3), (std::vector<double>{248, 249, 250}));
-  EXPECT_EQ(times.figures(1).p99, 250.0);
+  EXPECT_EQ(times.statistics(1).p99, 250.0);
   times.clear();
   EXPECT_TRUE(times.last(3).empty());
 }

@@ -141,7 +141,7 @@ TEST(SandboxSimulation, LetsGoOfWhatItsBudgetDoesNotHold) {
   const std::size_t before = simulation.steps();
   must(simulation.advance(0.001, 1.0, 0.030));
   EXPECT_LE(simulation.steps() - before, 2u) << "the rest of the frame before was not let go";
-  EXPECT_NEAR(simulation.times().figures().median, 1000.0, 1e-6);  // [us]
+  EXPECT_NEAR(simulation.times().statistics().median, 1000.0, 1e-6);  // [us]
 }
 
 TEST(SandboxSimulation, BeginsAnewToTheBit) {

@@ -145,24 +145,24 @@ tl::expected<cabinet::Calibration, std::string> calibration_of(const std::string
   if (!file.empty()) {
     auto calibration = cabinet::load_calibration(file);
     if (!calibration) return calibration;
-    log(server::LogLevel::info, address + " is calibrated by " + file);
+    log(server::LogLevel::info, address + " uses the calibration " + file);
     if (const auto conflict = cabinet::serial_conflict(*calibration, serial); !conflict.empty())
       log(server::LogLevel::warning, address + ": " + conflict + " (" + file +
                                          "): run space-foosball calibrate --device " + address +
-                                         ", or name its own file with --calibration");
+                                         ", or give its own file with --calibration");
     return calibration;
   }
   log(server::LogLevel::info,
       address + " is not calibrated: its rods drift; run space-foosball calibrate --device " +
-          address + ", or name a file with --calibration");
+          address + ", or give a file with --calibration");
   return cabinet::nominal_calibration();
 }
 
 // Logs each text only once.
 server::Log only_news(const server::Log& log) {
-  return [log, told = std::make_shared<std::set<std::string>>()](server::LogLevel level,
-                                                                 const std::string& text) {
-    if (told->insert(text).second) log(level, text);
+  return [log, reported = std::make_shared<std::set<std::string>>()](server::LogLevel level,
+                                                                     const std::string& text) {
+    if (reported->insert(text).second) log(level, text);
   };
 }
 
@@ -330,7 +330,8 @@ int serve(server::Server& server, const app::Options& options, Outputs& outputs,
   log(server::LogLevel::info, "listening at " + os::to_text(*address));
   if (options.password_was_made) {
     log(server::LogLevel::warning, "from another machine, join with the password " +
-                                       *options.access.password + " (--password-file chooses one)");
+                                       *options.access.password +
+                                       " (choose one with --password-file)");
   }
   if (options.phones.open) {
     log(server::LogLevel::info, "phones join at " + server.phones());

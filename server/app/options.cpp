@@ -24,7 +24,8 @@ constexpr std::uint16_t kDefaultPort = 7531;
 constexpr double kMaxSeconds = 1e6;  // 11 days
 
 std::string check_address(const std::string& text) {
-  return os::parse_address(text, 0) ? "" : "\"" + text + "\" is no address, such as 0.0.0.0 or ::";
+  return os::parse_address(text, 0) ? ""
+                                    : "\"" + text + "\" is not an address, such as 0.0.0.0 or ::";
 }
 
 std::optional<server::Endpoint> parse_group(const std::string& text) {
@@ -57,26 +58,26 @@ std::string check_group(const std::string& text) {
   return parse_group(text)
              ? ""
              : "\"" + text +
-                   "\" is no multicast group, such as 239.7.5.31:7532 or [ff15::7531]:7532";
+                   "\" is not a multicast group, such as 239.7.5.31:7532 or [ff15::7531]:7532";
 }
 
 std::string check_seconds(const std::string& text) {
   double value = 0.0;
   const bool ok = CLI::detail::lexical_cast(text, value) && value > 0.0 && value <= kMaxSeconds;
-  return ok ? "" : "\"" + text + "\" is no number of seconds between 0.001 and 1000000";
+  return ok ? "" : "\"" + text + "\" is not a number of seconds between 0.001 and 1000000";
 }
 
 std::string check_sets(const std::string& text) {
   int sets = 0;
   const bool ok = CLI::detail::lexical_cast(text, sets) && sets >= 1 && sets <= 17 && sets % 2 == 1;
-  return ok ? "" : "\"" + text + "\" is no odd number of sets from 1 to 17";
+  return ok ? "" : "\"" + text + "\" is not an odd number of sets from 1 to 17";
 }
 
 std::string check_date(const std::string& text) {
   std::uint32_t date = 0;
   const bool ok =
       text.size() == 8 && CLI::detail::lexical_cast(text, date) && foosball::is_date(date);
-  return ok ? "" : "\"" + text + "\" is no day of the calendar, such as 20261122";
+  return ok ? "" : "\"" + text + "\" is not a day of the calendar, such as 20261122";
 }
 
 struct Raw {
@@ -100,49 +101,51 @@ void add_match(CLI::App& cli, Options& o, Raw& raw) {
   const CLI::IsMember player({"human", "computer"});
   cli.add_option("--layout", raw.layout, "paper (8 rods of 4 men) or tournament (1-2-5-3)")
       ->check(CLI::IsMember({"paper", "tournament"}));
-  cli.add_option("--seed", raw.seed, "of the match and the computer players")
+  cli.add_option("--seed", raw.seed, "seed of the match and the computer players")
       ->check(server::check_seed);
   cli.add_option("--tuning", raw.tuning, "profile of tuning values, TOML; see --list-tuning");
   cli.add_flag("--list-tuning", raw.list_tuning, "print all tuning values as a profile");
   cli.add_option("--characters", raw.characters,
-                 "folder of character files to choose from, in place of the built-in ones and of "
-                 "your own in ~/.local/share/space-foosball/characters: docs/characters.md");
+                 "folder of character files to choose from, instead of the built-in ones and your "
+                 "own in ~/.local/share/space-foosball/characters: docs/characters.md");
   cli.add_option("--check-character", raw.check_character,
-                 "check a character file, print all of it, and leave");
-  cli.add_option("--team0", raw.team0, "human, or computer: plays while no person has the team")
+                 "check a character file, print its values, and exit");
+  cli.add_option("--team0", raw.team0, "human, or computer: it plays while no person has the team")
       ->check(player);
   cli.add_option("--team1", raw.team1, "the same for the other team")->check(player);
   cli.add_option("--rules", raw.rules, "arcade, or itsf: the tournament rules, best of 5 sets")
       ->check(CLI::IsMember({"arcade", "itsf"}));
-  cli.add_option("--goals", raw.goals, "that win a set")->check(CLI::Range(1, 99));
-  cli.add_option("--sets", raw.sets, "best of so many: 1, 3, 5 ... 17")->check(check_sets);
+  cli.add_option("--goals", raw.goals, "goals that win a set")->check(CLI::Range(1, 99));
+  cli.add_option("--sets", raw.sets, "best of how many sets: 1, 3, 5 ... 17")->check(check_sets);
   cli.add_option("--minutes", raw.minutes,
-                 "of play, then whoever leads has won; a draw goes on to the next goal")
+                 "time of play, then the leading team wins; at a draw the next goal decides")
       ->check(CLI::Range(0.1, 60.0))
       ->check(server::check_not_nan);
   cli.add_flag("--change-sides", raw.change_sides,
-               "between sets, at a cabinet (--device), whose players walk round it");
+               "change sides between sets, at a cabinet (--device), whose players walk around it");
   cli.add_option(
          "--mode", raw.mode,
-         "match; training: the ball is served to a man again and again; challenge: two "
-         "minutes, the same for all on a day; ladder: against stronger and stronger computers")
+         "match; training: the ball is served to a man again and again; challenge: two minutes, "
+         "the same for everybody on one day; ladder: against stronger and stronger computers")
       ->check(CLI::IsMember({"match", "training", "challenge", "ladder"}));
-  cli.add_option("--date", raw.date, "of the challenge, such as 20261122 (today)")
+  cli.add_option("--date", raw.date, "day of the challenge, such as 20261122 (default: today)")
       ->check(check_date);
-  cli.add_option("--level", raw.level,
-                 "of the computer players, 1 to 5; the ladder and the challenge have their own")
+  cli.add_option(
+         "--level", raw.level,
+         "level of the computer players, 1 to 5; the ladder and the challenge have their own")
       ->check(CLI::Range(1, foosball::kLevels));
   cli.add_option("--style", raw.style,
-                 "of the computer players: wall, shooter, passer or gambler; without it, the one "
-                 "that suits the level")
+                 "style of the computer players: wall, shooter, passer or gambler; default: the "
+                 "one that suits the level")
       ->check(CLI::IsMember({"wall", "shooter", "passer", "gambler"}));
   cli.add_flag("--computer-fills", o.computer_fills,
-               "the computer also plays rods that nobody has of a team that persons share");
+               "the computer also plays the free rods of a team of people");
   cli.add_option(
       "--device", o.devices,
       "a cabinet: serial:/dev/ttyACM0, hid:/dev/hidraw0 or file:RECORDING; a mouse for a "
       "rod from 1 to 8: evdev:/dev/input/event5:4; may be given more than once");
-  cli.add_option("--calibration", o.calibration, "of the cabinet's sensors")->needs("--device");
+  cli.add_option("--calibration", o.calibration, "calibration of the cabinet's sensors")
+      ->needs("--device");
 }
 
 void add_network(CLI::App& cli, Options& o, Raw& raw) {
@@ -152,20 +155,21 @@ void add_network(CLI::App& cli, Options& o, Raw& raw) {
       ->check(CLI::Range(0, 65535));
   cli.add_option(
          "--listen", o.network.listen,
-         "address to listen at, 0.0.0.0 or :: for all; without it, only this machine can connect")
+         "address to listen at, 0.0.0.0 or :: for all; default: only this machine can connect")
       ->check(check_address);
-  cli.add_option("--multicast", raw.multicast, "GROUP:PORT to send the snapshots to, all at once")
+  cli.add_option("--multicast", raw.multicast, "multicast GROUP:PORT to send the snapshots to")
       ->check(check_group);
   cli.add_option("--password-file", raw.password_file,
-                 "its first line is the password that who joins from another machine must know; "
-                 "without it, one is made and said")
+                 "its first line is the password for joining from another machine; default: one is "
+                 "generated and printed")
       ->check(check_password_file);
   cli.add_option("--host-password-file", raw.host_password_file,
-                 "... and that of who may pause, restart and choose from another machine")
+                 "... the same for the host: who may pause, restart and choose the game from "
+                 "another machine")
       ->check(check_password_file);
-  cli.add_option(
-         "--keep-seats", raw.keep_seats,
-         "for so many seconds the rods of a player whose connection was lost are kept; 0: not")
+  cli.add_option("--keep-seats", raw.keep_seats,
+                 "time for which the rods of a player whose connection was lost are reserved, in "
+                 "seconds; 0: not at all")
       ->check(CLI::Range(0.0, 3600.0))
       ->check(server::check_not_nan)
       ->capture_default_str();
@@ -174,63 +178,63 @@ void add_network(CLI::App& cli, Options& o, Raw& raw) {
       "phones play as pairs of rods: the screen shows a QR code; from other machines with --listen "
       "(docs/phones.md)");
   cli.add_option("--phone-port", raw.phone_port,
-                 "TCP, for phones; 0: any free one; without it, the one after --port")
+                 "TCP port for phones; 0: any free one; default: the one after --port")
       ->needs(phones)
       ->check(CLI::Range(0, 65535));
   cli.add_option("--phone-listen", o.phones.listen,
-                 "address to listen at for phones; without it, that of --listen: so phones play "
-                 "from afar where nobody else joins")
+                 "address to listen at for phones; default: that of --listen. It lets phones of "
+                 "the network play where no other machine may join")
       ->needs(phones)
       ->check(check_address);
   cli.add_flag("--no-haptics", raw.no_haptics,
                "neither the cabinet's rods nor phones shake when the ball is hit");
   cli.add_flag("--mixed-teams", o.access.mixed_teams,
-               "who joins from another machine may have rods of both teams");
+               "clients of other machines may have rods of both teams");
 }
 
 void add_run(CLI::App& cli, Options& o, Raw& raw) {
   auto* record = cli.add_option("--record", o.record, "write the match's journal to this file");
-  cli.add_flag("--overwrite", o.overwrite, "replace the recording that is there already")
-      ->needs(record);
-  auto* results = cli.add_option(
-      "--results", o.results,
-      "add every match that is over to this file; space-foosball-results lists them");
+  cli.add_flag("--overwrite", o.overwrite, "replace an existing recording")->needs(record);
+  auto* results =
+      cli.add_option("--results", o.results,
+                     "add every finished match to this file; space-foosball-results lists them");
   cli.add_flag("--no-questionnaire", o.no_questionnaire,
                "do not ask those who played six questions for that file (docs/questionnaire.md)")
       ->needs(results);
-  auto* replay =
-      cli.add_option("--replay", o.replay, "play a journal, and check it, for all to see")
-          ->excludes(record)
-          ->excludes("--phones")
-          ->excludes("--device");
+  auto* replay = cli.add_option("--replay", o.replay, "play a journal to all clients, and check it")
+                     ->excludes(record)
+                     ->excludes("--phones")
+                     ->excludes("--device");
   auto* recordings =
       cli.add_option("--recordings", o.recordings,
-                     "record into this folder, under the time of day; the oldest are dropped, and "
-                     "what cannot be recorded is only said")
+                     "record into this folder, with the date and time as the name; the oldest are "
+                     "deleted, and a failure to record is only reported")
           ->excludes(record)
           ->excludes(replay);
-  cli.add_option("--recordings-kept", o.recording_limits.count, "... of them at most so many")
+  cli.add_option("--recordings-kept", o.recording_limits.count,
+                 "... at most this number of recordings")
       ->needs(recordings)
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
-  cli.add_option("--recordings-gb", raw.recordings_gb, "... and so many GiB")
+  cli.add_option("--recordings-gb", raw.recordings_gb, "... and at most this size of all, in GiB")
       ->needs(recordings)
       ->check(CLI::Range(0.5, 1e4))
       ->check(server::check_not_nan)
       ->capture_default_str();
-  cli.add_flag("--fast", raw.fast, "replay as fast as it goes")->needs(replay);
-  cli.add_option("--seconds", raw.seconds, "end after so much time of the match")
+  cli.add_flag("--fast", raw.fast, "replay at full speed")->needs(replay);
+  cli.add_option("--seconds", raw.seconds, "end after this time of the match")
       ->check(check_seconds);
   cli.add_flag("--await-client", o.await_client,
-               "begin the match, or its replay, when the first client has joined");
+               "start the match, or its replay, when the first client has joined");
   cli.add_flag("--exit-when-empty", o.run.exit_when_empty,
                "end when the last client that joined has left");
   cli.add_option("--cpu", o.loop.cpu, "pin the tick to this core")->check(CLI::Range(0, 1023));
   cli.add_flag("--no-real-time", raw.no_real_time,
                "do not ask for real-time priority and locked memory");
   cli.add_option("--ready-file", o.ready_file, "written with port=N once clients can connect");
-  cli.add_option("--stats-file", o.stats_file, "figures of the run, as JSON or, if *.csv, CSV");
-  cli.add_flag("--quiet", o.quiet, "say only what is wrong");
+  cli.add_option("--stats-file", o.stats_file,
+                 "file for statistics of the run, as JSON or, if *.csv, CSV");
+  cli.add_flag("--quiet", o.quiet, "print only what is wrong");
 }
 
 // The path itself tells the kind of device.
@@ -292,10 +296,10 @@ std::string contradiction(const CLI::App& cli, const Options& o, const Raw& raw,
   const foosball::GameSetup setup = setup_of(raw);
   const bool challenge = setup.mode == foosball::Mode::challenge;
   if (!challenge && raw.date > 0)
-    return "--date is the day of a challenge: give --mode challenge with it, or leave it out";
+    return "--date is the day of a challenge: give --mode challenge with it, or omit it";
   if (challenge && given("--seed"))
-    return "--seed and --mode challenge: the challenge of the day has a seed of its own; leave "
-           "--seed out";
+    return "--seed and --mode challenge: the challenge of the day has a seed of its own; omit "
+           "--seed";
   wire::Game asked = server::to_game(setup);
   if (given("--level") || given("--style")) {
     const server::Opponent wanted = server::opponent_of(o.computer_player);
@@ -359,8 +363,8 @@ std::string take_mice(Options& o) {
     if (!address) return address.error();
     const int rod = address->rod;
     if (rod >= 0 && (taken >> rod & 1) != 0)
-      return device + ": another mouse has rod " + std::to_string(rod + 1) +
-             " already; give each a rod of its own";
+      return device + ": another mouse moves rod " + std::to_string(rod + 1) +
+             " already; give each mouse a rod of its own";
     if (rod >= 0) taken |= 1U << rod;
     o.mice.push_back({device, std::move(address->path), rod});
   }
@@ -371,7 +375,7 @@ std::string take_mice(Options& o) {
       mouse.rod = rod;
       taken |= 1U << rod;
     }
-    if (mouse.rod < 0) return mouse.name + ": write the rod that it moves behind it, such as :5";
+    if (mouse.rod < 0) return mouse.name + ": append the rod that it moves, such as :5";
   }
   o.devices = std::move(others);
   return {};
@@ -406,8 +410,8 @@ tl::expected<Options, Leave> parse(int argc, const char* const* argv) {
   CLI::App cli{
       "The physics server of Space Foosball: steps the match 1000 times a second and sends it to\n"
       "every renderer that has joined. Ctrl-C ends it.\n\n"
-      "Exit codes: 0 ended as told; 1 a replay differs, a recording lacks its end, or something\n"
-      "failed; 2 a bad option; 3 the port is in use; 4 a replay stops early.",
+      "Exit codes: 0 ended as requested; 1 a replay differs, a recording lacks its end, or\n"
+      "something failed; 2 a bad option; 3 the port is in use; 4 a replay stops early.",
       "space-foosball-server"};
   Options options;
   Raw raw;

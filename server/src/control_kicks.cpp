@@ -71,9 +71,9 @@ void ControlServer::put_out(Seat& seat, bool by_host) {
   count(Count::kicked);
   kicks_.put_out(seat.owner, os::monotonic_us());
   kicks_.close(client);
-  log(LogLevel::warning, seat.name + " at " + os::to_text(seat.peer) + " is put out by " +
+  log(LogLevel::warning, seat.name + " at " + os::to_text(seat.peer) + " is removed by " +
                              (by_host ? "the host" : "the players"));
-  clear_notice(wire::kKickTopics + client, seat.name + " is put out");
+  clear_notice(wire::kKickTopics + client, seat.name + " is removed");
   const auto connection = std::ranges::find_if(connections_, [&](const auto& c) {
     return c->client == client && c->state == State::joined;
   });
@@ -105,7 +105,7 @@ void ControlServer::watch_kicks(std::int64_t now_us) {
   const std::uint32_t over = matches_over_.load(std::memory_order_acquire);
   if (std::exchange(matches_over_seen_, over) != over) kicks_.begin_anew();
   while (const std::uint32_t target = kicks_.expire(now_us))
-    clear_notice(wire::kKickTopics + target, "too few wanted it");
+    clear_notice(wire::kKickTopics + target, "there were too few votes");
 }
 
 // A vote follows a target that leaves and rejoins, to watch or to play. It also continues against
@@ -113,7 +113,7 @@ void ControlServer::watch_kicks(std::int64_t now_us) {
 void ControlServer::carry_vote_over(const Seat& newcomer) {
   const auto before = kicks_.carry_over({newcomer.client, newcomer.name, newcomer.owner}, here());
   if (!before) return;
-  clear_notice(wire::kKickTopics + before->client, "the vote goes on");
+  clear_notice(wire::kKickTopics + before->client, "the vote continues");
   tell(wire::Notice::Level::info, wire::kKickTopics + newcomer.client,
        say<Said::vote_goes_on>(newcomer.name, before->name, newcomer.name));
 }

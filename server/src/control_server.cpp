@@ -57,13 +57,13 @@ void ControlServer::clear(std::uint32_t topic, const std::string& text) {
   if (outbound_.push({wire::Notice::Level::cleared, topic, text})) ::eventfd_write(wake_.get(), 1);
 }
 
-bool ControlServer::tell_tuning(const wire::Tuning& tuning) {
+bool ControlServer::send_tuning(const wire::Tuning& tuning) {
   if (!tunings_.push(wire::Tuning(tuning))) return false;
   ::eventfd_write(wake_.get(), 1);
   return true;
 }
 
-bool ControlServer::tell_game(const wire::Game& game) {
+bool ControlServer::send_game(const wire::Game& game) {
   if (!games_.push(wire::Game(game))) return false;
   ::eventfd_write(wake_.get(), 1);
   return true;
@@ -147,7 +147,7 @@ void ControlServer::run() {
     std::erase_if(connections_, [](const auto& c) { return c->state == State::dead; });
     tell_tick();
   }
-  say_goodbye();
+  send_goodbye();
 }
 
 void ControlServer::wait() {
@@ -247,7 +247,7 @@ void ControlServer::serve(ControlConnection& connection) {
   if (!connection.receive()) {
     if (connection.wrong_password()) {
       count(Count::wrong_passwords);
-      log(LogLevel::warning, os::to_text(connection.peer()) + " gave a wrong password");
+      log(LogLevel::warning, os::to_text(connection.peer()) + " sent a wrong password");
     } else if (connection.broke_off()) {
       count(Count::bad_messages);
     }
@@ -318,7 +318,7 @@ void ControlServer::drop_those_who_do_not_read() {
     again = slow != connections_.end();
     if (!again) continue;
     count(Count::slow_dropped);
-    drop(**slow, "does not read what it is sent");
+    drop(**slow, "does not read what is sent to it");
   }
 }
 
@@ -342,7 +342,7 @@ void ControlServer::log(LogLevel level, const std::string& text) {
   const std::uint64_t unsaid = std::exchange(unsaid_, 0);
   options_.log(level, unsaid == 0 ? text
                                   : text + " (" + std::to_string(unsaid) +
-                                        " lines like this were left out before it)");
+                                        " similar lines were omitted before it)");
 }
 
 void ControlServer::reject(ControlConnection& connection, const wire::Sentence& reason) {
@@ -453,7 +453,7 @@ void ControlServer::tell_tick() {
   }
 }
 
-void ControlServer::say_goodbye() {
+void ControlServer::send_goodbye() {
   publish_notices();
   for (auto& connection : connections_) {
     if (connection->state == State::joined) send(*connection, wire::Bye{bye_reason_});

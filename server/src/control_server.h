@@ -108,8 +108,8 @@ class ControlServer {
   void notify(wire::Notice::Level level, std::uint32_t topic, const wire::Sentence& text);
   void clear(std::uint32_t topic, const std::string& text);  // text: for the log
   // Sent to all, and to each client that joins until it is replaced. False: retry in the next tick.
-  bool tell_tuning(const wire::Tuning& tuning);
-  bool tell_game(const wire::Game& game);  // the same
+  bool send_tuning(const wire::Tuning& tuning);
+  bool send_game(const wire::Game& game);  // the same
   // A match that is stored was won: asks the clients that have rods. cabinet_rods: rods of the
   // server's own devices, whose players are asked at the first host on this machine. Dropped if 8
   // are pending.
@@ -186,7 +186,7 @@ class ControlServer {
   void answer(ControlConnection& connection, std::uint32_t topic, const wire::Sentence& text);
   void tell_tick();
   void log(LogLevel level, const std::string& text);
-  void say_goodbye();
+  void send_goodbye();
 
   // control_table.cpp: seats and permissions
   void answer_knock(ControlConnection& connection, const wire::Knock& knock);

@@ -385,7 +385,7 @@ void ControlServer::lose_seat(std::uint32_t client) {
   tell(wire::Notice::Level::warning, kAwayTopic + client,
        say<Said::player_lost>(seat.name, to_text(seat.rods), seconds));
   log(LogLevel::warning, seat.name + " at " + os::to_text(seat.peer) +
-                             " was lost: its rods are kept for " + seconds + " s");
+                             " was lost: its rods are reserved for " + seconds + " s");
   roster_changed_ = true;
 }
 
@@ -418,7 +418,7 @@ void ControlServer::watch_seats() {
   }
   foosball::Command request{};
   while (votes_.expire(now, request)) {
-    clear_notice(vote_topic(request), "too few wanted it");
+    clear_notice(vote_topic(request), "there were too few votes");
   }
 }
 

@@ -47,9 +47,9 @@ Sentence sentence(const cabinet::Device& device, DeviceState state, bool ever_li
 }  // namespace
 
 bool DeviceWatch::due(const Watched& watched, std::int64_t now_us) {
-  if (watched.told == watched.state) return false;
+  if (watched.reported == watched.state) return false;
   if (watched.state == DeviceState::live || watched.state == DeviceState::over) return true;
-  return watched.told == DeviceState::live || now_us - watched.since_us > kPatienceUs;
+  return watched.reported == DeviceState::live || now_us - watched.since_us > kPatienceUs;
 }
 
 void DeviceWatch::look(const std::vector<std::unique_ptr<cabinet::Device>>& devices,
@@ -59,14 +59,14 @@ void DeviceWatch::look(const std::vector<std::unique_ptr<cabinet::Device>>& devi
     Watched& watched = watched_[i];
     const DeviceState state = devices[i]->state();
     // Before the first report, the time runs from the beginning, through all changes of state.
-    if (watched.state != state && watched.told) watched.since_us = now_us;
+    if (watched.state != state && watched.reported) watched.since_us = now_us;
     watched.state = state;
     if (!due(watched, now_us)) continue;
     const bool live = state == DeviceState::live;
-    if (!live || watched.told)
+    if (!live || watched.reported)
       tell(i, sentence(*devices[i], state, watched.ever_live), devices[i]->name() + " is back");
     watched.ever_live = watched.ever_live || live;
-    watched.told = state;
+    watched.reported = state;
   }
 }
 
@@ -79,9 +79,9 @@ void DeviceWatch::look_at_sensors(const std::vector<std::unique_ptr<cabinet::Dev
     const std::string& name = devices[i]->name();
     if (overflows != std::exchange(known.overflows, overflows)) {
       known.last_us = now_us;
-      if (!std::exchange(known.told, true)) tell(i, say<Said::device_too_fast>(name), {});
-    } else if (known.told && now_us - known.last_us > kSaturationShownUs) {
-      known.told = false;
+      if (!std::exchange(known.reported, true)) tell(i, say<Said::device_too_fast>(name), {});
+    } else if (known.reported && now_us - known.last_us > kSaturationShownUs) {
+      known.reported = false;
       tell(i, {}, name + ": its sensors follow again");
     }
   }

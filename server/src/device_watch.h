@@ -35,13 +35,13 @@ class DeviceWatch {
   struct Watched {
     cabinet::DeviceState state;  // as last seen
     std::int64_t since_us;       // in that state, or watched
-    std::optional<cabinet::DeviceState> told;
+    std::optional<cabinet::DeviceState> reported;
     bool ever_live = false;
   };
   struct Saturation {
     std::uint64_t overflows = 0;  // reported so far
     std::int64_t last_us = 0;
-    bool told = false;
+    bool reported = false;
   };
   static constexpr std::int64_t kSaturationShownUs = 6'000'000;
   static bool due(const Watched& watched, std::int64_t now_us);

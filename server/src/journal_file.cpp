@@ -56,10 +56,10 @@ std::string objection(int file, const JournalFileOptions& options) {
   if (std::string why = lock(file); !why.empty()) return why;
   if (!S_ISREG(about.st_mode) || about.st_size == 0) return {};
   if (!begins_as_a_recording(options.path)) {
-    return "there is a file of that name that is no recording; choose another name";
+    return "a file of that name exists and is not a recording; choose another name";
   }
   if (!options.overwrite) {
-    return "there is a recording already; choose another name, remove it, or give --overwrite";
+    return "a recording of that name exists; choose another name, remove it, or give --overwrite";
   }
   if (::ftruncate(file, 0) != 0) return errno_text(errno) + "; remove the old one";
   return {};

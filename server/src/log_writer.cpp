@@ -62,7 +62,7 @@ void LogWriter::State::run() {
     std::string text = std::exchange(waiting, {});
     if (dropped_unsaid > 0) {
       text.append("(").append(std::to_string(dropped_unsaid));
-      text.append(" lines were left out here: nobody read them in time)\n");
+      text.append(" lines were omitted here: nobody read them in time)\n");
       dropped_unsaid = 0;
     }
     writing = true;

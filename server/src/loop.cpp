@@ -78,8 +78,8 @@ void TickLoop::wait_until(std::int64_t deadline) {
   const int error = clock_.sleep_until(deadline);
   if (error == 0 || error == EINTR) return;
   if (!std::exchange(cannot_sleep_, true)) {
-    log_(LogLevel::warning, std::string("the clock cannot be waited for: ") + std::strerror(error) +
-                                "; waiting awake, which takes a core");
+    log_(LogLevel::warning, std::string("waiting for the clock failed: ") + std::strerror(error) +
+                                "; using busy waiting, which occupies a core");
   }
   while (clock_.now_ns() < deadline) ::sched_yield();
 }

@@ -15,11 +15,11 @@ std::optional<std::uint64_t> parse_seed(const std::string& text) {
 
 std::string check_seed(const std::string& text) {
   return parse_seed(text) ? ""
-                          : "\"" + text + "\" is no whole number from 0 to 18446744073709551615";
+                          : "\"" + text + "\" is not a whole number from 0 to 18446744073709551615";
 }
 
 std::string check_not_nan(const std::string& text) {
-  return std::isnan(std::strtod(text.c_str(), nullptr)) ? "\"" + text + "\" is no number" : "";
+  return std::isnan(std::strtod(text.c_str(), nullptr)) ? "\"" + text + "\" is not a number" : "";
 }
 
 }  // namespace server

@@ -14,7 +14,7 @@ constexpr std::size_t kMaxHead = 4096;               // bytes of a request's hea
 constexpr std::size_t kMaxToControl = 64 * 1024;     // pending bytes
 constexpr auto kFarewell = std::chrono::seconds(1);  // time to read the reason before the end
 constexpr std::string_view kScanAgain = "Scan the code on the game's screen again.\n";
-constexpr std::string_view kNoRoom = "All places for phones are taken: try again later.\n";
+constexpr std::string_view kNoRoom = "Too many phones are connected: try again later.\n";
 
 // Constant time for every wrong token.
 bool same_secret(std::string_view a, std::string_view b) {
@@ -79,9 +79,9 @@ void PhoneCaller::drop() {
   house_.gone(this);
 }
 
-void PhoneCaller::leave_when_told() {
+void PhoneCaller::leave_after_output() {
   if (!inside_) return drop();
-  end_when_told_ = true;
+  end_after_output_ = true;
   if (to_phone_.empty()) drop();
 }
 
@@ -281,7 +281,7 @@ void PhoneCaller::follow(PhoneGuest::Outcome&& outcome) {
   if (link_out_.size() > kMaxToControl) return drop();
   write_link();
   if (!outcome.end) return;
-  end_when_told_ = true;
+  end_after_output_ = true;
   if (to_phone_.empty()) close_socket(websocket::close_code::normal);
 }
 
@@ -305,7 +305,8 @@ void PhoneCaller::write_next() {
                         if (error) return self->drop();
                         self->to_phone_.pop_front();
                         if (!self->to_phone_.empty()) return self->write_next();
-                        if (self->end_when_told_) self->close_socket(websocket::close_code::normal);
+                        if (self->end_after_output_)
+                          self->close_socket(websocket::close_code::normal);
                       });
 }
 
@@ -356,7 +357,7 @@ void PhoneCaller::read_link() {
         if (self->dead_ || self->closing_) return;
         if (error) {
           // Another connection took its seat, or the server ends.
-          self->end_when_told_ = true;
+          self->end_after_output_ = true;
           if (self->to_phone_.empty()) self->close_socket(websocket::close_code::going_away);
           return;
         }

@@ -78,8 +78,8 @@ class PhoneCaller final : public std::enable_shared_from_this<PhoneCaller> {
               const os::SocketAddress& peer);
 
   void begin();
-  void drop();             // immediately
-  void leave_when_told();  // the server ends: after pending output, if there is any
+  void drop();                // immediately
+  void leave_after_output();  // the server ends: after pending output, if there is any
   bool inside() const { return inside_; }
   const os::SocketAddress& peer() const { return peer_; }
   std::uint32_t client() const { return guest_.client(); }
@@ -128,7 +128,7 @@ class PhoneCaller final : public std::enable_shared_from_this<PhoneCaller> {
   std::array<std::byte, 16 * 1024> link_in_;
   wire::ControlReader reader_;
   std::vector<std::byte> link_out_, link_writing_;
-  bool link_open_ = false, end_when_told_ = false, says_bye_ = false, turned_away_ = false;
+  bool link_open_ = false, end_after_output_ = false, says_bye_ = false, turned_away_ = false;
 };
 
 }  // namespace server

@@ -154,8 +154,8 @@ void PhoneGuest::look_at(const wire::Roster& roster, Outcome& out) {
             place_of(foosball::table_spec(layout_).rods[static_cast<std::size_t>(rods.by_x[i])]);
     }
   }
-  if (told_ && same(now, state_)) return;
-  told_ = true;
+  if (reported_ && same(now, state_)) return;
+  reported_ = true;
   state_ = now;
   out.to_phone.emplace_back(now);
 }

@@ -64,7 +64,7 @@ class PhoneGuest {
   std::uint32_t phone_sequence_ = 0;  // of the last input received
   bool driven_ = false;               // an input was received
   wire::PhoneState state_;            // as last sent
-  bool told_ = false;
+  bool reported_ = false;
 };
 
 }  // namespace server

@@ -214,7 +214,7 @@ void PhonePort::Impl::end() {
   goodbye_.expires_after(kGoodbye);
   goodbye_.async_wait([this](const Error&) { io_.stop(); });
   const auto keep = callers_;
-  for (const auto& caller : keep) caller->leave_when_told();
+  for (const auto& caller : keep) caller->leave_after_output();
   if (callers_.empty()) io_.stop();
 }
 

@@ -32,7 +32,7 @@ tl::expected<std::unique_ptr<Playback>, std::string> Playback::from_bytes(
                             "): replay it with the release that recorded it");
     }
     const std::string& problem = playback->reader_.problem();
-    return tl::unexpected(name + " is no recorded match" +
+    return tl::unexpected(name + " is not a recorded match" +
                           (problem.empty() ? "" : " (" + problem + ")") +
                           ": choose a file that --record wrote");
   }
@@ -40,9 +40,8 @@ tl::expected<std::unique_ptr<Playback>, std::string> Playback::from_bytes(
   if (const auto playable = foosball::Match::create(playback->match_); !playable)
     return tl::unexpected(name + " cannot be replayed: " + playable.error().message);
   if (!playback->holds_a_tick()) {
-    return tl::unexpected(name +
-                          " holds the beginning of a match, but no tick of it: there is nothing to "
-                          "replay");
+    return tl::unexpected(
+        name + " contains the beginning of a match, but no tick of it: there is nothing to replay");
   }
   return playback;
 }
@@ -137,12 +136,13 @@ std::string Playback::verdict_sentence() const {
     case Verdict::same:
       return "the replay is the match that was played: " + after;
     case Verdict::so_far:
-      return "left before the recording's end; it is the match that was played so far: " + after;
+      return "stopped before the recording's end; the match is the one that was played so far: " +
+             after;
     case Verdict::cut_short:
       return name_ + " stops early" +
              (reader_.problem().empty() ? " (no end was recorded)"
                                         : " (" + reader_.problem() + ")") +
-             "; it is the match that was played so far: " + after;
+             "; the match is the one that was played so far: " + after;
     case Verdict::differs:
       return "the replay differs from the match that was played, first seen at tick " +
              std::to_string(*first_difference_) +

@@ -90,7 +90,7 @@ std::string read_head(int file, RecordingSummary& into, wire::JournalHeader& hea
   if (!entry) {
     if (reader.other_version() != 0)
       return " was recorded by another release: watch it with the release that recorded it.";
-    return " is no recorded match, or its beginning is damaged; choose another one.";
+    return " is not a recorded match, or its beginning is damaged; choose another one.";
   }
   header = std::get<wire::JournalHeader>(*entry);
   into.layout = header.layout;
@@ -186,7 +186,7 @@ RecordingSummary summarise_recording(const std::string& path) {
   if (::stat(path.c_str(), &about) != 0)
     return bad(std::string(" cannot be read (") + std::strerror(errno) + ").");
   summary.began = moment_of(fs::path(path).filename().string()).value_or(about.st_mtime);
-  if (!S_ISREG(about.st_mode)) return bad(" is no file: choose a recording.");
+  if (!S_ISREG(about.st_mode)) return bad(" is not a file: choose a recording.");
   const os::FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
   if (!file) {
     return bad(std::string(" cannot be read (") + std::strerror(errno) +

@@ -128,10 +128,9 @@ std::string quantiles(const Histogram& h) {
 std::string line(const DeviceCounters& device) {
   const cabinet::SourceCounters& c = device.counters;
   return fmt::format(
-      "device     {}: {} frames, {} bad, {} lost, {} stale, {} times back, {} overflows, "
-      "{} motions that no rod can make, {} index marks that disagree, "
-      "{} errors on the sensors' lines, "
-      "{} us mean and {} us most from arrival to tick",
+      "device     {}: {} frames, {} bad, {} lost, {} stale, {} times back, {} overflows, {} "
+      "impossible motions, {} index marks that disagree, {} errors on the sensors' lines, from "
+      "arrival to tick {} us (mean), {} us (max)",
       device.name, c.frames, c.bad, c.lost, c.stale, c.reopened, c.overflows, c.impossible,
       index_disagreements(c), c.line_errors, mean_latency_us(c), c.latency_max_us);
 }
@@ -163,7 +162,7 @@ std::string summary(const Server& server, const LoopStats& loop) {
   if (loop.lateness.count() > 0) fmt::format_to(out, "lateness   {}\n", quantiles(loop.lateness));
   fmt::format_to(out, "tick cost  {}\n", quantiles(loop.cost));
   if (c.snapshots_sent > 0) {
-    fmt::format_to(out, "sending    {}, beside the tick\n", quantiles(server.sending().cost));
+    fmt::format_to(out, "sending    {}, in another thread\n", quantiles(server.sending().cost));
   }
   fmt::format_to(out, "snapshots  {} sent, {} errors\n", c.snapshots_sent, c.send_errors);
   if (c.events_dropped > 0 || c.match_events_dropped > 0) {
@@ -175,8 +174,7 @@ std::string summary(const Server& server, const LoopStats& loop) {
   }
   fmt::format_to(out, "input      {} taken, {} bad, {} foreign, {} stale\n", c.input.accepted,
                  c.input.bad, c.input.foreign, c.input.stale);
-  fmt::format_to(out,
-                 "clients    {} joined, {} left, {} refused, {} bad, {} without a word, {} slow\n",
+  fmt::format_to(out, "clients    {} joined, {} left, {} rejected, {} bad, {} silent, {} slow\n",
                  c.control.joined, c.control.left, c.control.refused, c.control.bad_messages,
                  c.control.timed_out, c.control.slow_dropped);
   if (c.journal_bytes > 0 || c.journal_dropped > 0) {
@@ -208,7 +206,8 @@ tl::expected<void, std::string> can_write_whole(const std::string& path) {
   const auto kind = std::filesystem::status(path, error).type();
   if (kind != std::filesystem::file_type::not_found &&
       kind != std::filesystem::file_type::regular) {
-    return tl::unexpected("cannot write " + path + ": it is no ordinary file; choose another one");
+    return tl::unexpected("cannot write " + path +
+                          ": it is not a regular file; choose another one");
   }
   const std::string part = path + kPart;
   std::FILE* file = std::fopen(part.c_str(), "wb");

@@ -40,8 +40,8 @@ class ResultsLog::Keeper {
 
   bool problem_changed(wire::Sentence& problem) {
     const std::unique_lock guard(mutex_, std::try_to_lock);
-    if (!guard || problem_ == told_) return false;
-    told_ = problem = problem_;
+    if (!guard || problem_ == last_reported_) return false;
+    last_reported_ = problem = problem_;
     return true;
   }
 
@@ -96,8 +96,8 @@ class ResultsLog::Keeper {
   std::atomic<std::uint64_t> kept_{0}, answers_{0}, lost_{0};
   std::atomic<bool> reported_{false};
   mutable std::mutex mutex_;
-  Report report_;                  // not taken by the tick yet
-  wire::Sentence problem_, told_;  // told_: last reported to the tick
+  Report report_;                           // not taken by the tick yet
+  wire::Sentence problem_, last_reported_;  // last_reported_: to the tick
   // Used by the results thread only.
   std::optional<results::Store> store_;
   std::deque<Entry> waiting_;

@@ -11,7 +11,7 @@ void tell(Server& server, OverloadWatch::Change change) {
       server.warn(Server::Topic::overload, wire::say<wire::Said::cannot_keep_up>());
       break;
     case OverloadWatch::Change::keeps_up_again:
-      server.clear(Server::Topic::overload, "the physics server keeps up again");
+      server.clear(Server::Topic::overload, "the physics server runs in real time again");
       break;
     case OverloadWatch::Change::none:
       break;

@@ -47,7 +47,7 @@ tl::expected<std::unique_ptr<PhonePort>, StartError> open_phones(const ServerOpt
       StartError{error.occupied() ? Kind::port_taken : Kind::bad_option,
                  "cannot listen for phones at port " + std::to_string(options.phones.port) +
                      " on " + listen + ": " + std::strerror(error.number) +
-                     "; choose another port with --phone-port, or leave --phones out"});
+                     "; choose another port with --phone-port, or omit --phones"});
 }
 
 }  // namespace
@@ -271,27 +271,27 @@ void Server::Impl::broadcast(std::int64_t now_us, std::int64_t tick_ns) {
 }
 
 void Server::Impl::watch_journal() {
-  if (!recorder || journal_told || !recorder->file().failed()) return;
-  journal_told = true;
+  if (!recorder || journal_failure_reported || !recorder->file().failed()) return;
+  journal_failure_reported = true;
   notify(Topic::journal, recorder->file().problem());
 }
 
 // Clients show it, and use it to predict their own rods.
 void Server::Impl::watch_tuning() {
   const foosball::Tuning& now = match.view().tuning;
-  if (tuning_told == now) return;
+  if (sent_tuning == now) return;
   wire::Tuning tuning;
   for (std::size_t i = 0; i < tuning.values.size(); ++i)
     tuning.values[i] = now.*foosball::kTuningFields[i].value;
-  if (control.tell_tuning(tuning)) tuning_told = now;
+  if (control.send_tuning(tuning)) sent_tuning = now;
 }
 
 // Clients show it, and use it as the start of a choice.
 void Server::Impl::watch_game() {
   const foosball::MatchView& view = match.view();
   const wire::Game now = to_game(view.setup, opponent, view.setup_waits || desk.player_waits());
-  if (game_told == now) return;
-  if (control.tell_game(now)) game_told = now;
+  if (sent_game == now) return;
+  if (control.send_game(now)) sent_game = now;
 }
 
 void Server::Impl::show_devices(std::int64_t now_us) {

@@ -98,25 +98,25 @@ struct Server::Impl {
   std::unique_ptr<Recorder> recorder;  // or none
   MatchScribe scribe;
   Lineup lineup;
-  bool not_counted_told = false, leavers_told = false;  // active notices
-  std::unique_ptr<ResultsLog> results;                  // or none
-  std::uint32_t matches = 0;                            // passed to it
+  bool not_counted_reported = false, leavers_reported = false;  // active notices
+  std::unique_ptr<ResultsLog> results;                          // or none
+  std::uint32_t matches = 0;                                    // passed to it
   std::vector<Client> clients;
   std::uint64_t clients_ever = 0;
-  std::int64_t tick_us = 0;                         // the clock at the current tick
-  std::array<Name, foosball::kRods> had_rod{};      // last player of the rod, lost or left
-  bool playing = false;                             // people have played since the last logo screen
-  bool stand_ins_told = false, offer_told = false;  // active notices
-  bool waiting = false;                             // paused, since no player sends anything
-  bool pause_outlasts_wait = false;                 // somebody requested a pause meanwhile
-  bool paused_by_watcher = false;                   // by a host who only watches
+  std::int64_t tick_us = 0;                     // the clock at the current tick
+  std::array<Name, foosball::kRods> had_rod{};  // last player of the rod, lost or left
+  bool playing = false;                         // people have played since the last logo screen
+  bool stand_ins_reported = false, offer_reported = false;  // active notices
+  bool waiting = false;              // paused, since no player sends anything
+  bool pause_outlasts_wait = false;  // somebody requested a pause meanwhile
+  bool paused_by_watcher = false;    // by a host who only watches
   std::uint64_t ticks = 0;
   std::uint64_t sent_seen = 0, errors_seen = 0;
   bool sending_fails = false;
-  std::optional<foosball::Tuning> tuning_told;
+  std::optional<foosball::Tuning> sent_tuning;
   Opponent opponent;  // as last chosen
-  std::optional<wire::Game> game_told;
-  bool replay_over = false, journal_told = false, finished = false;
+  std::optional<wire::Game> sent_game;
+  bool replay_over = false, journal_failure_reported = false, finished = false;
   bool was_played = false;  // by people, not only by computers as a demonstration
 
   wire::JournalTick next;  // the inputs of the current tick

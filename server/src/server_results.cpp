@@ -72,9 +72,9 @@ void Server::Impl::keep_answers(const ControlEvent& event) {
 
 void Server::Impl::begin_lineup() {
   lineup.begin();
-  if (std::exchange(not_counted_told, false))
+  if (std::exchange(not_counted_reported, false))
     notify(Topic::not_counted, {}, "another match begins");
-  if (std::exchange(leavers_told, false)) notify(Topic::leavers, {}, "another match begins");
+  if (std::exchange(leavers_reported, false)) notify(Topic::leavers, {}, "another match begins");
 }
 
 MatchScribe::Players Server::Impl::players() const {
@@ -102,14 +102,14 @@ void Server::Impl::tell_who_is_not_rated_as_the_team(const results::MatchResult&
   }
   if (!late.empty()) notify(Topic::not_counted, wire::say<wire::Said::not_rated>(late));
   if (!left.empty()) notify(Topic::leavers, wire::say<wire::Said::lost_by_leaving>(left));
-  not_counted_told = !late.empty();
-  leavers_told = !left.empty();
+  not_counted_reported = !late.empty();
+  leavers_reported = !left.empty();
 }
 
 void Server::Impl::watch_results() {
   wire::Sentence problem;
   if (!results || !results->problem_changed(problem)) return;
-  notify(Topic::results, problem, "results are kept again");
+  notify(Topic::results, problem, "results are stored again");
 }
 
 // Clients show it at the end of the match and on the logo screen.

@@ -114,17 +114,17 @@ void Server::Impl::watch_absences() {
   for (const Client& client : clients) {
     if ((client.rods & desk.stand_ins()) != 0) remember_name(client.id);
   }
-  const auto tell = [&](Topic topic, bool& told, const wire::Sentence& text, const char* over) {
-    if (!text.empty() || told) notify(topic, text, over);
-    told = !text.empty();
+  const auto tell = [&](Topic topic, bool& reported, const wire::Sentence& text, const char* over) {
+    if (!text.empty() || reported) notify(topic, text, over);
+    reported = !text.empty();
   };
   const RodSet plays = desk.stand_ins(), offered = desk.offered();
   wire::Sentence stand_in, offer;
   if (plays != 0) stand_in = say<Said::computer_plays>(rods_by_name(plays, had_rod));
   if (offered != 0)
     offer = say<Said::rods_offered>(RodDesk::kOfferUs / 1'000'000, rods_by_name(offered, had_rod));
-  tell(Topic::stand_in, stand_ins_told, stand_in, "the computer stands in for nobody any more");
-  tell(Topic::offer, offer_told, offer, "no rods are offered any more");
+  tell(Topic::stand_in, stand_ins_reported, stand_in, "the computer replaces nobody any more");
+  tell(Topic::offer, offer_reported, offer, "no rods are offered any more");
 }
 
 // Pauses a match while none of its players is heard, so that a network outage of the only player
@@ -136,7 +136,7 @@ void Server::Impl::wait_for_players(bool in_match) {
   if (waits == waiting || (waits && view.paused)) return;
   waiting = waits;
   notify(Topic::waiting, waits ? say<Said::waits_for_players>() : wire::Sentence(),
-         "the match goes on, or is over");
+         "the match continues, or is over");
   if (play && !std::exchange(pause_outlasts_wait, false))
     next.commands.push_back(
         to_record({foosball::Command::Kind::pause, 0, static_cast<std::uint8_t>(waits)}));

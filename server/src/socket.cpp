@@ -91,15 +91,15 @@ std::string sentence(const NetworkOptions& options, const SocketError& error) {
   switch (error.number) {
     case 0:
       return "\"" + options.listen +
-             "\" is no address, such as 0.0.0.0 or ::1: give one with --listen";
+             "\" is not an address, such as 0.0.0.0 or ::1: give one with --listen";
     case EADDRINUSE:
       return "port " + where +
              " is already in use: stop the program that has it (ss -lntup lists them), or choose "
              "another port with --port (0 takes any free one)";
     case EACCES:
       return "port " + where +
-             " may not be used without rights that this program lacks, as those below 1024: choose "
-             "another port with --port (0 takes any free one)";
+             " needs permissions that this program lacks, as all ports below 1024: choose another "
+             "port with --port (0 takes any free one)";
     case EADDRNOTAVAIL:
       return "cannot listen at port " + where +
              ": no such address here; choose an address of this machine with --listen";
@@ -141,7 +141,7 @@ tl::expected<void, std::string> can_reach(const Endpoint& group, const NetworkOp
   const auto to = os::parse_address(group.address, group.port);
   auto from = os::parse_address(options.listen, 0);
   if (!to || !to->is_multicast()) {
-    return tl::unexpected("\"" + group.address + "\" is no multicast group, such as 239.7.5.31");
+    return tl::unexpected("\"" + group.address + "\" is not a multicast group, such as 239.7.5.31");
   }
   if (!from || from->family() != to->family()) {
     return tl::unexpected("the group " + group.address + " and the address " + options.listen +
@@ -155,7 +155,7 @@ tl::expected<void, std::string> can_reach(const Endpoint& group, const NetworkOp
   return tl::unexpected("cannot send to the group " + group.address + " from " + options.listen +
                         ": " + std::strerror(errno) +
                         "; add a route (ip route add 224.0.0.0/4 dev lo), choose another --listen, "
-                        "or leave --multicast out");
+                        "or omit --multicast");
 }
 
 }  // namespace server

@@ -74,7 +74,7 @@ void ProbeClient::leave() {
   tcp_ = -1;
 }
 
-void ProbeClient::say_goodbye() {
+void ProbeClient::send_goodbye() {
   say(wire::Bye{"done"});
   if (connected()) os::finish_sending(tcp_, kPatienceMs);
   leave();

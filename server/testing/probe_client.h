@@ -68,8 +68,8 @@ class ProbeClient {
   bool prove(const std::string& password, wire::Role role = wire::Role::player);
   // True once the server has closed the connection; discards earlier messages.
   bool sees_close(int patience_ms = kPatienceMs);
-  void leave();        // without a Bye
-  void say_goodbye();  // sends a Bye, then leaves
+  void leave();         // without a Bye
+  void send_goodbye();  // sends a Bye, then leaves
 
   // --- datagrams
   bool send_input(const wire::InputDatagram& input);  // sealed as the Welcome defines

@@ -85,11 +85,11 @@ TEST_F(WarmTick, TakesNoMemoryWhileAHostLooksAtTheDevices) {
   long during = 0;
   for (int asked = 0; asked < 3; ++asked) {
     ASSERT_TRUE(host.say(wire::DeviceQuery{}));
-    bool told = false;
+    bool reported = false;
     ASSERT_TRUE(table.tick_until([&] {
       during += taken(1);
-      told = host.hear_a<wire::Devices>(1).has_value();
-      return told;
+      reported = host.hear_a<wire::Devices>(1).has_value();
+      return reported;
     }));
   }
   EXPECT_EQ(during, 0);

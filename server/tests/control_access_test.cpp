@@ -61,7 +61,7 @@ TEST(Door, NamesShowAllThatTheyHave) {
     ASSERT_TRUE(client.catch_up());
     ASSERT_FALSE(client.roster().seats.empty());
     EXPECT_EQ(client.roster().seats.back().name, shown);
-    client.say_goodbye();
+    client.send_goodbye();
   }
 }
 
@@ -156,7 +156,7 @@ TEST(Password, ThatIsRightCostsNothing) {
   for (int i = 0; i < 3 * PasswordTries::kAtOnce; ++i) {
     ProbeClient guest(table.port());
     ASSERT_TRUE(guest.prove("open sesame") && guest.join()) << i;
-    guest.say_goodbye();
+    guest.send_goodbye();
     ASSERT_TRUE(table.tick_until(
         [&] { return table->counters().control.left == static_cast<std::uint64_t>(i) + 1; }));
   }
@@ -217,11 +217,11 @@ TEST(Votes, NobodyRestartsAloneWhileTheOpponentsSeatIsKept) {
   second.leave();
   ASSERT_TRUE(table.wait_until([&] { return table->counters().control.lost == 1; }));
   first.say(wire::MatchRequest{static_cast<std::uint8_t>(foosball::Command::Kind::restart), 0, 0});
-  std::string told;
-  for (int notice = 0; notice < 2 && told.find("votes") == std::string::npos; ++notice) {
-    told = notice_of(first);
+  std::string reported;
+  for (int notice = 0; notice < 2 && reported.find("votes") == std::string::npos; ++notice) {
+    reported = notice_of(first);
   }
-  EXPECT_NE(told.find("1 of 2 votes"), std::string::npos) << told;
+  EXPECT_NE(reported.find("1 of 2 votes"), std::string::npos) << reported;
   table.tick(5);
   EXPECT_EQ(table->match().view().screen, foosball::Screen::selection);
 }

@@ -125,7 +125,7 @@ TEST_F(Kicks, AVoteAgainstWhoHasJustLeftOrNeverWasDoesNothing) {
   Guest a = guest("127.0.0.2", 0), b = guest("127.0.0.3", 1), c = guest("127.0.0.4", 2);
   ASSERT_TRUE(a.welcome && b.welcome && c.welcome);
   vote(a, c.client());
-  c.probe.say_goodbye();
+  c.probe.send_goodbye();
   ASSERT_TRUE(table.wait_until([&] { return table->counters().control.left == 1; }));
   vote(b, c.client());
   vote(b, 999'999);
@@ -144,7 +144,7 @@ TEST_F(Kicks, AVoteOutlastsAReconnectionWithTheTicketAndANewSeat) {
   ASSERT_TRUE(again.probe.prove("open sesame"));
   again.welcome = again.probe.resume(*bad.welcome);
   ASSERT_TRUE(again.welcome);
-  again.probe.say_goodbye();
+  again.probe.send_goodbye();
   ASSERT_TRUE(table.wait_until([&] { return table->counters().control.left == 1; }));
   Guest anew = guest("127.0.0.5", 2);
   ASSERT_TRUE(anew.welcome);
@@ -158,7 +158,7 @@ TEST_F(Kicks, AVoteIsNotEscapedByComingBackToWatchAndTakingRodsThen) {
         bad = guest("127.0.0.5", 2);
   ASSERT_TRUE(a.welcome && b.welcome && c.welcome && bad.welcome);
   vote(a, bad.client());
-  bad.probe.say_goodbye();
+  bad.probe.send_goodbye();
   ASSERT_TRUE(table.wait_until([&] { return table->counters().control.left == 1; }));
   Guest anew = guest("127.0.0.5", -1);
   ASSERT_TRUE(anew.welcome);
@@ -214,7 +214,7 @@ TEST_F(Kicks, ANewcomerFromTheAddressIsNotToldToBeTheOneWhoLeft) {
   Guest a = guest("127.0.0.2", 0), b = guest("127.0.0.3", 1), bad = guest("127.0.0.5", 2);
   ASSERT_TRUE(a.welcome && b.welcome && bad.welcome);
   vote(a, bad.client());
-  bad.probe.say_goodbye();
+  bad.probe.send_goodbye();
   ASSERT_TRUE(table.wait_until([&] { return table->counters().control.left == 1; }));
   ASSERT_TRUE(guest("127.0.0.5", 2).welcome);
   std::string said;

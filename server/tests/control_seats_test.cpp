@@ -100,7 +100,7 @@ TEST(Seat, OfWhoComesBackAndReadsNothingIsNobodyElsesMeanwhile) {
   };
   const RodSet rods = rods_of_team(foosball::MatchDesc{}.layout, 0);
   const auto lost = notice(wire::Notice::Level::warning,
-                           name + " was lost: rods " + to_text(rods) + " are kept for 30 s");
+                           name + " was lost: rods " + to_text(rods) + " are reserved for 30 s");
   const auto back = notice(wire::Notice::Level::cleared, name + " is back");
   Lockstep table([&](ServerOptions& o) {
     keep_seats(o);
@@ -137,7 +137,7 @@ TEST(Seat, IsFreeAtOnceAfterAGoodByeAndInTimeWithoutOne) {
   Lockstep table([](ServerOptions& o) { o.limits.seat_kept_us = 100'000; });
   ProbeClient polite(table.port()), next(table.port()), last(table.port());
   ASSERT_TRUE(polite.join(0));
-  polite.say_goodbye();
+  polite.send_goodbye();
   ASSERT_TRUE(next.join(0));
   table.tick();
   ASSERT_EQ(table->clients(), 1);
@@ -158,7 +158,7 @@ TEST(Seat, IsFreeAtOnceAfterTheGoodByeOfAClientThatHasNotReadAll) {
     o.log = [&](LogLevel, const std::string&) {
       ProbeClient* client = leaver.exchange(nullptr);
       if (client == nullptr) return;
-      client->say_goodbye();
+      client->send_goodbye();
       has_left = true;
     };
   });
@@ -296,7 +296,7 @@ TEST(Rods, WhoChangesSidesToTheOpponentOfThatNameIsToldApart) {
   second.say(wire::Claim{all1, 1});
   ASSERT_TRUE(second.catch_up());
   EXPECT_EQ(names(), (Names{"probe", "probe (2)"}));
-  first.say_goodbye();
+  first.send_goodbye();
   ASSERT_TRUE(table.tick_until([&] { return table->clients() == 1; }));
   second.say(wire::Claim{all0, 0});
   ASSERT_TRUE(second.catch_up());
@@ -355,25 +355,25 @@ TEST(Tuning, IsToldToAllAndChangedByHostsOnlyWithinItsRange) {
   ASSERT_TRUE(host.join(0));
   ASSERT_TRUE(second.join(1));
   ASSERT_TRUE(watcher.join());
-  const auto all_told = [&](double gravity) {
+  const auto all_received = [&](double gravity) {
     for (ProbeClient* client : {&host, &second, &watcher}) {
-      const bool told = table.tick_until([&] {
+      const bool reported = table.tick_until([&] {
         return client->catch_up() && client->tuning() && client->tuning()->values[0] == gravity;
       });
-      if (!told) return false;
+      if (!reported) return false;
     }
     return true;
   };
   const double usual = foosball::Tuning{}.gravity;
-  ASSERT_TRUE(all_told(usual));
+  ASSERT_TRUE(all_received(usual));
   const auto tune = [](std::uint8_t value, double amount) {
     return wire::MatchRequest{number(wire::RequestKind::tune), 0, value, amount};
   };
   host.say(tune(0, 9.0));
-  EXPECT_TRUE(all_told(9.0));
+  EXPECT_TRUE(all_received(9.0));
   // Two hosts, like all clients on this machine: the later value counts, and both receive it.
   second.say(tune(0, 10.0));
-  EXPECT_TRUE(all_told(10.0));
+  EXPECT_TRUE(all_received(10.0));
   ProbeClient forger(table.port());
   ASSERT_TRUE(forger.join());
   forger.say(tune(0, 1e6));  // ends the connection: our clients never send it

@@ -282,11 +282,11 @@ TEST(Control, AHostsPauseOutlastsThePlayers) {
   ASSERT_TRUE(table.wait_until([&] { return table->counters().control.requests > requests; }));
   table.tick(2);
   ASSERT_TRUE(paused());
-  player.say_goodbye();
+  player.send_goodbye();
   ASSERT_TRUE(table.tick_until([&] { return table->clients() == 1; }));
   table.tick(3);
   EXPECT_TRUE(paused());
-  host.say_goodbye();
+  host.send_goodbye();
   EXPECT_TRUE(table.tick_until([&] { return !paused(); }));
 }
 
@@ -330,9 +330,9 @@ TEST(Control, TellsEveryoneANoticeAndThoseWhoJoinLaterUntilItIsCleared) {
   ProbeClient first(table.port());
   ASSERT_TRUE(first.join());
   table->warn(Server::Topic::overload, wire::Sentence::untranslated("slow"));
-  const auto told = first.hear_a<wire::Notice>();
-  ASSERT_TRUE(told);
-  EXPECT_EQ(told->text, "slow");
+  const auto reported = first.hear_a<wire::Notice>();
+  ASSERT_TRUE(reported);
+  EXPECT_EQ(reported->text, "slow");
 
   ProbeClient second(table.port());
   ASSERT_TRUE(second.join());

@@ -118,22 +118,22 @@ TEST_F(DeviceTest, TheRodArrivesWhereTheSensorSays) {
 // The tick answers a host's request.
 std::optional<wire::Devices> answer_to(ProbeClient& client, Lockstep& table) {
   if (!client.say(wire::DeviceQuery{})) return {};
-  std::optional<wire::Devices> told;
+  std::optional<wire::Devices> reported;
   table.tick_until([&] {
-    told = client.hear_a<wire::Devices>(5);
-    return told.has_value();
+    reported = client.hear_a<wire::Devices>(5);
+    return reported.has_value();
   });
-  return told;
+  return reported;
 }
 
 TEST_F(DeviceTest, AHostWhoAsksIsToldWhatItDoes) {
   run(20);
   run(40, 8);  // 40 mm
   run(200);
-  const auto told = answer_to(watcher, table);
-  ASSERT_TRUE(told);
-  ASSERT_EQ(told->devices.size(), 1u);
-  const wire::DeviceReport& device = told->devices[0];
+  const auto reported = answer_to(watcher, table);
+  ASSERT_TRUE(reported);
+  ASSERT_EQ(reported->devices.size(), 1u);
+  const wire::DeviceReport& device = reported->devices[0];
   EXPECT_EQ(device.name, "cabinet test");
   EXPECT_EQ(device.state, number(wire::DeviceState::live));
   EXPECT_EQ(device.frames, 260u);
@@ -182,7 +182,7 @@ TEST_F(DeviceTest, UnpluggedIsToldWithin100MillisecondsAndTheRodsHold) {
   EXPECT_LE(table.now_us() - from, 100'000);
   const auto notice = watcher.hear_a<wire::Notice>();
   ASSERT_TRUE(notice);
-  EXPECT_EQ(notice->text, "cabinet test unplugged: its rods hold; plug it in again");
+  EXPECT_EQ(notice->text, "cabinet test unplugged: its rods are held; plug it in again");
   table.tick(300);
   EXPECT_NEAR(table->match().view().rods[2].slide, where, 0.0005);
 
@@ -206,7 +206,7 @@ TEST_F(DeviceTest, ADeviceThatNeverSaysAWordIsToldToBeSilent) {
   EXPECT_FALSE(watcher.hear(0));  // it has a second to start
   table.tick(200);
   EXPECT_EQ(notice_text(),
-            "cabinet test is there but sends nothing: plug it in again, and check its "
+            "cabinet test is connected but sends nothing: plug it in again, and check its "
             "firmware");
 }
 
@@ -217,7 +217,7 @@ TEST_F(DeviceTest, ADeviceThatSendsNoFrameIsToldToBeTheWrongOne) {
     table.tick();
   }
   EXPECT_EQ(notice_text(),
-            "cabinet test sends what is no frame: is it the right device, with our firmware?");
+            "cabinet test sends no valid frames: is it the right device, with our firmware?");
   EXPECT_EQ(table->devices().at(0).name, "cabinet test");
   EXPECT_EQ(table->devices().at(0).counters.bad, 1100u);
   EXPECT_EQ(table->devices().at(0).counters.frames, 0u);
@@ -249,16 +249,16 @@ TEST_F(DeviceTest, ASensorThatCannotFollowItsRodIsTold) {
 TEST_F(DeviceTest, FromOneFaultToTheNextAPersonIsToldOnce) {
   run(20);
   table.tick(60);
-  EXPECT_EQ(notice_text().substr(0, 35), "cabinet test is there but sends not");
+  EXPECT_EQ(notice_text().substr(0, 35), "cabinet test is connected but sends");
   const std::array<std::uint8_t, 64> noise{1, 2, 3};
   for (int i = 0; i < 1100; ++i) {
     controller.send(noise);
     table.tick();
   }
-  EXPECT_EQ(notice_text().substr(0, 29), "cabinet test sends what is no");
+  EXPECT_EQ(notice_text().substr(0, 29), "cabinet test sends no valid f");
   controller.unplug();
   table.tick(1100);
-  EXPECT_EQ(notice_text(), "cabinet test unplugged: its rods hold; plug it in again");
+  EXPECT_EQ(notice_text(), "cabinet test unplugged: its rods are held; plug it in again");
   controller.plug_in();
   table.tick(400);  // opened, but still silent
   run(2);
@@ -281,7 +281,7 @@ TEST(DeviceWatch, SaysThatADeviceIsNotThere) {
   const auto notice =
       notice_of(std::make_unique<cabinet::DeviceSource>(options, [] { return -1; }), 1100);
   ASSERT_TRUE(notice);
-  EXPECT_EQ(notice->text, "cabinet nowhere is not there: plug it in, or give its right address");
+  EXPECT_EQ(notice->text, "cabinet nowhere does not exist: plug it in, or give the right address");
 }
 
 TEST(DeviceWatch, SaysWhyADeviceThatIsThereCannotBeOpened) {
@@ -318,7 +318,7 @@ TEST(DeviceWatch, SaysThatARecordingHoldsNoFrame) {
   ASSERT_TRUE(device);
   const auto notice = notice_of(std::move(*device), 10);
   ASSERT_TRUE(notice);
-  EXPECT_EQ(notice->text, "file:" + path + " holds no frame: give a recording of a controller");
+  EXPECT_EQ(notice->text, "file:" + path + " contains no frame: give a recording of a controller");
 }
 
 // From another machine, with the players' password: the server's devices are not visible.
@@ -332,16 +332,16 @@ TEST(DevicesAsked, APlayerIsToldNothing) {
   ASSERT_TRUE(player.join(0));
   ASSERT_TRUE(player.say(wire::DeviceQuery{}));
   player.say(wire::Ping{1});
-  bool told = false, ponged = false;
+  bool reported = false, ponged = false;
   while (!ponged) {
     const auto message = player.hear();
     ASSERT_TRUE(message);
-    told = told || std::holds_alternative<wire::Devices>(*message);
+    reported = reported || std::holds_alternative<wire::Devices>(*message);
     ponged = std::holds_alternative<wire::Pong>(*message);
   }
   table.tick(20);
   EXPECT_FALSE(player.hear_a<wire::Devices>(20));
-  EXPECT_FALSE(told);
+  EXPECT_FALSE(reported);
   EXPECT_EQ(table->counters().control.requests_dropped, 1u);
 }
 
@@ -403,7 +403,7 @@ TEST_F(MiceTest, OneThatIsUnpluggedIsToldAndTheOtherGoesOn) {
   table.tick();
   const auto notice = watcher.hear_a<wire::Notice>();
   ASSERT_TRUE(notice);
-  EXPECT_EQ(notice->text, "mouse 1 unplugged: its rods hold; plug it in again");
+  EXPECT_EQ(notice->text, "mouse 1 unplugged: its rods are held; plug it in again");
   move(1, 100);
   table.tick(1000);
   EXPECT_NEAR(table->match().view().rods[5].slide, 100 * 1.5 * 25.4e-6, 0.0005);

@@ -16,8 +16,8 @@ wire::Game of(wire::Mode mode) {
   return game;
 }
 
-bool is_told(Lockstep& table, ProbeClient& client,
-             const std::function<bool(const wire::Game&)>& wanted) {
+bool receives_game(Lockstep& table, ProbeClient& client,
+                   const std::function<bool(const wire::Game&)>& wanted) {
   return table.tick_until(
       [&] { return client.catch_up() && client.game() && wanted(*client.game()); });
 }
@@ -32,8 +32,8 @@ class GameTest : public testing::Test {
           o.overwrite = true;
         }) {}
   const foosball::MatchView& view() { return table->match().view(); }
-  bool told(ProbeClient& client, const std::function<bool(const wire::Game&)>& wanted) {
-    return is_told(table, client, wanted);
+  bool reported(ProbeClient& client, const std::function<bool(const wire::Game&)>& wanted) {
+    return receives_game(table, client, wanted);
   }
   void request(ProbeClient& client, wire::RequestKind kind) {
     const auto before = table->counters().control.requests;
@@ -48,18 +48,18 @@ TEST_F(GameTest, AClientReachesTrainingAndLadderAndAllAreTold) {
   ProbeClient host(table.port()), other(table.port());
   ASSERT_TRUE(host.join(0));
   ASSERT_TRUE(other.join());
-  ASSERT_TRUE(told(other, [](const auto& g) { return g.mode == 0 && g.goals == 5; }));
+  ASSERT_TRUE(reported(other, [](const auto& g) { return g.mode == 0 && g.goals == 5; }));
   wire::Game training = of(wire::Mode::training);
   training.level = 4;
   training.style = 2;
   host.say(training);
-  ASSERT_TRUE(told(other, [&](const auto& g) { return g == training; }));
+  ASSERT_TRUE(reported(other, [&](const auto& g) { return g == training; }));
   EXPECT_EQ(view().mode, foosball::Mode::training);
   wire::Game ladder = of(wire::Mode::ladder);
   ladder.goals = 3;
   ladder.sets = 1;
   host.say(ladder);
-  ASSERT_TRUE(told(other, [&](const auto& g) { return g == ladder; }));
+  ASSERT_TRUE(reported(other, [&](const auto& g) { return g == ladder; }));
   EXPECT_EQ(view().mode, foosball::Mode::ladder);
   EXPECT_EQ(view().rules.goals_to_win, 3);
   ProbeClient late(table.port());
@@ -78,17 +78,18 @@ TEST_F(GameTest, InPlayItWaitsForARestartAndSaysSo) {
   game.goals = 2;
   game.level = 5;
   host.say(game);
-  ASSERT_TRUE(told(host, [](const auto& g) { return g.goals == 2 && g.level == 5 && g.waits; }));
+  ASSERT_TRUE(
+      reported(host, [](const auto& g) { return g.goals == 2 && g.level == 5 && g.waits; }));
   EXPECT_EQ(view().rules.goals_to_win, 5);
   request(host, wire::RequestKind::restart);
-  ASSERT_TRUE(told(host, [](const auto& g) { return g.goals == 2 && !g.waits; }));
+  ASSERT_TRUE(reported(host, [](const auto& g) { return g.goals == 2 && !g.waits; }));
   EXPECT_EQ(view().rules.goals_to_win, 2);
 }
 
 TEST_F(GameTest, OutOfRangeAndContradictingValuesAreRefusedWithASentence) {
   ProbeClient host(table.port());
   ASSERT_TRUE(host.join(0));
-  ASSERT_TRUE(told(host, [](const auto&) { return true; }));
+  ASSERT_TRUE(reported(host, [](const auto&) { return true; }));
   const wire::Game before = *host.game();
   wire::Game bad = of(wire::Mode::match);
   bad.goals = 100;
@@ -125,7 +126,7 @@ TEST_F(GameTest, TheChallengeIsTodaysAndKeepsTheDefaultTuning) {
       table.tick_until([&] { return host.catch_up() && host.tuning()->values[0] == usual; }));
   host.say(of(wire::Mode::challenge));
   const auto drawn = foosball::challenge_opponent(20261122);
-  ASSERT_TRUE(told(host, [&](const auto& g) { return g.date == 20261122; }));
+  ASSERT_TRUE(reported(host, [&](const auto& g) { return g.date == 20261122; }));
   EXPECT_EQ(host.game()->level, drawn.level);
   EXPECT_EQ(view().challenge, 20261122u);
   host.say(wire::MatchRequest{number(wire::RequestKind::tune), 0, 0, 9.0});
@@ -189,11 +190,11 @@ TEST_F(GivenDay, StaysAndIsWhatAHostChooses) {
   ProbeClient host(table.port());
   ASSERT_TRUE(host.join(0));
   host.say(of(wire::Mode::match));
-  ASSERT_TRUE(
-      is_told(table, host, [](const auto& g) { return g.mode == number(wire::Mode::match); }));
+  ASSERT_TRUE(receives_game(table, host,
+                            [](const auto& g) { return g.mode == number(wire::Mode::match); }));
   host.say(of(wire::Mode::challenge));
-  ASSERT_TRUE(
-      is_told(table, host, [](const auto& g) { return g.mode == number(wire::Mode::challenge); }));
+  ASSERT_TRUE(receives_game(table, host,
+                            [](const auto& g) { return g.mode == number(wire::Mode::challenge); }));
   EXPECT_EQ(host.game()->date, 20261122u);
 }
 
@@ -281,13 +282,13 @@ TEST_F(GameTest, ARecordingOfChangedGamesReplaysToTheBit) {
     game.goals = 1;
     game.match_ms = 60'000;
     host.say(game);
-    ASSERT_TRUE(told(host, [](const auto& g) { return g.goals == 1; }));
+    ASSERT_TRUE(reported(host, [](const auto& g) { return g.goals == 1; }));
     request(host, wire::RequestKind::push);
     request(host, wire::RequestKind::push);
     ASSERT_TRUE(table.tick_until([&] { return view().screen == foosball::Screen::play; }));
     table.tick(1200);
     host.say(of(wire::Mode::challenge));
-    ASSERT_TRUE(told(host, [](const auto& g) { return g.waits; }));
+    ASSERT_TRUE(reported(host, [](const auto& g) { return g.waits; }));
     request(host, wire::RequestKind::restart);
     request(host, wire::RequestKind::push);
     ASSERT_EQ(view().mode, foosball::Mode::challenge);

@@ -52,7 +52,7 @@ TEST(LogWriter, NeverWaitsForAPipeThatNobodyReadsAndSaysWhatItLeftOut) {
   EXPECT_FALSE(log.flush(1000));
   EXPECT_GT(log.dropped(), 10'000u);
   std::string read;
-  while (read.find("lines were left out here") == std::string::npos) {
+  while (read.find("lines were omitted here") == std::string::npos) {
     const std::string more = pipe.read_some();
     ASSERT_FALSE(more.empty());
     read += more;

@@ -73,14 +73,14 @@ TEST(TickLoop, CountsTheTicksThatAnOverrunMissesAndKeepsItsPhase) {
 TEST(TickLoop, KeepsItsPaceWhereTheClockCannotBeWaitedFor) {
   ManualClock clock;
   clock.refuse();
-  int told = 0;
+  int reported = 0;
   TickLoop loop(
-      ordinary(), [&](LogLevel level, const std::string&) { told += level == LogLevel::warning; },
-      clock);
+      ordinary(),
+      [&](LogLevel level, const std::string&) { reported += level == LogLevel::warning; }, clock);
   const std::int64_t start = clock.now_ns();
   loop.run([&](std::int64_t, const LoopStats& stats) { return stats.ticks < 99; });
   EXPECT_EQ(loop.stats().missed, 0u);
-  EXPECT_EQ(told, 1);
+  EXPECT_EQ(reported, 1);
   EXPECT_NEAR(static_cast<double>(clock.now_ns() - start), 100e6, 1e6);
 }
 

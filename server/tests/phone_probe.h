@@ -105,7 +105,7 @@ class PhoneProbe {
     run([&] { return closed_; });
     return closed_;
   }
-  void say_goodbye() {  // like a page that is closed on purpose
+  void send_goodbye() {  // like a page that is closed on purpose
     std::optional<bool> done;
     socket_.async_close(boost::beast::websocket::close_code::normal,
                         [&](const Error& error) { done = !error; });

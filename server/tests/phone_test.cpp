@@ -115,7 +115,7 @@ TEST_F(PhoneTest, IsInTheRosterAndIsPutOutByTheHost) {
     notice = phone.hear_a<wire::PhoneNotice>();
     ASSERT_TRUE(notice);
   } while (notice->level != number(wire::PhoneNotice::Level::end));
-  EXPECT_NE(notice->text.find("put you out"), std::string::npos) << notice->text;
+  EXPECT_NE(notice->text.find("removed you"), std::string::npos) << notice->text;
   EXPECT_TRUE(phone.sees_close());
   EXPECT_EQ(table->counters().control.kicked, 1u);
 }
@@ -170,7 +170,7 @@ TEST_F(KeptSeats, APageThatIsClosedOnPurposeGivesItsRodsUp) {
   PhoneProbe phone(url);
   ASSERT_TRUE(phone.join());
   ASSERT_TRUE(phone.claim(1, RodPair::attack));
-  phone.say_goodbye();
+  phone.send_goodbye();
   ASSERT_TRUE(table.wait_until([&] { return table->counters().control.left == 1; }));
   EXPECT_EQ(table->counters().control.lost, 0u);
   PhoneProbe other(url);
@@ -496,7 +496,7 @@ TEST_F(FewPhones, NoMorePhonesGetInThanThereMayBe) {
   ASSERT_TRUE(ben.join());
   PhoneProbe third(url);
   EXPECT_FALSE(third.upgrade());
-  ann.say_goodbye();
+  ann.send_goodbye();
   ASSERT_TRUE(table.wait_until([&] { return table->counters().control.left == 1; }));
   PhoneProbe fourth(url);
   EXPECT_TRUE(fourth.join());

@@ -92,8 +92,8 @@ TEST(ServerProgram, KeepsTheFileThatIsThereUnlessToldToOverwriteARecording) {
       << second.output();
   EXPECT_EQ(text_of(path), kept);
 
-  Process told(with({"--overwrite", "--seed", "99"}));
-  EXPECT_EQ(told.wait(), 0) << told.output();
+  Process overwriting(with({"--overwrite", "--seed", "99"}));
+  EXPECT_EQ(overwriting.wait(), 0) << overwriting.output();
   EXPECT_NE(text_of(path), kept);
   Process exhibition(with({"--team0", "computer", "--team1", "computer"}));
   EXPECT_EQ(exhibition.wait(), 2) << exhibition.output();
@@ -101,7 +101,7 @@ TEST(ServerProgram, KeepsTheFileThatIsThereUnlessToldToOverwriteARecording) {
   std::ofstream(path) << "a letter";
   Process other(with({"--overwrite"}));
   EXPECT_EQ(other.wait(), 2);
-  EXPECT_NE(other.output().find("no recording"), std::string::npos) << other.output();
+  EXPECT_NE(other.output().find("not a recording"), std::string::npos) << other.output();
   EXPECT_EQ(text_of(path), "a letter");
   std::remove(path.c_str());
 }

@@ -181,7 +181,7 @@ TEST(ServerProgram, SaysOnlyWhatIsWrongWithAnAddressOfNoDevice) {
     EXPECT_EQ(process.wait(), 2);
     const std::string& said = process.output();
     EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 1) << said;
-    EXPECT_NE(said.find("names no device"), std::string::npos) << said;
+    EXPECT_NE(said.find("is not a device"), std::string::npos) << said;
   }
 }
 
@@ -241,7 +241,7 @@ TEST(ServerProgram, EndsWhenTheLastClientHasLeft) {
     ProbeClient client(server.port());
     ASSERT_TRUE(client.join(0));
     ASSERT_TRUE(client.snapshot());
-    client.say_goodbye();
+    client.send_goodbye();
   }
   EXPECT_EQ(server->wait(), 0);
   EXPECT_NE(server->output().find("everybody has left"), std::string::npos);
@@ -277,11 +277,11 @@ TEST(ServerProgram, AfterAStallAPlayerGetsItsTeamThoughItsGivenUpAttemptsWaitBef
 }
 
 // A player in its own process.
-[[noreturn]] void play_until_killed(std::uint16_t port, int say_ready) {
+[[noreturn]] void play_until_killed(std::uint16_t port, int ready_pipe) {
   ProbeClient player(port);
   const bool in_step = player.join(0) && player.snapshot();
   const char ready = in_step ? 'y' : 'n';
-  if (::write(say_ready, &ready, 1) != 1) ::_exit(1);
+  if (::write(ready_pipe, &ready, 1) != 1) ::_exit(1);
   ::pause();
   ::_exit(0);
 }
@@ -345,7 +345,7 @@ TEST(ServerProgram, LetsClientsInAndEndsOnSigtermThoughNobodyReadsItsLog) {
   for (int i = 0; i < 100; ++i) {
     ProbeClient client(port);
     ASSERT_TRUE(client.join()) << i;  // each logs a line
-    client.say_goodbye();
+    client.send_goodbye();
   }
   ProbeClient watcher(port);
   ASSERT_TRUE(watcher.join());

@@ -186,7 +186,7 @@ TEST(Recording, RefusesAFileThatIsNoRecording) {
   for (const std::size_t size : {0u, 1u, 100u}) {
     const auto opened = Playback::from_bytes(std::vector<std::byte>(size, std::byte{7}), "x.sfr");
     ASSERT_FALSE(opened);
-    EXPECT_NE(opened.error().find("x.sfr is no recorded match"), std::string::npos);
+    EXPECT_NE(opened.error().find("x.sfr is not a recorded match"), std::string::npos);
   }
   EXPECT_FALSE(Playback::open("/nowhere/at/all"));
 }
@@ -243,7 +243,7 @@ TEST(Recording, RefusesOneWithoutATickAndNamesIt) {
   for (const auto& bytes : {journal({header}), journal({header, wire::JournalEnd{0, 1}})}) {
     const auto opened = Playback::from_bytes(bytes, "x.sfr");
     ASSERT_FALSE(opened);
-    EXPECT_EQ(opened.error().rfind("x.sfr holds ", 0), 0u) << opened.error();
+    EXPECT_EQ(opened.error().rfind("x.sfr contains ", 0), 0u) << opened.error();
     EXPECT_NE(opened.error().find("no tick"), std::string::npos) << opened.error();
   }
 }
@@ -263,7 +263,7 @@ TEST(Recording, LeftBeforeItsEndIsSaidToBeTheSameSoFar) {
   while (playback->ticks() < 1'200) step_recorded(match, *playback->next(match));
   EXPECT_EQ(playback->verdict(), Playback::Verdict::so_far);
   EXPECT_EQ(playback->hashes_checked(), 1u);
-  EXPECT_NE(playback->verdict_sentence().find("left before"), std::string::npos);
+  EXPECT_NE(playback->verdict_sentence().find("stopped before"), std::string::npos);
   std::remove(live.path.c_str());
 }
 

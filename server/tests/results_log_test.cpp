@@ -54,13 +54,14 @@ TEST(ResultsLog, TellsOnceThatTheFileIsDamagedAndTakesItWhenItIsMendedWithWhatWa
   std::ofstream(path) << std::string(5000, 'x');
   ResultsLog log({.path = path, .retry_period = 1ms});
   const auto until = std::chrono::steady_clock::now() + 20s;
-  wire::Sentence told;
-  while (!log.problem_changed(told) && std::chrono::steady_clock::now() < until) {
+  wire::Sentence reported;
+  while (!log.problem_changed(reported) && std::chrono::steady_clock::now() < until) {
   }
-  EXPECT_EQ(told, wire::say<wire::Said::results_not_kept>(wire::say<wire::Said::results_problem>(
-                      path, wire::say<wire::Said::results_no_database>())))
-      << told.text() << ": clients know the store's sentence";
-  EXPECT_FALSE(log.problem_changed(told));
+  EXPECT_EQ(reported,
+            wire::say<wire::Said::results_not_kept>(wire::say<wire::Said::results_problem>(
+                path, wire::say<wire::Said::results_no_database>())))
+      << reported.text() << ": clients know the store's sentence";
+  EXPECT_FALSE(log.problem_changed(reported));
   log.add(won());
   remove(path);
   while (log.kept() == 0 && std::chrono::steady_clock::now() < until) {

@@ -18,7 +18,7 @@ TEST(PortSentence, SaysWhatToChangeForEachThingThatCanBeWrong) {
   NetworkOptions options;
   options.port = 80;
   const std::string forbidden = sentence(options, {EACCES});
-  EXPECT_TRUE(contains(forbidden, "port 80 on 127.0.0.1 may not be used")) << forbidden;
+  EXPECT_TRUE(contains(forbidden, "port 80 on 127.0.0.1 needs permissions")) << forbidden;
   EXPECT_TRUE(contains(forbidden, "below 1024: choose another port with --port")) << forbidden;
   EXPECT_FALSE(contains(forbidden, "--listen")) << forbidden;
   const std::string taken = sentence(options, {EADDRINUSE});
@@ -33,7 +33,7 @@ TEST(OpenPorts, SaysThatAnAddressIsNone) {
   options.listen = "everywhere";
   const auto ports = open_ports(options);
   ASSERT_FALSE(ports);
-  EXPECT_TRUE(contains(sentence(options, ports.error()), "\"everywhere\" is no address"));
+  EXPECT_TRUE(contains(sentence(options, ports.error()), "\"everywhere\" is not an address"));
 }
 
 // With the TCP port first, both could bind it, and both could fail to listen.

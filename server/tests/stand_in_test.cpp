@@ -132,7 +132,7 @@ TEST_F(StandIn, PlaysForALostPlayerAfterAGapUntilTheHandIsHeardAgain) {
   EXPECT_EQ(source(bob, goalie), kComputer) << "the connection alone moves no rod";
   plays(again, *back);
   EXPECT_EQ(source(bob, goalie), kClient);
-  EXPECT_TRUE(logged("the computer stands in for nobody any more"));
+  EXPECT_TRUE(logged("the computer replaces nobody any more"));
 }
 
 TEST_F(StandIn, PlaysForOneWhoHasNeverSentAnything) {
@@ -168,9 +168,10 @@ TEST_F(StandIn, OffersALeaversRodsToTheTeamMateFirst) {
   plays(bob, *mate);
   plays(carl, *opponent);
   begin_match(carl);
-  ann.say_goodbye();
+  ann.send_goodbye();
   ASSERT_TRUE(table.tick_until([&] { return table->clients() == 2; }));
-  EXPECT_TRUE(logged("free to the team for 10 s, then the computer's: rods 1 for Ann"));
+  EXPECT_TRUE(
+      logged("reserved for the team for 10 s, then played by the computer: rods 1 for Ann"));
   EXPECT_EQ(source(carl, goalie), kNone);
   bob.say(wire::Claim{all0});
   ASSERT_TRUE(bob.catch_up());
@@ -190,7 +191,7 @@ TEST_F(StandIn, OffersNothingToATeamMateWhoIsNotHeard) {
   pass(RodDesk::kStandInAfterUs + 100'000);
   EXPECT_EQ(source(carl, std::countr_zero(rest)), kComputer) << "for Bob";
   lets_go(ann);
-  ann.say_goodbye();
+  ann.send_goodbye();
   ASSERT_TRUE(table.tick_until([&] { return table->clients() == 2; }));
   table.tick(3);
   EXPECT_EQ(source(carl, goalie), kComputer) << "at once: Bob takes nothing";
@@ -203,7 +204,7 @@ TEST_F(StandIn, PlaysForALeaverWhoseTeamMateDoesNotTakeTheRodsUntilSomebodyDoes)
   plays(bob, *mate);
   plays(carl, *opponent);
   begin_match(carl);
-  ann.say_goodbye();
+  ann.send_goodbye();
   ASSERT_TRUE(table.tick_until([&] { return table->clients() == 2; }));
   pass(RodDesk::kOfferUs + 1'000'000);
   EXPECT_EQ(source(carl, goalie), kComputer);
@@ -223,7 +224,7 @@ TEST_F(StandIn, PlaysAtOnceForTheLastOfATeam) {
   ASSERT_TRUE(opponent && sit(ann, "Ann", 0));
   plays(bob, *opponent);
   begin_match(bob);
-  ann.say_goodbye();
+  ann.send_goodbye();
   ASSERT_TRUE(table.tick_until([&] { return table->clients() == 1; }));
   table.tick(3);
   EXPECT_EQ(source(bob, goalie), kComputer);
@@ -263,7 +264,8 @@ TEST_F(StandIn, OffersTheRodsThatAreGivenUpToTheTeamMateFirst) {
   plays(carl, *opponent);
   begin_match(carl);
   ann.say(wire::Claim{0, wire::kWatchOnly});
-  EXPECT_TRUE(logged("free to the team for 10 s, then the computer's: rods 1 for Ann"));
+  EXPECT_TRUE(
+      logged("reserved for the team for 10 s, then played by the computer: rods 1 for Ann"));
   EXPECT_EQ(source(carl, goalie), kNone);
   pass(RodDesk::kOfferUs + 1'000'000);
   EXPECT_EQ(source(carl, goalie), kComputer);
@@ -283,7 +285,7 @@ TEST_F(StandIn, KeepsNoMatchGoingThatAllHaveLeft) {
   ProbeClient ann(table.port()), watcher(table.port());
   ASSERT_TRUE(sit(ann, "Ann", 0) && watcher.join());
   begin_match(ann, 0);
-  ann.say_goodbye();
+  ann.send_goodbye();
   ASSERT_TRUE(table.wait_until([&] { return table->counters().control.left == 1; }));
   pass(RodDesk::kOfferUs);
   EXPECT_EQ(source(watcher, goalie), kNone);
@@ -352,7 +354,7 @@ TEST_F(Alone, AGapInTheOnlyPlayersLineCostsNoGoals) {
   hands.push_back(hand);
   pass(10'000);
   EXPECT_FALSE(table->match().view().paused);
-  EXPECT_TRUE(logged("the match goes on"));
+  EXPECT_TRUE(logged("the match continues"));
   lets_go(ann);
   pass(RodDesk::kStandInAfterUs + 10'000);
   EXPECT_TRUE(table->match().view().paused);
@@ -462,9 +464,9 @@ class StandInResults : public StandIn {
 TEST_F(StandInResults, AreADefeatForWhoLeavesTheMatch) {
   begin_three();
   lets_go(ann);
-  ann.say_goodbye();
+  ann.send_goodbye();
   ASSERT_TRUE(end());
-  EXPECT_TRUE(logged("whoever leaves a match has lost it: Ann ("));
+  EXPECT_TRUE(logged("players who leave a match lose it: Ann ("));
   const auto match = result();
   ASSERT_TRUE(match && find(*match, "Ann"));
   EXPECT_TRUE(find(*match, "Ann")->left);
@@ -504,7 +506,7 @@ TEST_F(StandInResults, CountForNobodyForWhomTheComputerPlayedMuchOfTheMatch) {
   lets_go(ann);
   ASSERT_TRUE(end());
   EXPECT_TRUE(
-      logged("the match does not count for the rating of who played too little of it: "
+      logged("the match does not count for the rating of players who played too little of it: "
              "Ann ("));
   const auto match = result();
   ASSERT_TRUE(match);

@@ -134,8 +134,8 @@ class Terminal {
   explicit Terminal(Run& run) : run_(run) {}
   int loop() {
     std::printf(
-        "Enter: mark or go on; b and Enter: the step before; n and Enter: another rod; q "
-        "and Enter: leave.\n");
+        "Enter: mark or continue; b and Enter: previous step; n and Enter: another rod; q and "
+        "Enter: leave.\n");
     while (asked_to_leave == 0 && !done_) {
       run_.step();
       tell();
@@ -155,14 +155,14 @@ class Terminal {
              std::to_string(cabinet::CalibrationGuide::steps()) + "  ";
     now += request_words(s);
     if (const std::string advice = advice_words(s); !advice.empty()) now += "  " + advice;
-    if (now != told_) std::printf("%s\n", now.c_str());
+    if (now != printed_) std::printf("%s\n", now.c_str());
     const bool fits = s.state(s.rod()) == RodState::fitted;
-    if (now != told_ && fits)
+    if (now != printed_ && fits)
       for (const std::string& line : fit_words(*s.fit())) std::printf("    %s\n", line.c_str());
-    if (now != told_ && fits && !run_.view().problem.empty())
+    if (now != printed_ && fits && !run_.view().problem.empty())
       std::printf("%s\n", run_.view().problem.c_str());
     std::fflush(stdout);
-    told_ = now;
+    printed_ = now;
     done_ = done_ || s.all_fitted();
   }
   void read_keys() {
@@ -186,7 +186,7 @@ class Terminal {
   }
 
   Run& run_;
-  std::string told_, line_;
+  std::string printed_, line_;
   bool done_ = false, closed_ = false;
 };
 
@@ -244,7 +244,7 @@ int main(int argc, char** argv) {
   std::string size = "1280x720";
   CLI::App cli{
       "Guides through the calibration of a cabinet's rods: strokes and turns of each, then its "
-      "numbers are fitted, shown and kept. No server may use the controller meanwhile.\n\n"
+      "numbers are fitted, shown and stored. No server may use the controller meanwhile.\n\n"
       "Exit codes: 0 left, on the terminal with all rods calibrated; 1 failed, or left before; 2 a "
       "bad option; 4 no display.",
       "space-foosball-calibrate"};
@@ -258,19 +258,20 @@ int main(int argc, char** argv) {
         const bool rod = text.size() == 1 && text[0] >= '1' && text[0] <= '8';
         return rod ? ""
                    : "\"" + text +
-                         "\" is no rod: write rods from 1 to 8 with commas between, such as 2,3";
+                         "\" is not a list of rods: write rods from 1 to 8, separated by commas, "
+                         "such as 2,3";
       });
   cli.add_option("--layout", options.layout, "of the table: tournament (1-2-5-3) or paper")
       ->check(CLI::IsMember({"tournament", "paper"}))
       ->capture_default_str();
   cli.add_option("--out", options.out,
-                 "the calibration's file; without it, the one that the server looks for, by the "
-                 "controller's serial number; rods that are left alone stay as it has them");
+                 "the calibration's file; default: the one that the server loads, by the "
+                 "controller's serial number; other rods keep its values");
   cli.add_flag("--text", options.text, "on the terminal, without a window");
   cli.add_option("--size", size, "of the window, WxH")->capture_default_str();
-  cli.add_option("--language", options.language, "instead of the system's")
+  cli.add_option("--language", options.language, "instead of the one of the system")
       ->check(CLI::IsMember({"en", "ko", "de"}));
-  cli.add_option("--screenshot", options.screenshot, "write a picture of the window, and leave");
+  cli.add_option("--screenshot", options.screenshot, "write a picture of the window, and exit");
   cli.add_option("--screenshot-at", options.screenshot_at, "... after so many seconds")
       ->check(draw::within(0.0, 1e6))
       ->capture_default_str();
@@ -295,12 +296,14 @@ int main(int argc, char** argv) {
   const std::string serial = cabinet::controller_serial(options.device);
   std::string path = options.out, before = path;
   if (path.empty() && options.device.rfind("file:", 0) == 0)
-    return fail(kUsage,
-                "A recording is no controller whose calibration is kept: name a file with --out.");
+    return fail(
+        kUsage,
+        "A recording has no controller whose calibration could be stored: give a file with --out.");
   if (path.empty()) {
     const std::string folder = cabinet::calibrations_folder();
     if (folder.empty())
-      return fail(kUsage, "There is no home to keep the calibration in: name a file with --out.");
+      return fail(kUsage,
+                  "There is no home folder to store the calibration in: give a file with --out.");
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     path = cabinet::calibration_file(folder, serial);

@@ -109,9 +109,9 @@ void draw_residuals(const HudPen& pen, const cabinet::RodFit& fit, float top, fl
     x += step;
   }
   const client::TextStyle small{Face::bold, 13.0f, 0.0f, Align::left};
-  pen.text(tr(N_("how far off each mark is, of 1 mm")), small, {-kWide + 10.0f, top + 18.0f},
+  pen.text(tr(N_("error of each mark, full scale 1 mm")), small, {-kWide + 10.0f, top + 18.0f},
            kSlide);
-  pen.text(tr(N_("of 5 degrees")), small, {-kWide + 290.0f, top + 18.0f}, kSpin);
+  pen.text(tr(N_("full scale 5 degrees")), small, {-kWide + 290.0f, top + 18.0f}, kSpin);
 }
 
 }  // namespace
@@ -155,7 +155,7 @@ void draw_session(client::UiBatch& ui, const Session& session, const ViewState& 
   else
     pen.text(state.device + "   \u2192   " + state.path, small, {0.0f, 632.0f}, kDim);
   pen.text(
-      tr(N_("Enter: mark or go on   Backspace: the step before   Tab: another rod   Esc: leave")),
+      tr(N_("Enter: mark or continue   Backspace: previous step   Tab: another rod   Esc: leave")),
       small, {0.0f, 660.0f}, kDim);
   ui.flush(screen);
 }

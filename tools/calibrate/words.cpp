@@ -65,7 +65,7 @@ const char* sentence(cabinet::GuideAdvice advice) {
     case cabinet::GuideAdvice::turn_more:
       return N_("Turn it further.");
     case cabinet::GuideAdvice::wrong_way:
-      return N_("That was the other way: turn it back, and on.");
+      return N_("Wrong direction: turn it back, and continue.");
     case cabinet::GuideAdvice::feet_down:
       return N_("Let the feet hang straight down.");
   }
@@ -75,15 +75,15 @@ const char* sentence(cabinet::GuideAdvice advice) {
 const char* line_sentence(const Session& session) {
   switch (session.line()) {
     case cabinet::DeviceState::missing:
-      return N_("The controller is not there: plug it in.");
+      return N_("The controller is not connected: plug it in.");
     case cabinet::DeviceState::refused:
-      return session.line_error() == EBUSY ? N_("Another program has the controller: end the "
+      return session.line_error() == EBUSY ? N_("Another program uses the controller: end the "
                                                 "server, or the other calibration.")
                                            : N_("The controller cannot be opened: install "
                                                 "cabinet/70-space-foosball.rules, or "
                                                 "join the device's group.");
     case cabinet::DeviceState::garbled:
-      return N_("What comes is no frame: is it the right device, with our firmware?");
+      return N_("The controller sends no valid frames: is it the right device, with our firmware?");
     case cabinet::DeviceState::over:
       return N_("The recording is over.");
     case cabinet::DeviceState::silent:
@@ -119,8 +119,8 @@ std::string request_words(const Session& session) {
       return session.problem() + " " + tr(N_("Press Enter to start this rod again."));
     case RodState::fitted:
       return tr(session.all_fitted()
-                    ? N_("All rods are calibrated, and their numbers are kept. Leave with Esc.")
-                    : N_("This rod is calibrated, and its numbers are kept. Enter: the next rod; "
+                    ? N_("All rods are calibrated, and their numbers are stored. Leave with Esc.")
+                    : N_("This rod is calibrated, and its numbers are stored. Enter: the next rod; "
                          "Backspace: this one again."));
     default:
       break;
@@ -135,9 +135,10 @@ std::string advice_words(const Session& session) {
     return tr(N_("The sensor of this rod does not answer: look at its cable."));
   if (session.state(session.rod()) != RodState::guided) return {};
   if (session.interrupted())
-    return tr(N_("The controller or its sensor was away: start this rod again."));
+    return tr(N_("The controller or its sensor was disconnected: start this rod again."));
   if (const int other = session.other_rod_moves(); other >= 0)
-    return with(tr(N_("Rod %1 moves, and it is not asked for.")), std::to_string(other + 1));
+    return with(tr(N_("Rod %1 moves, but another one is being calibrated.")),
+                std::to_string(other + 1));
   const char* text = sentence(session.guide().advice());
   return *text == '\0' ? "" : tr(text);
 }
@@ -168,11 +169,12 @@ std::vector<std::string> fit_words(const cabinet::RodFit& fit) {
     lines.push_back(
         row(N_("index mark"), c.index->angle * kDegrees, fit.index_deviation * kDegrees, "deg"));
   else if (fit.index_passes > 0)
-    lines.emplace_back(tr(N_("Index mark: not twice alike. Are its magnet and its switch firm?")));
+    lines.emplace_back(
+        tr(N_("Index mark: its passes differ. Are its magnet and its switch firm?")));
   const auto outliers = std::ranges::count_if(fit.residuals, &cabinet::RodFit::Residual::outlier);
   std::array<char, 160> text{};
   std::snprintf(text.data(), text.size(),
-                tr(N_("left over: %.2f mm, %.2f degrees rms of %d marks; outliers: %d")),
+                tr(N_("residual: %.2f mm, %.2f degrees rms of %d marks; outliers: %d")),
                 fit.slide_rms * 1e3, fit.angle_rms * kDegrees,
                 static_cast<int>(fit.residuals.size()), static_cast<int>(outliers));
   lines.emplace_back(text.data());

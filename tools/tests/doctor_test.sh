@@ -21,9 +21,9 @@ expect 2 --seconds never
 grep -q 'explains the options' "$work/err"
 expect 2 --dev "$work/nowhere"
 expect 2 --device ttyACM0
-grep -q '"ttyACM0" names no device: write .*event5; --help' "$work/err"
+grep -q '"ttyACM0" is not a device: write .*event5; --help' "$work/err"
 expect 1 --device "serial:$work/dev/ttyACM0"
-grep -q 'the controller is not there' "$work/out"
+grep -q 'the controller is not connected' "$work/out"
 echo 3 >"$work/sys/class/input/event4/device/capabilities/rel"
 echo 'A mouse' >"$work/sys/class/input/event4/device/name"
 ln -s /dev/ptmx "$work/dev/input/event4" # a device that says nothing

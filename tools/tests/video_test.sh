@@ -54,7 +54,7 @@ refused 2 'over after 1 s' "$work/match.sfr" "$work/late.mp4" --from 60
 refused 2 'must come after' "$work/match.sfr" "$work/late.mp4" --from 1 --to 1
 size=161x120 refused 2 'even' "$work/match.sfr" "$work/odd.mp4"
 head -c 3000 /dev/zero >"$work/zeros.sfr"
-refused 2 'no recorded match' "$work/zeros.sfr" "$work/zeros.mp4"
+refused 2 'not a recorded match' "$work/zeros.sfr" "$work/zeros.mp4"
 refused 2 'no-such' "$work/no-such.sfr" "$work/none.mp4"
 # A full disk is said, and is no crash.
 ln -s /dev/full "$work/full.mkv"

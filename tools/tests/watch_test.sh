@@ -100,7 +100,7 @@ done
 "$bin/space-foosball" --server "127.0.0.1:$(sed -n 's/^port=//p' "$work/ready")" --quality low --mute \
   --size 640x360 >"$work/said" 2>&1 &
 watch_pid=$!
-said 'in step with the match'
+said 'synchronised with the match'
 xdotool search --sync --onlyvisible --name '^Space Foosball$' windowfocus --sync >/dev/null
 key F5
 said 'showing the recordings'
@@ -124,10 +124,10 @@ expect() { # expect STATUS WORDS COMMAND...
   grep -Eq "$words" "$work/out" || { cat "$work/out" && fail "$* did not say \"$words\""; }
 }
 head -c 3000 /dev/urandom >"$work/noise.sfr"
-expect 2 'noise.sfr is no recorded match' "$bin/space-foosball-watch" "$work/noise.sfr"
-expect 2 'pipe.sfr is no file' "$bin/space-foosball-watch" "$work/recordings/pipe.sfr"
+expect 2 'noise.sfr is not a recorded match' "$bin/space-foosball-watch" "$work/noise.sfr"
+expect 2 'pipe.sfr is not a file' "$bin/space-foosball-watch" "$work/recordings/pipe.sfr"
 expect 2 'none.sfr cannot be read' "$bin/space-foosball-watch" "$work/none.sfr"
-expect 2 'wants the recording' "$bin/space-foosball-watch" --share
+expect 2 'needs the recording' "$bin/space-foosball-watch" --share
 expect 0 'Space Foosball 20' "$bin/space-foosball-watch" --share "${made[0]}" --share-to "$work/shared"
 expect 0 '2026-01-01_120000.sfr.*kept' "$bin/space-foosball-watch" --list --folder "$work/recordings"
 DISPLAY='' expect 4 'No display' "$bin/space-foosball-watch" "${made[0]}"

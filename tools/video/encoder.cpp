@@ -123,7 +123,7 @@ tl::expected<void, std::string> Encoder::write(const draw::Image& picture) {
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) {
       if (auto ended = finish(); !ended) return ended;
-      return tl::unexpected(std::string("ffmpeg took no more pictures, and does not say why."));
+      return tl::unexpected(std::string("ffmpeg stopped accepting pictures, without a message."));
     }
     left = left.subspan(static_cast<std::size_t>(written));
   }
@@ -149,7 +149,7 @@ std::string Encoder::failure() {
   if (!said.empty()) return "ffmpeg could not write the video: " + said;
   return WIFSIGNALED(status)
              ? "ffmpeg was ended by signal " + std::to_string(WTERMSIG(status)) + "."
-             : "ffmpeg could not write the video, and does not say why.";
+             : "ffmpeg could not write the video, and gave no message.";
 }
 
 }  // namespace video

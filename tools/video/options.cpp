@@ -19,9 +19,9 @@ tl::expected<Options, draw::Leave> parse_options(int argc, const char* const* ar
   cli.add_option("RECORDING", options.recording, "a match, as --record writes it")->required();
   cli.add_option("VIDEO", options.encoder.path, "the file to write: *.mp4, *.mkv or *.webm")
       ->required();
-  cli.add_option("--from", options.from, "begin after so many seconds of the recording")
+  cli.add_option("--from", options.from, "start at this time of the recording, in seconds")
       ->check(draw::within(0.0, 1e6));
-  cli.add_option("--to", options.to, "end after so many seconds of the recording")
+  cli.add_option("--to", options.to, "end at this time of the recording, in seconds")
       ->check(draw::within(0.001, 1e6));
   cli.add_option("--fps", options.encoder.frames_per_second, "frames a second")
       ->capture_default_str()
@@ -42,7 +42,7 @@ tl::expected<Options, draw::Leave> parse_options(int argc, const char* const* ar
   if (!pixels) return tl::unexpected(draw::refuse(pixels.error()));
   // The codecs store one colour for each four pixels.
   if (pixels->x % 2 != 0 || pixels->y % 2 != 0)
-    return tl::unexpected(draw::refuse("--size wants an even width and height, not " + size + "."));
+    return tl::unexpected(draw::refuse("--size needs an even width and height, not " + size + "."));
   options.encoder.size = *pixels;
   constexpr std::array<const char*, client::kViews> kNames{"seat", "above", "follow", "spectator"};
   options.view =

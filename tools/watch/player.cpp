@@ -95,7 +95,7 @@ void Player::go_to_goal(int direction) {
   if (!findings.done && direction > 0) {
     message_ = N_("still reading the recording: try again");
   } else {
-    message_ = findings.goals.empty() ? N_("no goal was scored") : N_("no goal there");
+    message_ = findings.goals.empty() ? N_("no goal was scored") : N_("no goal in that direction");
   }
 }
 

@@ -123,7 +123,7 @@ void Session::take_recording(Opened opened) {
   player_ = std::make_unique<Player>(std::move(*opened));
   kept_ = server::summarise_recording(player_->timeline().path()).kept;
   opened_ = true;
-  verdict_told_ = hidden_ = false;
+  verdict_shown_ = hidden_ = false;
   message_.clear();
   if (options_.from > 0.0) {
     player_->go_to(1e3 * options_.from);
@@ -150,8 +150,8 @@ void Session::step(double dt) {
     if (const std::string text = player_->take_message(); !text.empty())
       tell(client::tr(text.c_str()), false);
     const Findings findings = player_->timeline().findings();
-    if (findings.done && !verdict_told_ && !findings.being_made) {
-      verdict_told_ = true;
+    if (findings.done && !verdict_shown_ && !findings.being_made) {
+      verdict_shown_ = true;
       if (findings.verdict != server::Playback::Verdict::same) tell(findings.sentence, true);
     }
   }
@@ -190,8 +190,8 @@ void Session::keep() {
     return tell(done.error(), true);
   if (player_) kept_ = keep;
   if (!player_) list_.rows[row].kept = keep;
-  tell(client::tr(keep ? N_("kept: this recording is never dropped")
-                       : N_("no longer kept: it is dropped when there are too many")),
+  tell(client::tr(keep ? N_("kept: this recording is never deleted")
+                       : N_("no longer kept: it is deleted when there are too many")),
        false);
 }
 

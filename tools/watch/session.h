@@ -87,7 +87,7 @@ class Session {
   client::View view_;
   int team_ = 0;
   bool over_ = false, hidden_ = false, show_keys_ = false, opened_ = false, picture_ = false;
-  bool kept_ = false, verdict_told_ = false;
+  bool kept_ = false, verdict_shown_ = false;
   double stick_ = 0.0, wheel_ = 0.0;
   double seconds_ = 0.0, message_until_ = 0.0;
   std::string message_, first_problem_;

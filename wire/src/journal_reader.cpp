@@ -49,18 +49,18 @@ std::vector<NamedLayout> journal_layouts() {
   return {
       {"header", "the first record",
        list_layout<JournalHeader>([](Lister& l, auto& h) { describe_journal_header(l, h); })},
-      {"ticks", "what went into up to 64 ticks",
+      {"ticks", "the inputs of up to 64 ticks",
        list_layout<JournalTicksHead>(
            [](Lister& l, auto& h) { describe_journal_ticks_head(l, h); })},
-      {"tick", "`count` times in a record of ticks, each from a whole byte on",
+      {"tick", "`count` times in a record of ticks, each starts at a whole byte",
        journal_tick_layout()},
       {"hash", "of the match's state, for a replay to compare with",
        list_layout<JournalHash>([](Lister& l, auto& h) { describe_journal_hash(l, h); })},
-      {"keyframe", "the match's whole state, to start from",
+      {"keyframe", "the complete state of the match, to start from",
        list_layout<JournalKeyframe>([](Lister& l, auto& k) { describe_journal_keyframe(l, k); })},
       {"end", "the last record",
        list_layout<JournalEnd>([](Lister& l, auto& e) { describe_journal_end(l, e); })},
-      {"standing", "how the match stands, for lists of recordings",
+      {"standing", "the score of the match, for lists of recordings",
        list_layout<JournalStanding>([](Lister& l, auto& s) { describe_journal_standing(l, s); })}};
 }
 

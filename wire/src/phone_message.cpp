@@ -52,8 +52,9 @@ std::vector<NamedLayout> phone_layouts() {
       {"claim", "Phone to server: these rods from now on.", layout_of<PhoneClaim>()},
       {"input", "Phone to server, on every change and at least 20 a second.",
        layout_of<PhoneInput>()},
-      {"state", "Server to phone: who has which rods, after each change.", layout_of<PhoneState>()},
-      {"notice", "Server to phone: a person should read it.", layout_of<PhoneNotice>()},
+      {"state", "Server to phone: the assignment of rods, after each change.",
+       layout_of<PhoneState>()},
+      {"notice", "Server to phone: a message for a person.", layout_of<PhoneNotice>()},
       {"pulse", "Server to phone: a man of the rod has hit the ball.", layout_of<PhonePulse>()}};
 }
 

@@ -28,60 +28,60 @@ constexpr const char* kHead = R"(# The protocol
      wire/include/wire/device_frame.h, device_command.h and device_settings.h. Do not edit: change those, then run
      `ninja -C build/release wire_protocol_doc && build/release/bin/wire_protocol_doc docs/protocol.md`. -->
 
-Six kinds of bytes go between processes: snapshots and input datagrams over UDP, control messages
-over TCP, what phones say over a WebSocket, the journal in a file, and the cabinet's frames, its commands
-and its settings over USB. Everything is little endian.
+Processes exchange six kinds of data: snapshots and input datagrams over UDP, control messages over
+TCP, messages of phones over a WebSocket, the journal in a file, and the cabinet's frames, commands and
+settings over USB. Everything is little endian.
 )";
 
 constexpr const char* kVocabulary = R"(
-## How the bit-packed messages are written
+## Encoding of the bit-packed messages
 
 Snapshot, input datagram and journal payloads are fields without gaps, in the order of their tables.
 Bits are filled from the lowest of each byte, bytes in order. `x[]` is an element of an array or list;
-"max bits" is one field's most, "times" how often it occurs at most.
+"max bits" is the maximum size of one field, "times" its maximum number of occurrences.
 
 | kind | written as |
 |---|---|
-| constant | always this value; anything else is refused |
-| hash | 32 bits, the layout hash given with the table: FNV-1a over names, kinds, bits and ranges. A message with another hash is of another version and is refused |
-| integer, flag | unsigned; above the range is refused |
-| fixed | value = step * (code - zero), where zero = 2^(bits-1) - 1; a code of all ones is refused. "x3": three of them, x, y, z |
+| constant | always this value; anything else is rejected |
+| hash | 32 bits, the layout hash given with the table: FNV-1a over names, kinds, bits and ranges. A message with another hash is of another version and is rejected |
+| integer, flag | unsigned; a value above the range is rejected |
+| fixed | value = step * (code - zero), where zero = 2^(bits-1) - 1; a code of all ones is rejected. "x3": three of them, x, y, z |
 | unsigned fixed | value = step * code |
 | wrapped | an angle in units of 1/65536 turn as two's complement: angles that differ by 2^bits units have the same code |
-| rotation | 2 bits: which of x, y, z, w is the largest; then the three others in order, each as a fixed of 15 bits over +-1/sqrt(2). The largest is sqrt(1 - sum of squares). Refused where it would not be the largest by more than 3 steps |
-| varint | groups of 7 bits, lowest first, each in 8 bits of which the highest says that more follow; the shortest form only |
+| rotation | 2 bits: which of x, y, z, w is the largest; then the three others in order, each as a fixed of 15 bits over +-1/sqrt(2). The largest is sqrt(1 - sum of squares). Rejected if it is smaller than another one by more than 3 steps |
+| varint | groups of 7 bits, lowest first, each in 8 bits; the highest bit is 1 if more follow; the shortest form only |
 | delta | a signed number v as the varint of (v << 1) xor (v >> 63) |
-| array | so many elements, nothing before them |
-| list | a count of so many bits, then the elements |
-| condition | no bits; what follows in its structure is there only if the flag before is 1 |
-| bytes | a varint length, zero bits to the next byte, then so many bytes |
+| array | the given number of elements, with nothing before them |
+| list | the number of elements, in "max bits", then the elements |
+| condition | no bits; the following fields of its structure exist only if the flag before is 1 |
+| bytes | the length as a varint, zero bits to the next byte, then the bytes |
 | text | as bytes: UTF-8 without control characters |
 | padding | zero bits to the next byte |
 | checksum | CRC-32 as in zlib (reflected 0x04C11DB7) over all bytes before it; nothing may follow |
 
-A sender clamps what is out of range, and writes 0 for what is not finite. A receiver refuses a
-message as a whole: wrong magic, version, layout hash or checksum, a value out of range, too short or
-too long.
+A sender clamps values that are out of range, and writes 0 for values that are not finite. A receiver
+rejects a complete message for a wrong magic, version, layout hash or checksum, a value out of range, or
+a wrong length.
 )";
 
 constexpr const char* kControlText = R"(
-A stream of messages both ways, each a u32 length of what follows (1 to %zu; more ends the connection)
-and a FlatBuffers buffer of so many bytes with the file identifier "SFCT", root table `Control`, not
+A stream of messages both ways, each a u32 length of the rest (1 to %zu; more ends the connection)
+and a FlatBuffers buffer of that length with the file identifier "SFCT", root table `Control`, not
 size-prefixed. `wire/control.fbs` is the schema. Every buffer is verified before it is read. Texts are
 UTF-8 without control characters. A message of an unknown kind, one that fails verification and a value
 out of range end the connection.
 
-At one machine (127.0.0.0/8, ::1) the client begins with Hello. From another machine it begins with
+On the same machine (127.0.0.0/8, ::1) the client begins with Hello. From another machine it begins with
 Knock; the server answers with Challenge, both derive keys (docs/decisions/0040-who-may-join.md), and all
-that follows in either direction is a sealed stream: frames of a u32 length of what follows (17 to
+that follows in both directions is a sealed stream: frames of a u32 length of the rest (17 to
 %zu), bytes encrypted with ChaCha20-Poly1305, and the tag of 16 bytes. The nonce is four zero bytes
-and the frame's number from 0 as u64, the length is authenticated with it. What the frames hold, joined,
-is the stream of messages above.
+and the frame's number from 0 as u64; the length is authenticated with it. The contents of the frames,
+concatenated, are the stream of messages above.
 )";
 
 constexpr const char* kSealText = R"(
-Every datagram on the network is sealed with ChaCha20-Poly1305 (RFC 8439), under a key that the Welcome
-gives: `input_key` for those of the client, `snapshot_key` for those of the server.
+Every datagram on the network is sealed with ChaCha20-Poly1305 (RFC 8439), under a key from the
+Welcome: `input_key` for those of the client, `snapshot_key` for those of the server.
 
 | offset | size | field |
 |---|---|---|
@@ -90,13 +90,13 @@ gives: `input_key` for those of the client, `snapshot_key` for those of the serv
 | 12 | n | the datagram, encrypted |
 | 12 + n | 16 | tag |
 
-The nonce is four zero bytes and the counter; the first 12 bytes are authenticated. A receiver takes each
-counter once, and none that is %llu or more behind the newest. It takes datagrams from the other side's
-address and port only. Nothing is ever sent in answer to a datagram.
+The nonce is four zero bytes and the counter; the first 12 bytes are authenticated. A receiver accepts
+each counter once, and none that is %llu or more behind the newest. It accepts datagrams from the other
+side's address and port only. Datagrams are never answered.
 )";
 
 constexpr const char* kJournalText = R"(
-A file is a sequence of records, appended while play goes on, so that what was written before a power
+A file is a sequence of records, appended during play, so that everything written before a power
 cut can be read:
 
 | offset | size | field |
@@ -105,16 +105,16 @@ cut can be read:
 | 4 | 4 | CRC-32 of the payload |
 | 8 | length | payload, described below by its first byte |
 
-A reader stops at the first bad record and keeps all before it. The first record is a header, the last,
-if play ended in order, an end; ticks count up from 0 without a gap. Ticks are gathered in records of
-up to %d, each tick as the change against the one before; a record is closed early by any other entry.
+A reader stops at the first bad record and uses all before it. The first record is a header, the last,
+if play ended regularly, an end; ticks count up from 0 without a gap. Ticks are stored in records of
+up to %d, each tick as the change from the one before; any other entry ends a record early.
 )";
 
 constexpr const char* kPhonesText = R"(
-A phone opens `ws://HOST:PORT/TOKEN/ws` of the address that the server's Phones message names
+A phone opens `ws://HOST:PORT/TOKEN/ws` of the address in the server's Phones message
 (`http://HOST:PORT/TOKEN`, which serves the page). Each binary message is one of these; all fields are
-of whole bytes. A phone's are at most %zu bytes and 500 a second; a longer one, one that is cut short
-or out of range, and a text message end the connection.
+whole bytes. A phone sends at most %zu bytes per message and 500 messages a second. A message that is
+longer, truncated or out of range, and a text message, end the connection.
 )";
 
 template <class... Values>
@@ -280,7 +280,7 @@ std::string protocol_document() {
   text += kVocabulary;
   text += "\n## Sealed datagrams\n";
   text += formatted(kSealText, static_cast<unsigned long long>(DatagramOpener::kWindow));
-  text += "\n## Snapshot\n\nUDP, server to every listener, one a tick.\n";
+  text += "\n## Snapshot\n\nUDP, server to every listener, one per tick.\n";
   text += datagram(snapshot_layout(), kMaxDatagram);
   text +=
       "\n## Input datagram\n\nUDP, client to server, on every change and at least 20 a second.\n";

@@ -18,7 +18,7 @@ class CrewNames {
   // Call once a frame. Returns the names to send now; none: the server has them.
   std::optional<wire::Names> update(const Crew& crew, const Settings& settings, bool in_match);
   // The client has joined again: a seat that is taken again may still have its earlier names.
-  void joined() { told_.reset(); }
+  void joined() { reported_.reset(); }
   // By rod: the player's name where a person has set one; else empty.
   const wire::RodPlayers& set_names() const { return set_; }
 
@@ -28,7 +28,7 @@ class CrewNames {
   std::array<int, kDevices + 1> places_ = none();  // by device + 1: person's index; -1: none
   Settings named_;                                 // the settings whose names are in use
   bool named_once_ = false;
-  std::optional<wire::Names> told_;
+  std::optional<wire::Names> reported_;
   wire::RodPlayers set_;
 
   static constexpr std::array<int, kDevices + 1> none() {

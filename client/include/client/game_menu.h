@@ -23,7 +23,7 @@ class GameMenu {
 
   // Takes the game that the server sent in this session; none: nothing yet. refused: why the server
   // rejected the last request, or empty.
-  void hear(std::uint64_t session, const std::optional<wire::Game>& told, bool may_change,
+  void hear(std::uint64_t session, const std::optional<wire::Game>& reported, bool may_change,
             const std::string& refused);
   int rows() const;
   MenuPage page(int chosen) const;
@@ -40,14 +40,14 @@ class GameMenu {
   MenuRow row(int row) const;
   void change(int row, int way);
   void change_goals(int way);
-  void take(const wire::Game& told);
+  void take(const wire::Game& reported);
 
   std::uint64_t session_ = 0;
   bool may_change_ = false;
-  std::optional<wire::Game> told_;
+  std::optional<wire::Game> reported_;
   wire::Game kept_{};     // as chosen; includes values that the current mode does not use
   bool stepped_ = false;  // since the last ask()
-  bool asking_ = false;   // kept_ differs from told_
+  bool asking_ = false;   // kept_ differs from reported_
   int tries_ = 0;
   std::int64_t next_us_ = 0;
   std::string refused_;

@@ -29,7 +29,8 @@ class TuningMenu {
 
   // Takes the tuning that the server sent in this session; none: nothing yet. Requests of another
   // session are dropped: a server that restarts has its own values.
-  void hear(std::uint64_t session, const std::optional<foosball::Tuning>& told, bool may_change);
+  void hear(std::uint64_t session, const std::optional<foosball::Tuning>& reported,
+            bool may_change);
   void find_profiles();  // reads the directory again, for new files
   int rows() const;
   MenuPage page(int chosen) const;
@@ -56,7 +57,7 @@ class TuningMenu {
   std::size_t profile_ = 0;
   std::uint64_t session_ = 0;
   bool may_change_ = false;
-  std::optional<foosball::Tuning> told_;
+  std::optional<foosball::Tuning> reported_;
   std::array<std::optional<Want>, foosball::kTuningValues> wants_{};
   std::int64_t last_us_ = 0;
   std::size_t next_ = 0;

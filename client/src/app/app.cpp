@@ -95,7 +95,8 @@ void App::follow_connection() {
     if (status_.link == Link::lost && !match_is_over())
       log_warning("physics server lost (" + status_.detail + "): waiting at " +
                   connection_->address());
-    if (status_.link == Link::refused) log_warning("the physics server refuses: " + status_.detail);
+    if (status_.link == Link::refused)
+      log_warning("the physics server rejected this client: " + status_.detail);
   }
   if (status_.characters != characters_) use_characters();
   if (status_.joins == joins_seen_) return;
@@ -165,9 +166,9 @@ int App::viewer_team() const {
   return crew_ && crew_->plays() ? crew_->team() : -1;
 }
 
-void App::say_when_in_step(std::int64_t now) {
+void App::log_when_synchronised(std::int64_t now) {
   if (awaiting_since_ == 0 || status_.link != Link::joined) return;
-  log_info("in step with the match after " + std::to_string((now - awaiting_since_) / 1000) +
+  log_info("synchronised with the match after " + std::to_string((now - awaiting_since_) / 1000) +
            " ms");
   awaiting_since_ = 0;
 }
@@ -323,7 +324,7 @@ HudState App::hud(const Camera& camera) {
       hud.connection_detail = status_.detail;
       break;
     case Link::refused:
-      hud.connection_message = message(tr("Refused by the physics server at"));
+      hud.connection_message = message(tr("Rejected by the physics server at"));
       hud.connection_detail = status_.detail;
       break;
   }
@@ -444,17 +445,17 @@ int App::loop() {
     }
     drawing = 1e-6 * static_cast<double>(os::monotonic_us() - began - picture_us);
     if (!watching_) window_->swap();
-    if (scene_is_current() && !sample_.starving) say_when_in_step(os::monotonic_us());
+    if (scene_is_current() && !sample_.starving) log_when_synchronised(os::monotonic_us());
     meter_.end(os::monotonic_us());
     judge_quality();
   }
-  say_figures(drawing);
+  print_statistics(drawing);
   connection_.reset();  // sends Bye
   if (!failure.empty()) std::fprintf(stderr, "%s\n", failure.c_str());
   return failure.empty() ? 0 : 1;
 }
 
-void App::say_figures(double seconds) const {
+void App::print_statistics(double seconds) const {
   const SnapshotCounters c = connection_->counters();
   const double rate = seconds > 0 ? static_cast<double>(meter_.frames()) / seconds : 0;
   char text[640];
@@ -486,7 +487,7 @@ void App::say_figures(double seconds) const {
   std::ofstream file(options_.stats_file);
   file << text;
   if (!file)
-    log_warning("Cannot write the figures to " + options_.stats_file +
+    log_warning("Cannot write the statistics to " + options_.stats_file +
                 ": choose a directory that can be written to.");
 }
 

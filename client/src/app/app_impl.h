@@ -33,7 +33,7 @@ namespace client {
 
 foosball::AssistChoice assists_of(const Settings& settings);
 // Validates the server's tuning: a value out of range keeps its default.
-foosball::Tuning tuning_of(const wire::Tuning& told);
+foosball::Tuning tuning_of(const wire::Tuning& reported);
 
 class App {
  public:
@@ -64,7 +64,7 @@ class App {
   void tell_names();
   int viewer_team() const;
   void use_characters();
-  void say_when_in_step(std::int64_t now);
+  void log_when_synchronised(std::int64_t now);
   void await_first_snapshot();
   void take_input(std::int64_t now);
   std::vector<SurveyPerson> survey_people(std::uint8_t rods) const;
@@ -87,7 +87,7 @@ class App {
   std::array<std::string, 8> rod_names() const;
   void judge_quality();
   std::string take_screenshot();
-  void say_figures(double seconds) const;
+  void print_statistics(double seconds) const;
   // The scene is of the joined match. A scene of an earlier match is drawn, but not acted upon.
   bool scene_is_current() const;
   bool match_is_over() const;

@@ -19,11 +19,11 @@ foosball::AssistChoice assists_of(const Settings& settings) {
   return {settings.automatic_rod, settings.goalie_follows, settings.aim};
 }
 
-foosball::Tuning tuning_of(const wire::Tuning& told) {
+foosball::Tuning tuning_of(const wire::Tuning& reported) {
   foosball::Tuning tuning;
-  for (std::size_t i = 0; i < told.values.size(); ++i) {
+  for (std::size_t i = 0; i < reported.values.size(); ++i) {
     const foosball::TuningField& field = foosball::kTuningFields[i];
-    if (foosball::in_range(field, told.values[i])) tuning.*field.value = told.values[i];
+    if (foosball::in_range(field, reported.values[i])) tuning.*field.value = reported.values[i];
   }
   return tuning;
 }
@@ -176,8 +176,9 @@ void App::turn_view() {
 
 void App::tune(std::int64_t now) {
   if (!crew_ || status_.link != Link::joined) return;
-  const auto told = connection_->tuning();
-  menu_.tuning().hear(crew_->session(), told ? std::optional(tuning_of(*told)) : std::nullopt,
+  const auto reported = connection_->tuning();
+  menu_.tuning().hear(crew_->session(),
+                      reported ? std::optional(tuning_of(*reported)) : std::nullopt,
                       status_.welcome.role == number(wire::Role::host));
   for (const wire::MatchRequest& request : menu_.tuning().requests(now))
     connection_->request(crew_->session(), request);
@@ -197,7 +198,7 @@ void App::watch_devices(std::int64_t now) {
   if (!crew_ || status_.link != Link::joined) return;
   DevicesMenu& devices = menu_.devices();
   devices.follow(crew_->session(), status_.welcome.role == number(wire::Role::host));
-  if (const auto told = connection_->take_devices()) devices.hear(*told);
+  if (const auto reported = connection_->take_devices()) devices.hear(*reported);
   if (menu_.shows(Menu::Page::controllers) && devices.ask(now))
     connection_->ask_devices(crew_->session());
 }

@@ -18,7 +18,7 @@ tl::expected<std::uint8_t, std::string> parse_rods(const std::string& text) {
   for (std::string rod; std::getline(list, rod, ',');) {
     if (rod.size() != 1 || rod[0] < '1' || rod[0] > '8') {
       return tl::unexpected(
-          "--rods wants rods from 1 to 8 with commas between, such as 1,2, not \"" + text + "\".");
+          "--rods needs rods from 1 to 8, separated by commas, such as 1,2, not \"" + text + "\".");
     }
     rods |= 1u << (rod[0] - '1');
   }
@@ -30,7 +30,7 @@ tl::expected<std::uint8_t, std::string> parse_rods(const std::string& text) {
 tl::expected<void, std::string> parse_server(const std::string& text, ConnectionOptions& into) {
   const auto parsed = os::parse_host_port(text);
   if (!parsed) {
-    return tl::unexpected("--server wants HOST:PORT with a port from 1 to 65535, not \"" + text +
+    return tl::unexpected("--server needs HOST:PORT with a port from 1 to 65535, not \"" + text +
                           "\".");
   }
   if (!parsed->host.empty()) into.host = parsed->host;
@@ -43,17 +43,18 @@ tl::expected<Options, draw::Leave> parse_options(int argc, const char* const* ar
   std::string server = "127.0.0.1:" + std::to_string(kDefaultPort), team = "0", size = "1280x720",
               quality = "auto", view;
   CLI::App cli(
-      "Space Foosball: the renderer. Draws what the physics server simulates, and sends it your "
-      "hands.\n\"space-foosball doctor\" says what is connected that can move rods.",
+      "Space Foosball: the renderer. Draws what the physics server simulates, and sends it the "
+      "motions of your hands.\n"
+      "\"space-foosball doctor\" lists the connected devices that can move rods.",
       "space-foosball");
   cli.add_option("--server", server, "the physics server, HOST:PORT")->capture_default_str();
-  cli.add_option("--team", team, "0 or 1 to play, watch to look on")
+  cli.add_option("--team", team, "0 or 1 to play, watch to watch only")
       ->capture_default_str()
       ->check(CLI::IsMember({"0", "1", "watch"}));
   std::string rods, password_file;
   cli.add_option("--rods", rods, "rods to play, of 1 to 8 from the left: 1,2 (all that are free)");
   cli.add_option("--password-file", password_file,
-                 "its first line is the password of a server at another machine")
+                 "its first line is the password of a server on another machine")
       ->check(CLI::ExistingFile);
   cli.add_option("--password", options.connection.password,
                  "the same; other users of this machine can see it here, unless it is given as "
@@ -61,43 +62,42 @@ tl::expected<Options, draw::Leave> parse_options(int argc, const char* const* ar
       ->envname("SPACE_FOOSBALL_PASSWORD");
   cli.add_flag("--host", options.connection.as_host, "the password is the host's");
   cli.add_option("--name", options.names,
-                 "your name in results and ratings, instead of the settings'; of several people at "
-                 "this window one after another: Ann,Ben")
+                 "your name in results and ratings, instead of the one in the settings; for "
+                 "several people at this window: Ann,Ben")
       ->delimiter(',')
       ->expected(1)
       ->take_all();
   cli.add_flag(
       "--cabinet-gamepads", options.cabinet_gamepads,
-      "take the gamepads of a cabinet's controller too: at a server that has not its rods");
-  cli.add_option("--seconds", options.seconds, "leave after so many seconds")
+      "also use the gamepads of a cabinet's controller, with a server that does not read its rods");
+  cli.add_option("--seconds", options.seconds, "exit after this time, in seconds")
       ->check(draw::within(0.1, 1e6));
   cli.add_flag("--until-server-ends", options.until_server_ends,
-               "leave when the physics server ends, instead of waiting for it");
+               "exit when the physics server ends, instead of waiting for it");
   cli.add_option("--screenshot", options.screenshot, "write a picture to FILE.png, at the end");
-  cli.add_option("--screenshot-at", options.screenshot_at, "... or after so many seconds")
+  cli.add_option("--screenshot-at", options.screenshot_at, "... or after this time, in seconds")
       ->check(draw::within(0.0, 1e6));
   cli.add_option("--size", size, "of the window, WxH")->capture_default_str();
-  cli.add_flag("--fullscreen", options.fullscreen, "take the whole screen");
+  cli.add_flag("--fullscreen", options.fullscreen, "use the whole screen");
   cli.add_option("--quality", quality, "low, high or auto (by the frame rate reached)")
       ->capture_default_str()
       ->check(CLI::IsMember({"low", "high", "auto"}));
   cli.add_option("--view", view,
-                 "seat, above (a cabinet's screen), follow or spectator, instead of the settings'")
+                 "seat, above (a cabinet's screen), follow or spectator, instead of the one in the "
+                 "settings")
       ->check(CLI::IsMember({"seat", "above", "follow", "spectator"}));
   cli.add_flag("--mute", options.mute, "no sound");
   cli.add_flag("--fps", options.show_fps, "show the frame rate");
-  cli.add_option("--stats-file", options.stats_file, "write figures as JSON to FILE at the end");
+  cli.add_option("--stats-file", options.stats_file, "write statistics as JSON to FILE at the end");
   cli.add_option("--font-dir", options.font_directory,
-                 "where DejaVuSans.ttf and DejaVuSans-Bold.ttf are")
+                 "folder of DejaVuSans.ttf and DejaVuSans-Bold.ttf")
       ->check(CLI::ExistingDirectory);
   cli.footer(
       "Exit codes: 0 done, 1 failed, 2 bad option, 4 no display.\n"
       "Keys: 1-4 choose a rod, wheel next rod, Tab nearest rod, arrows or WASD slide and spin,\n"
-      "Space pushes (starts, confirms), P pauses, C changes the camera, in training F has the ball "
-      "served\n"
-      "to the next man of the rod in hand, F2 or O opens the "
-      "settings,\n"
-      "F1 or H shows the keys, Esc releases the mouse, again Esc leaves. Settings are kept in\n"
+      "Space pushes (starts, confirms), P pauses, C changes the camera, in training F serves\n"
+      "the ball to the next man of the controlled rod, F2 or O opens the settings,\n"
+      "F1 or H shows the keys, Esc releases the mouse, again Esc leaves. Settings are stored in\n"
       "$XDG_CONFIG_HOME/space-foosball/client.conf, or ~/.config/space-foosball/client.conf.");
   if (auto parsed = draw::parse(cli, argc, argv); !parsed) return tl::unexpected(parsed.error());
   if (const auto good = parse_server(server, options.connection); !good)
@@ -119,11 +119,11 @@ tl::expected<Options, draw::Leave> parse_options(int argc, const char* const* ar
                                        " people have names at one window."));
   for (std::string& name : options.names) {
     if (name.find_first_not_of(" \t") == name.npos || name.size() > wire::kMaxName)
-      return tl::unexpected(draw::refuse("--name wants names of 1 to 64 bytes each."));
+      return tl::unexpected(draw::refuse("--name needs names of 1 to 64 bytes each."));
     name = wire::clean_name(name);
   }
   if (options.screenshot_at && options.screenshot.empty())
-    return tl::unexpected(draw::refuse("--screenshot-at wants --screenshot FILE.png too."));
+    return tl::unexpected(draw::refuse("--screenshot-at needs --screenshot FILE.png too."));
   for (const auto& written : {draw::can_be_written("--stats-file", options.stats_file),
                               draw::can_be_written("--screenshot", options.screenshot)}) {
     if (!written) return tl::unexpected(draw::refuse(written.error()));

@@ -112,7 +112,7 @@ void Pads::unplug(std::int32_t instance, InputCollector& into) {
   place = {-1, nullptr, place.guid, {}, 0};
   into.connect(number, false);
   news_.push_back("gamepad " + std::to_string(number + 1) +
-                  " was unplugged: its rods stay where they are");
+                  " was unplugged: its rods stay in place");
 }
 
 void Pads::use(std::int32_t instance) {

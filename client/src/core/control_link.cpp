@@ -143,7 +143,7 @@ void ControlLink::run() {
       if ((polled[1].revents & ~POLLOUT) != 0 && stage_ != Stage::idle) on_readable(now);
     }
   }
-  say_bye();
+  send_bye();
 }
 
 int ControlLink::wait_ms(std::int64_t now_us) const {
@@ -198,7 +198,7 @@ void ControlLink::on_connected(std::int64_t now_us) {
   sealer_.reset();
   opener_.reset();
   if (server_.is_loopback() && options_.trust_this_machine) {
-    say_hello();
+    send_hello();
   } else {
     knock();
   }
@@ -222,18 +222,18 @@ bool ControlLink::on_challenge(const wire::Challenge& challenge, std::int64_t no
   const auto secret = exchange_->secret(challenge.share);
   exchange_.reset();
   if (!secret) {
-    drop("it sends what is no message", now_us);
+    drop("it sends invalid messages", now_us);
     return false;
   }
   const wire::StreamKeys keys = wire::stream_keys(*secret);
   sealer_.emplace(keys.to_server);
   opener_.emplace(keys.to_client);
   reader_ = {};
-  say_hello();
+  send_hello();
   return true;
 }
 
-void ControlLink::say_hello() {
+void ControlLink::send_hello() {
   stage_ = Stage::greeting;
   wire::Hello hello;
   hello.snapshot_layout = wire::snapshot_layout_hash();
@@ -256,8 +256,7 @@ void ControlLink::on_readable(std::int64_t now_us) {
   // A server that cannot open a message sealed with another password closes without an answer.
   const bool unproven = stage_ == Stage::greeting && sealer_;
   if (size <= 0 && unproven) {
-    return drop("the password is not the server's: give --password-file with the right one", now_us,
-                true);
+    return drop("wrong password: give --password-file with the right one", now_us, true);
   }
   if (size <= 0) return drop(size == 0 ? "it closed the connection" : std::strerror(errno), now_us);
   if (take({bytes.data(), static_cast<std::size_t>(size)}, now_us)) flush(now_us);
@@ -266,7 +265,7 @@ void ControlLink::on_readable(std::int64_t now_us) {
 // False: the connection was dropped.
 bool ControlLink::take(std::span<const std::byte> bytes, std::int64_t now_us) {
   const auto nonsense = [&] {
-    drop("it sends what is no message", now_us);
+    drop("it sends invalid messages", now_us);
     return false;
   };
   std::vector<std::byte> plain;
@@ -288,7 +287,7 @@ bool ControlLink::handle(const wire::ControlMessage& message, std::int64_t now_u
   const bool of_a_proof = std::holds_alternative<wire::Challenge>(message) ||
                           std::holds_alternative<wire::Refusal>(message);
   if (stage_ == Stage::proving && !of_a_proof) {
-    drop("it sends what is no message", now_us);
+    drop("it sends invalid messages", now_us);
     return false;
   }
   if (const auto* welcome = std::get_if<wire::Welcome>(&message)) {
@@ -334,7 +333,7 @@ bool ControlLink::handle(const wire::ControlMessage& message, std::int64_t now_u
     return false;
   }
   if (const auto* bye = std::get_if<wire::Bye>(&message)) {
-    drop(bye->reason.empty() ? "it said good-bye" : bye->reason, now_us);
+    drop(bye->reason.empty() ? "it ended the session" : bye->reason, now_us);
     const std::lock_guard lock(mutex_);
     status_.server_ended = true;
     return false;
@@ -413,10 +412,10 @@ void ControlLink::flush(std::int64_t now_us) {
     if (sent < 0) return drop(std::strerror(errno), now_us);
     out_.erase(out_.begin(), out_.begin() + sent);
   }
-  if (out_.size() > kMaxQueued) drop("it does not read what it is sent", now_us);
+  if (out_.size() > kMaxQueued) drop("it does not read what is sent to it", now_us);
 }
 
-void ControlLink::say_bye() {
+void ControlLink::send_bye() {
   if (stage_ != Stage::joined && stage_ != Stage::greeting) return;
   queue(wire::Bye{"the window was closed"});
   const std::int64_t until = os::monotonic_us() + std::int64_t{1000} * kGoodbyeMs;

@@ -59,7 +59,7 @@ class ControlLink {
   void on_readable(std::int64_t now_us);
   bool take(std::span<const std::byte> bytes, std::int64_t now_us);
   void knock();
-  void say_hello();
+  void send_hello();
   bool on_challenge(const wire::Challenge& challenge, std::int64_t now_us);
   void ask(const wire::ControlMessage& message, std::uint64_t session);
   void watch_silence(std::int64_t now_us);
@@ -70,7 +70,7 @@ class ControlLink {
   void drop(const std::string& why, std::int64_t now_us, bool refused = false);
   void queue(const wire::ControlMessage& message);
   void flush(std::int64_t now_us);
-  void say_bye();
+  void send_bye();
 
   const ConnectionOptions options_;
   const os::SocketAddress server_;

@@ -35,8 +35,9 @@ std::optional<wire::Names> CrewNames::update(const Crew& crew, const Settings& s
       if (is_set) set_[rod] = name;
     }
   }
-  if (told_ && names.name == told_->name && names.players == told_->players) return std::nullopt;
-  told_ = names;
+  if (reported_ && names.name == reported_->name && names.players == reported_->players)
+    return std::nullopt;
+  reported_ = names;
   return names;
 }
 

@@ -11,8 +11,8 @@ namespace {
 
 const char* name_of(std::uint8_t state) {
   constexpr std::array<const char*, wire::kDeviceStateCount> kNames{
-      N_("not there"), N_("cannot be opened"), N_("sends nothing"), N_("sends no frame"),
-      N_("live"),      N_("recording is over")};
+      N_("not connected"), N_("cannot be opened"), N_("sends nothing"), N_("sends no frame"),
+      N_("live"),          N_("recording is over")};
   return state < kNames.size() ? kNames[state] : "";
 }
 
@@ -58,13 +58,13 @@ bool DevicesMenu::ask(std::int64_t now_us) {
   return true;
 }
 
-void DevicesMenu::hear(const wire::Devices& told) {
+void DevicesMenu::hear(const wire::Devices& reported) {
   waits_ = false;
   answered_ = true;
-  devices_.resize(told.devices.size());
-  for (std::size_t i = 0; i < told.devices.size(); ++i) {
+  devices_.resize(reported.devices.size());
+  for (std::size_t i = 0; i < reported.devices.size(); ++i) {
     if (!devices_[i]) devices_[i] = std::make_shared<DeviceView>();
-    add(*devices_[i], told.devices[i], told.time_us);
+    add(*devices_[i], reported.devices[i], reported.time_us);
   }
 }
 
@@ -85,7 +85,7 @@ MenuPage DevicesMenu::page(int row) const {
   }
   if (devices_.empty()) {
     page.note = !host_      ? N_("Only the host sees the controllers of the server's machine.")
-                : answered_ ? N_("No controller and no mouse has a rod at the server's machine: "
+                : answered_ ? N_("No controller or mouse moves a rod at the server's machine: "
                                  "start it with --device, and see ./play --doctor.")
                             : N_("Waiting for the server.");
     return page;

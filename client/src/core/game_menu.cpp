@@ -32,7 +32,7 @@ constexpr std::array<const char*, wire::kModeCount> kModeNames{
 constexpr std::array<const char*, wire::kModeCount> kModeNotes{
     N_("One match between two sides. A change takes effect before a match begins; in play it waits "
        "for the next."),
-    N_("The ball is served to you again and again; nothing ends it. A change takes effect before a "
+    N_("The ball is served to you again and again, without an end. A change takes effect before a "
        "match begins; in play it waits for the next."),
     N_("Two minutes against the opponent of the day: the same for everybody, at every try. In play "
        "it waits for the next match."),
@@ -75,11 +75,11 @@ wire::Game asked_for(wire::Game game) {
 }
 
 // The server reports the actual numbers where the request left them to the rules.
-bool same_game(const wire::Game& asked, const wire::Game& told) {
+bool same_game(const wire::Game& asked, const wire::Game& reported) {
   const bool opponent =
-      asked.level == 0 || (asked.level == told.level && asked.style == told.style);
-  return asked.mode == told.mode && opponent &&
-         rules_of(setup_of(asked)) == rules_of(setup_of(asked_for(told)));
+      asked.level == 0 || (asked.level == reported.level && asked.style == reported.style);
+  return asked.mode == reported.mode && opponent &&
+         rules_of(setup_of(asked)) == rules_of(setup_of(asked_for(reported)));
 }
 
 int turned(int value, int way, int count) {
@@ -94,32 +94,32 @@ std::string minutes_text(std::uint32_t ms) {
 
 }  // namespace
 
-void GameMenu::hear(std::uint64_t session, const std::optional<wire::Game>& told, bool may_change,
-                    const std::string& refused) {
+void GameMenu::hear(std::uint64_t session, const std::optional<wire::Game>& reported,
+                    bool may_change, const std::string& refused) {
   if (session != session_) kept_ = {};
-  if (session != session_ || !may_change || !told) asking_ = false;
+  if (session != session_ || !may_change || !reported) asking_ = false;
   session_ = session;
-  may_change_ = may_change && told.has_value();
+  may_change_ = may_change && reported.has_value();
   refused_ = refused;
-  told_ = told;
-  if (told && asking_ && same_game(wanted(), *told)) asking_ = false;
-  if (told && !asking_) take(*told);
+  reported_ = reported;
+  if (reported && asking_ && same_game(wanted(), *reported)) asking_ = false;
+  if (reported && !asking_) take(*reported);
 }
 
 // Values that the mode does not define keep the choice made for the other modes.
-void GameMenu::take(const wire::Game& told) {
-  const foosball::Mode mode = mode_of(told);
-  kept_.mode = told.mode;
+void GameMenu::take(const wire::Game& reported) {
+  const foosball::Mode mode = mode_of(reported);
+  kept_.mode = reported.mode;
   if (chooses_opponent(mode)) {
-    kept_.level = told.level;
-    kept_.style = told.style;
+    kept_.level = reported.level;
+    kept_.style = reported.style;
   }
-  if (chooses_rules(mode)) kept_.rule_set = told.rule_set;
+  if (chooses_rules(mode)) kept_.rule_set = reported.rule_set;
   if (!has_end(mode)) return;
-  kept_.goals = told.goals;
-  kept_.sets = told.sets;
-  kept_.match_ms = told.match_ms;
-  kept_.change_sides = told.change_sides;
+  kept_.goals = reported.goals;
+  kept_.sets = reported.sets;
+  kept_.match_ms = reported.match_ms;
+  kept_.change_sides = reported.change_sides;
 }
 
 wire::Game GameMenu::wanted() const {
@@ -136,7 +136,7 @@ bool GameMenu::fixed(int row) const {
   if (row == row_level || row == row_style) return !chooses_opponent(mode);
   if (row == row_rules) return !chooses_rules(mode);
   if (row >= row_goals && row <= row_sides) return !has_end(mode);
-  return row == row_begin && !told_->waits;
+  return row == row_begin && !reported_->waits;
 }
 
 MenuRow GameMenu::row(int row) const {
@@ -146,11 +146,12 @@ MenuRow GameMenu::row(int row) const {
   const bool no_end = setup.mode == foosball::Mode::training;
   const auto number = [](int n) { return std::to_string(n); };
   const bool day = setup.mode == foosball::Mode::challenge;
-  const bool day_told = day && told_->mode == game.mode;  // the opponent of the day is known
-  const int level = day_told ? told_->level : game.level,
-            style = day_told ? told_->style : game.style;
+  const bool day_is_known =
+      day && reported_->mode == game.mode;  // the opponent of the day is known
+  const int level = day_is_known ? reported_->level : game.level,
+            style = day_is_known ? reported_->style : game.style;
   const char* level_by_mode = day ? N_("of the day") : N_("stronger with each match");
-  const bool known = chooses_opponent(setup.mode) || day_told;
+  const bool known = chooses_opponent(setup.mode) || day_is_known;
   switch (row) {
     case row_mode:
       return {N_("Mode"), kModeNames[game.mode]};
@@ -169,8 +170,8 @@ MenuRow GameMenu::row(int row) const {
               .value = number(rules.goals_to_win),
               .translate_value = false};
     case row_sets:
-      if (no_end) return {N_("Best of so many sets"), "-"};
-      return {.label = N_("Best of so many sets"),
+      if (no_end) return {N_("Best of how many sets"), "-"};
+      return {.label = N_("Best of how many sets"),
               .value = number(2 * rules.sets_to_win - 1),
               .translate_value = false};
     case row_minutes: {
@@ -181,15 +182,16 @@ MenuRow GameMenu::row(int row) const {
     case row_sides:
       return {N_("Change sides between sets"), game.change_sides ? N_("on") : N_("off")};
     default:
-      return {N_("End this match, begin the one chosen"), told_->waits ? "" : N_("nothing waits")};
+      return {N_("End this match, begin the one chosen"),
+              reported_->waits ? "" : N_("no game is waiting")};
   }
 }
 
 std::string GameMenu::note(int row) const {
   if (!may_change_) return N_("Only the host chooses what is played; you see it as it is.");
-  if (told_->waits && row != row_begin)
+  if (reported_->waits && row != row_begin)
     return N_(
-        "A match is in play: what you choose comes with the next one. The last row ends this "
+        "A match is in play: your choice takes effect in the next one. The last row ends this "
         "match at once.");
   if (row == row_mode) return kModeNotes[kept_.mode];
   if (row == row_begin) return N_("Back to the logo, as a restart does: this match has no result.");
@@ -203,7 +205,7 @@ std::string GameMenu::note(int row) const {
     return N_(
         "arcade: first to five. Tournament: sets, two touches from the serve, time limits on "
         "the ball.");
-  if (row == row_minutes) return N_("When they are over, whoever leads has won.");
+  if (row == row_minutes) return N_("When they are over, the leading team wins.");
   return {};
 }
 
@@ -212,14 +214,14 @@ MenuPage GameMenu::page(int chosen) const {
   page.title = N_("Game");
   page.chosen = chosen;
   for (int i = 0; i < row_count; ++i) {
-    if (!told_) {
+    if (!reported_) {
       page.rows.push_back({.label = N_("Mode"), .value = "...", .translate_value = false});
       break;
     }
     page.rows.push_back(row(i));
     page.rows.back().fixed = fixed(i);
   }
-  if (told_ && chosen >= 0) page.note = note(chosen);
+  if (reported_ && chosen >= 0) page.note = note(chosen);
   page.detail = refused_;
   return page;
 }
@@ -282,7 +284,7 @@ void GameMenu::change(int row, int way) {
 
 bool GameMenu::step(int row, const MenuSteps& steps) {
   const int way = steps.right != 0 ? steps.right : steps.confirm ? 1 : 0;
-  if (way == 0 || row < 0 || row >= row_count || !told_ || fixed(row)) return false;
+  if (way == 0 || row < 0 || row >= row_count || !reported_ || fixed(row)) return false;
   if (row == row_begin) return steps.confirm;
   const wire::Game before = kept_;
   change(row, way);

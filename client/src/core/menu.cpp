@@ -17,8 +17,8 @@ MenuPage recordings_page(const Settings& settings, int row) {
   page.rows = {{N_("Watch recorded matches"), ""},
                {N_("Record what is played"), settings.record_matches ? N_("on") : N_("off")}};
   page.note = row == row_record
-                  ? N_("from the next start of the game on; the oldest recordings are dropped, "
-                       "never one that you keep or share")
+                  ? N_("from the next start of the game on; the oldest recordings are deleted, "
+                       "except those that you keep or share")
                   : N_("opens the list: watch, slow motion, goals, share; the match waits");
   return page;
 }
@@ -99,8 +99,8 @@ MenuPage Menu::page(const Context& context) const {
   if (page_ == Page::settings) page.rows = settings_.rows(context.settings);
   if (page_ == Page::settings && settings_.at_name())
     page.note =
-        N_("Enter, then type the name; Enter again keeps it. Results and ratings go by it, "
-           "from the next match on.");
+        N_("Press Enter, type the name, press Enter again. Results and ratings use it from the "
+           "next match on.");
   if (page_ == Page::seats && context.crew != nullptr)
     page = seats_.page(context.seats, *context.crew, row_ - 1);
   if (page_ == Page::tuning) page = tuning_.page(row_ - 1);

@@ -196,21 +196,21 @@ MenuPage SeatsMenu::page(const SeatsView& view, const Crew& crew, int chosen) co
   if (vote >= 0 && vote < static_cast<int>(votes.size()))
     page.detail = votes[static_cast<std::size_t>(vote)].text;
   if (chosen >= 0 && chosen < foosball::kRods) {
-    page.note = other_at(view, chosen) != nullptr
-                    ? N_("Another client plays this rod: it is free when it is given up there.")
-                    : N_("Left and right give the rod to all devices, the mouse, keys, a gamepad, "
-                         "or nobody.");
+    page.note =
+        other_at(view, chosen) != nullptr
+            ? N_("Another client plays this rod: it becomes free when that client gives it up.")
+            : N_("Left and right give the rod to all devices, the mouse, keys, a gamepad, "
+                 "or nobody.");
   } else if (const wire::Seat* person = person_at(view, chosen);
              person != nullptr && may_kick(view, crew, *person)) {
-    page.note =
-        armed_ == person->client
-            ? N_("Once more puts this player out of the match.")
-            : N_("Enter puts this player out of the match: the host's word, or a vote of more "
-                 "than half of the other players, at least two.");
+    page.note = armed_ == person->client
+                    ? N_("Press again to remove this player from the match.")
+                    : N_("Enter removes this player from the match: if the host decides it, or by "
+                         "a vote of more than half of the other players, at least two.");
     for (const wire::Notice& notice : view.notices)
       if (notice.topic == wire::kKickTopics + person->client) page.detail = notice.text;
   } else if (chosen == row_restart || chosen == row_pause) {
-    page.note = N_("The host decides; else more than half of the players.");
+    page.note = N_("The host decides; otherwise more than half of the players.");
   }
   return page;
 }

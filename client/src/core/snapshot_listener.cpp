@@ -52,7 +52,7 @@ tl::expected<void, std::string> SnapshotListener::join(const wire::Welcome& welc
   os::SocketAddress inputs = server;
   inputs.set_port(welcome.udp_port);
   if (!hear_only(unicast_, inputs)) {
-    return tl::unexpected("There is no way to the server's UDP port " + os::to_text(inputs) +
+    return tl::unexpected("There is no route to the server's UDP port " + os::to_text(inputs) +
                           ": check this machine's network.");
   }
   // A group's key stays the same after a lost connection.

@@ -79,14 +79,14 @@ TuningMenu::TuningMenu(std::string directory) : directory_(std::move(directory))
   find_profiles();
 }
 
-void TuningMenu::hear(std::uint64_t session, const std::optional<foosball::Tuning>& told,
+void TuningMenu::hear(std::uint64_t session, const std::optional<foosball::Tuning>& reported,
                       bool may_change) {
   if (session != session_ || !may_change) wants_ = {};
   session_ = session;
-  told_ = told;
-  may_change_ = may_change && told.has_value();
-  for (std::size_t i = 0; told && i < wants_.size(); ++i) {
-    if (wants_[i] && wants_[i]->value == told.value().*foosball::kTuningFields[i].value)
+  reported_ = reported;
+  may_change_ = may_change && reported.has_value();
+  for (std::size_t i = 0; reported && i < wants_.size(); ++i) {
+    if (wants_[i] && wants_[i]->value == reported.value().*foosball::kTuningFields[i].value)
       wants_[i].reset();
   }
 }
@@ -115,7 +115,7 @@ int TuningMenu::rows() const {
 }
 
 foosball::Tuning TuningMenu::wanted() const {
-  foosball::Tuning tuning = told_.value_or(foosball::Tuning{});
+  foosball::Tuning tuning = reported_.value_or(foosball::Tuning{});
   for (std::size_t i = 0; i < wants_.size(); ++i) {
     if (wants_[i]) tuning.*foosball::kTuningFields[i].value = wants_[i]->value;
   }
@@ -142,7 +142,7 @@ MenuPage TuningMenu::page(int chosen) const {
   for (const foosball::TuningField& field : foosball::kTuningFields) {
     const double value = now.*field.value, standard = usual.*field.value;
     MenuRow row{.label = field.name,
-                .value = told_ ? value_text(value, field) : "...",
+                .value = reported_ ? value_text(value, field) : "...",
                 .translate_value = false,
                 .prefix = value == standard ? "" : "*",
                 .translate_label = false,
@@ -168,7 +168,7 @@ MenuPage TuningMenu::page(int chosen) const {
 
 void TuningMenu::want(int index, double value) {
   const auto i = static_cast<std::size_t>(index);
-  if (told_ && told_.value().*foosball::kTuningFields[i].value == value) {
+  if (reported_ && reported_.value().*foosball::kTuningFields[i].value == value) {
     wants_[i].reset();
   } else {
     wants_[i] = Want{value, 0, 0};

@@ -234,7 +234,7 @@ std::vector<SideLine> side_lines(const HudState& hud) {
     lines.push_back({text, kFaint, Align::right, 0});
   }
   if (hud.starving && hud.connection_message.empty())
-    lines.push_back({tr("no news from the physics server"), kWarning, Align::right, 1});
+    lines.push_back({tr("no data from the physics server"), kWarning, Align::right, 1});
   // A client that has not joined yet, or is rejected, is no watcher.
   if (hud.viewer_team < 0 && hud.connection_message.empty() && !hud.recorded)
     lines.push_back({tr("watching"), kFaint, Align::left, 0});

@@ -84,8 +84,7 @@ std::array<std::string, 2> totals(const DeviceView& view) {
   const wire::DeviceReport& now = view.now;
   std::string rates = line(N_("%1 frames a second"), fixed(view.frames_per_second, 0));
   if (view.latency_ms >= 0.0) {
-    rates +=
-        " \u00B7 " + line(N_("%1 ms old when the tick takes them in"), fixed(view.latency_ms, 2));
+    rates += " \u00B7 " + line(N_("%1 ms old when the tick uses them"), fixed(view.latency_ms, 2));
     rates += " \u00B7 " +
              line(N_("at most %1 ms"), fixed(1e-3 * static_cast<double>(now.latency_max_us), 1));
   }
@@ -100,7 +99,7 @@ std::array<std::string, 2> totals(const DeviceView& view) {
   add(N_("%1 stale"), now.stale);
   add(N_("%1 errors between sensor and controller"), now.line_errors);
   add(N_("%1 times too fast for a sensor"), now.overflows);
-  add(N_("%1 motions that no rod can make"), now.impossible);
+  add(N_("%1 impossible motions"), now.impossible);
   add(N_("%1 times plugged in again"), now.reopened);
   if (faults.empty()) faults = tr(N_("nothing lost, no errors"));
   return {rates, faults};

@@ -140,15 +140,15 @@ struct KeyLine {
 };
 constexpr std::array<KeyLine, 14> kReplayKeys{
     {{N_("Space, Enter"), N_("pause, play on")},
-     {N_("Left, Right"), N_("1 s back, on; with Shift 10 s")},
-     {", .", N_("one tick (1 ms) back, on")},
+     {N_("Left, Right"), N_("1 s back, forward; with Shift 10 s")},
+     {", .", N_("one tick (1 ms) back, forward")},
      {N_("Up, Down"), N_("faster, slower: 1/8 to 4 times")},
-     {"B N", N_("goal before, next goal")},
+     {"B N", N_("previous, next goal")},
      {N_("Home, End"), N_("beginning, end")},
      {"C V", N_("camera, other side")},
-     {"U", N_("hide or show all writing")},
-     {"K", N_("keep: is never dropped")},
-     {"S", N_("share: a copy with a telling name")},
+     {"U", N_("hide or show all text")},
+     {"K", N_("keep: is never deleted")},
+     {"S", N_("share: a copy with a descriptive name")},
      {"F12", N_("picture into the folder of shared recordings")},
      {N_("Mouse"), N_("click or draw along the line; wheel: 1 s")},
      {N_("Gamepad"), N_("A pause, B back, X share, Y camera, cross, shoulders: goals")},
@@ -156,8 +156,8 @@ constexpr std::array<KeyLine, 14> kReplayKeys{
 constexpr std::array<KeyLine, 6> kListKeys{
     {{N_("Up, Down, wheel"), N_("choose")},
      {N_("Enter, click"), N_("watch")},
-     {"K", N_("keep: is never dropped")},
-     {"S", N_("share: a copy with a telling name")},
+     {"K", N_("keep: is never deleted")},
+     {"S", N_("share: a copy with a descriptive name")},
      {N_("Gamepad"), N_("cross chooses, A watches, B leaves, X shares, Y keeps")},
      {"Esc", N_("leave")}}};
 
@@ -429,14 +429,14 @@ void draw_replay_list(UiBatch& ui, const ReplayList& list, const glm::ivec2& scr
   const bool any = !list.rows.empty();
   const bool kept = any && list.rows[static_cast<std::size_t>(list.chosen)].kept;
   if (any) {
-    pen.button(layout.keep, tr(kept ? N_("keep no more") : N_("keep")), kInk);
+    pen.button(layout.keep, tr(kept ? N_("do not keep") : N_("keep")), kInk);
     pen.button(layout.share, tr("share"), kInk);
   }
   pen.button(layout.leave, tr("back"), kInk);
   draw_rows(pen, list, layout);
   if (!any)
-    pen.text(tr(list.reading ? N_("reading ...") : N_("no match is recorded yet: play one")), 17.0f,
-             Align::left, {low.x + 24.0f * s, layout.rows.low.y + 24.0f * s}, kFaint,
+    pen.text(tr(list.reading ? N_("reading ...") : N_("no match has been recorded yet: play one")),
+             17.0f, Align::left, {low.x + 24.0f * s, layout.rows.low.y + 24.0f * s}, kFaint,
              high.x - low.x - 48.0f * s);
   const float middle = 0.5f * (low.x + high.x);
   if (!list.message.empty()) {

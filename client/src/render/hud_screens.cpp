@@ -28,7 +28,7 @@ constexpr std::array<KeyHelp, 15> kAllKeys{
     {{N_("Mouse"), N_("forward and back slides, sideways spins")},
      {"1 2 3 4", N_("take goalie, defence, midfield, attack")},
      {N_("Wheel, Q E"), N_("next rod")},
-     {"Tab", N_("rod nearest to the ball by itself")},
+     {"Tab", N_("automatic: rod nearest to the ball")},
      {N_("Arrows, WASD"), N_("slide and spin by keys")},
      {N_("Gamepad"), N_("sticks slide and spin, shoulders change rod")},
      {N_("Gamepad buttons"), N_("A push, Start pause, Back menu, Y time-out, X next man")},

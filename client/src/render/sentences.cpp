@@ -18,17 +18,17 @@ constexpr std::array kOwn{
     N_("no snapshot for %1 ms"),
     N_("it does not answer"),
     N_("it closed the connection"),
-    N_("it said good-bye"),
-    N_("it sends what is no message"),
-    N_("it does not read what it is sent"),
+    N_("it ended the session"),
+    N_("it sends invalid messages"),
+    N_("it does not read what is sent to it"),
     N_("its characters cannot be played: use the same release of both"),
-    N_("the password is not the server's: give --password-file with the right one"),
-    N_("There is no way to the server's UDP port %1: check this machine's network."),
+    N_("wrong password: give --password-file with the right one"),
+    N_("There is no route to the server's UDP port %1: check this machine's network."),
     // recordings
-    N_("%1 is no recorded match (%2): choose a file that --record wrote"),
-    N_("%1 is no recorded match: choose a file that --record wrote"),
+    N_("%1 is not a recorded match (%2): choose a file that --record wrote"),
+    N_("%1 is not a recorded match: choose a file that --record wrote"),
     N_("%1: cannot be opened (%2); check its name and permissions."),
-    N_("%1 holds the beginning of a match, but no tick of it: there is nothing to replay"),
+    N_("%1 contains the beginning of a match, but no tick of it: there is nothing to replay"),
 };
 
 using Words = std::vector<std::string_view>;

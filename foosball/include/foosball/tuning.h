@@ -52,64 +52,65 @@ struct TuningField {
 
 inline constexpr std::array kTuningFields = std::to_array<TuningField>({
     {"gravity", "m/s^2", &Tuning::gravity, 5.0, 30.0,
-     "Acceleration of the ball towards the field; heavier than the earth's, so that hops are "
+     "Acceleration of the ball towards the field; stronger than the earth's, so that hops are "
      "short."},
     {"ball_mass", "kg", &Tuning::ball_mass, 0.010, 0.060,
-     "Mass of the ball; a heavier one is felt more by the hand."},
+     "Mass of the ball; the hand feels a heavier one more."},
     {"ball_friction", "", &Tuning::ball_friction, 0.0, 2.0,
-     "Friction of the ball; a pair takes the geometric mean. A sliding foot drags the ball by it."},
+     "Friction of the ball; a pair uses the geometric mean. With it a sliding foot drags the "
+     "ball."},
     {"field_friction", "", &Tuning::field_friction, 0.0, 2.0,
-     "Friction of the field; how soon a ball that slides begins to roll."},
+     "Friction of the field; with more a sliding ball begins to roll sooner."},
     {"field_restitution", "", &Tuning::field_restitution, 0.0, 0.85,
-     "Bounce of the field: the share of its speed that a falling ball keeps. More, and it never "
-     "lies still."},
+     "Restitution of the field: the fraction of its speed that a falling ball keeps. With more it "
+     "never comes to rest."},
     {"rolling_resistance", "m", &Tuning::rolling_resistance, 0.0, 0.002,
-     "Lever of the rolling resistance; times gravity over the radius it is the deceleration."},
+     "Lever arm of the rolling resistance; times gravity over the radius it is the deceleration."},
     {"wall_friction", "", &Tuning::wall_friction, 0.0, 2.0, "Friction of walls."},
     {"wall_restitution", "", &Tuning::wall_restitution, 0.0, 0.95,
-     "Bounce of walls; nearer 1, a missed shot never calms down."},
+     "Restitution of the walls; close to 1 a missed shot never slows down."},
     {"man_friction", "", &Tuning::man_friction, 0.0, 3.0,
      "Factor on the friction of every character."},
     {"man_restitution", "", &Tuning::man_restitution, 0.0, 1.1,
      "Factor on the restitution of every character."},
     {"still_speed", "m/s", &Tuning::still_speed, 0.01, 1.0,
-     "Slower approaches do not bounce: the last small hops of a ball end here."},
+     "Slower approaches do not bounce: this ends the last small hops of a ball."},
     {"hop_from", "m/s", &Tuning::hop_from, 0.0, 2.0,
-     "A ball that falls more slowly stays down: a hop is seen or it is not."},
+     "A ball that falls more slowly does not bounce: a hop is clearly visible, or there is none."},
     {"hop_gain", "", &Tuning::hop_gain, 1.0, 4.0,
      "Exaggeration: factor on the upward speed that a man gives the ball."},
     {"bounce_gain", "", &Tuning::bounce_gain, 0.0, 1.5,
-     "Exaggeration: upward speed of a ball that meets a man, for each m/s beyond bounce_from with "
-     "which it came."},
+     "Exaggeration: upward speed of a ball that hits a man, for each m/s of its speed beyond "
+     "bounce_from."},
     {"bounce_from", "m/s", &Tuning::bounce_from, 0.0, 10.0,
-     "Exaggeration: a ball that comes more slowly is not lifted, so that it can be trapped."},
+     "Exaggeration: a slower ball is not lifted, so that it can be trapped."},
     {"bounce_most", "m/s", &Tuning::bounce_most, 0.0, 3.0,
-     "Exaggeration: the most upward speed that a man gives so."},
+     "Exaggeration: the maximum upward speed that a man gives in this way."},
     {"hop_ceiling", "m", &Tuning::hop_ceiling, 0.02, 1.0,
      "No hop takes the ball's lowest point higher than this; above the walls it can leave the "
      "table."},
     {"sag_from", "m", &Tuning::sag_from, 0.020, 0.075,
-     "Further than this from the nearest rod the field falls towards it."},
+     "Farther than this from the nearest rod, the field slopes towards it."},
     {"sag_acceleration", "m/s^2", &Tuning::sag_acceleration, 0.0, 1.0,
-     "How fast a ball gathers speed on that slope; must exceed the rolling resistance."},
+     "Acceleration of a ball on that slope; must exceed the rolling resistance."},
     {"hand_mass", "kg", &Tuning::hand_mass, 0.05, 3.0,
-     "Mass of the hand and handle that move with a rod; more, and a foot is heavy but slow."},
+     "Mass of the hand and handle that move with a rod; with more a foot is heavier but slower."},
     {"hand_inertia", "kg m^2", &Tuning::hand_inertia, 5.0e-5, 0.01,
      "Inertia of the hand and handle that turn with a rod."},
     {"hand_frequency", "rad/s", &Tuning::hand_frequency, 50.0, 500.0,
-     "Of the critically damped drives: under a hand that accelerates at a the lag is a over its "
-     "square."},
+     "Of the critically damped drives: if the hand accelerates at a, the lag is a over the square "
+     "of this."},
     {"hand_force", "N", &Tuning::hand_force, 20.0, 2000.0,
-     "The most a hand pushes along a rod: what a pinched ball feels."},
-    {"hand_torque", "N m", &Tuning::hand_torque, 1.0, 100.0, "The most a hand turns a rod with."},
+     "Maximum force of a hand along a rod: the force on a pinched ball."},
+    {"hand_torque", "N m", &Tuning::hand_torque, 1.0, 100.0, "Maximum torque of a hand on a rod."},
     {"slide_rate", "m/s", &Tuning::slide_rate, 0.5, 12.0,
-     "No rod slides faster however far its target jumps."},
+     "Maximum speed at which a rod slides, however far its target jumps."},
     {"turn_rate", "rad/s", &Tuning::turn_rate, 20.0, 160.0,
-     "No rod turns faster however far its target jumps; real rods reach 140 rad/s."},
+     "Maximum speed at which a rod turns, however far its target jumps; real rods reach 140 "
+     "rad/s."},
     {"serve_ahead", "m", &Tuning::serve_ahead, -0.060, 0.060,
-     "Where the ball is put ahead of the midfield that serves: further ahead and the opponent's "
-     "has "
-     "the first shot; behind the men, the server."},
+     "Where the ball is placed ahead of the midfield that serves: farther ahead the opponent's "
+     "midfield has the first shot; behind the men, the server's."},
     {"restart_ahead", "m", &Tuning::restart_ahead, -0.060, 0.060,
      "The same at the other rods that restart play."},
 });

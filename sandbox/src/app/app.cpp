@@ -10,9 +10,9 @@
 #include <memory>
 #include <optional>
 
-#include "app/figures.h"
 #include "app/meter.h"
 #include "app/panel.h"
+#include "app/statistics.h"
 #include "app/thrown.h"
 #include "draw/image.h"
 #include "draw/window.h"
@@ -35,17 +35,17 @@ int fail(const std::string& sentence, int code) {
   return code;
 }
 
-std::string write_stats(const Figures& figures, const std::string& path) {
+std::string write_stats(const Statistics& statistics, const std::string& path) {
   if (path.empty()) return {};
   std::ofstream file(path);
-  file << json(figures);
+  file << json(statistics);
   if (file.flush()) return {};
-  return "Cannot write the figures to " + path + ": choose a directory that can be written to.";
+  return "Cannot write the statistics to " + path + ": choose a directory that can be written to.";
 }
 
-int sum_up(const Figures& figures, const Options& options) {
-  std::printf("%s\n", sentence(figures).c_str());
-  const std::string error = write_stats(figures, options.stats_file);
+int sum_up(const Statistics& statistics, const Options& options) {
+  std::printf("%s\n", sentence(statistics).c_str());
+  const std::string error = write_stats(statistics, options.stats_file);
   return error.empty() ? 0 : fail(error, 1);
 }
 
@@ -54,7 +54,7 @@ int run_without_window(const Options& options, Simulation simulation) {
   while (simulation.time() < end - 0.5 * simulation.dt() && asked_to_leave == 0) {
     if (const auto stepped = simulation.step(); !stepped) return fail(stepped.error().message, 1);
   }
-  return sum_up(figures_of(simulation), options);
+  return sum_up(statistics_of(simulation), options);
 }
 
 // Dear ImGui's state, for as long as there is a window.
@@ -121,7 +121,7 @@ std::string App::start(int& exit_code) {
   auto window = draw::Window::open({.size = options_.size,
                                     .fullscreen = options_.fullscreen,
                                     .title = "Virtual Physics: sandbox",
-                                    .otherwise = "ask for figures alone with --no-window"});
+                                    .otherwise = "run without a window with --no-window"});
   if (!window) return window.error().sentence;
   window_.emplace(std::move(*window));
   exit_code = 1;
@@ -307,10 +307,10 @@ int App::loop() {
     fulfil(requests);
   }
   if (!failure.empty()) return fail(failure, 1);
-  Figures figures = figures_of(simulation_);
-  figures.frames = meter_.frames();
-  figures.frames_per_second = 1e9 * meter_.frames() / static_cast<double>(before - began + 1);
-  return sum_up(figures, options_);
+  Statistics statistics = statistics_of(simulation_);
+  statistics.frames = meter_.frames();
+  statistics.frames_per_second = 1e9 * meter_.frames() / static_cast<double>(before - began + 1);
+  return sum_up(statistics, options_);
 }
 
 }  // namespace

@@ -62,7 +62,7 @@ void scene_chooser(const Simulation& simulation, Requests& requests) {
 
 void time_controls(const Simulation& simulation, const Meter& meter, Controls& controls,
                    Requests& requests) {
-  if (ImGui::Button(controls.paused ? "Go on" : "Pause", {72, 0}))
+  if (ImGui::Button(controls.paused ? "Continue" : "Pause", {72, 0}))
     controls.paused = !controls.paused;
   ImGui::SameLine();
   if (ImGui::Button("Step", {60, 0})) requests.step = true;
@@ -100,15 +100,14 @@ void row(const char* what, const char* format, double value) {
 }
 
 void timings(const Simulation& simulation, const Meter& meter, double drawing) {
-  const StepTimes::Figures f = simulation.times().figures(kShown);
+  const StepTimes::Statistics f = simulation.times().statistics(kShown);
   const std::vector<double> last = simulation.times().last(kShown);
   std::vector<float> shown(last.begin(), last.end());
   const auto top = static_cast<float>(std::max(1.25 * f.p99, 1.0));
   ImGui::PlotLines("##steps", shown.data(), static_cast<int>(shown.size()), 0, nullptr, 0.0f, top,
                    {ImGui::GetContentRegionAvail().x, 52.0f});
-  ImGui::TextColored(kDim, "the last %zu steps, from 0 to %.0f us", shown.size(),
-                     static_cast<double>(top));
-  if (ImGui::BeginTable("figures", 4, ImGuiTableFlags_SizingStretchProp)) {
+  ImGui::TextColored(kDim, "last %zu steps, 0 to %.0f us", shown.size(), static_cast<double>(top));
+  if (ImGui::BeginTable("statistics", 4, ImGuiTableFlags_SizingStretchProp)) {
     const vp::StepCounters& counters = simulation.world().counters();
     row("median", "%.0f us", f.median);
     row("p99", "%.0f us", f.p99);
@@ -143,7 +142,7 @@ void limits(const vp::StepStatus& status) {
   for (const vp::Limit limit : vp::kLimits) {
     if (reached(status, limit)) ImGui::TextColored(kBright, "%s", sentence(limit));
   }
-  if (status.impact_limit) ImGui::TextColored(kBright, "%.3f s held", status.time_lost);
+  if (status.impact_limit) ImGui::TextColored(kBright, "%.3f s lost", status.time_lost);
   ImGui::PopTextWrapPos();
 }
 
@@ -178,7 +177,7 @@ void show_controls(Controls& controls, Requests& requests) {
 void keys_help() {
   if (!ImGui::CollapsingHeader("Mouse and keys")) return;
   ImGui::TextUnformatted(
-      "left: drag a body, or turn the view\n"
+      "left: drag a body, or rotate the view\n"
       "right: pan     wheel: zoom\n"
       "Space pause    S one step    R restart\n"
       "1 2 3 rate     - + speed     N B scenes\n"

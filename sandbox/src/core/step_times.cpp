@@ -29,7 +29,7 @@ void StepTimes::clear() {
   next_ = 0;
 }
 
-StepTimes::Figures StepTimes::figures(std::size_t count) const {
+StepTimes::Statistics StepTimes::statistics(std::size_t count) const {
   std::vector<double> steps = last(count);
   if (steps.empty()) return {};
   return {share(steps, 0.5), share(steps, 0.99), *std::max_element(steps.begin(), steps.end())};

@@ -8,7 +8,7 @@ namespace sandbox {
 
 class StepTimes {
  public:
-  struct Figures {
+  struct Statistics {
     double median = 0.0, p99 = 0.0, max = 0.0;  // of the stored steps [us]
   };
 
@@ -20,8 +20,8 @@ class StepTimes {
   std::size_t size() const { return ring_.size(); }  // number of stored steps
   // Of the last `count` steps. All 0 before the first step. The quantile q of n steps is the
   // smallest of them that at least q n of them do not exceed.
-  Figures figures(std::size_t count) const;
-  Figures figures() const { return figures(kept_); }
+  Statistics statistics(std::size_t count) const;
+  Statistics statistics() const { return statistics(kept_); }
   // The last steps, the newest at the end; fewer if fewer are stored.
   std::vector<double> last(std::size_t count) const;
 

@@ -1,5 +1,5 @@
 // The command from the PC to the cabinet's micro-controller, shared by both: freestanding C++14, as
-// wire/device_frame.h, whose CRC it has.
+// wire/device_frame.h, with the same CRC.
 //
 // Layout (little endian), kDeviceCommandBytes in all:
 //   0  u8   version            kDeviceCommandVersion
@@ -7,22 +7,22 @@
 //                              (wire/device_settings.h)
 //   2  u16  sequence           of the sender, wraps; not checked
 //   4  u8   rod                pulse, stick: 0..7
-//   5  u8   amplitude          pulse: 0..255, of what the motor can do
+//   5  u8   amplitude          pulse: 0..255, as a fraction of the motor's full power
 //      u8   reversed           stick: bit 0: pushed away from the person slide counts fall;
 //                              bit 1: turned clockwise, seen from the handle, spin counts fall
 //   6  u16  duration           pulse: 1..kMaxPulseMs [ms]
 //   8  u8   resolution         settings: of the sensors, 1..120 [100 counts/inch]
 //   9  u8   brightness         settings: of the LED, 0..255
 //  10  u8   ps2                settings: bit i: rod i has a PS/2 mouse
-//  11  u8   switches           settings: bit 0: no pulse is played; bit 1: the rods are gamepads
-//                              too, of a controller with USB of its own
+//  11  u8   switches           settings: bit 0: no pulse is played; bit 1: the rods are also
+//                              gamepads, with a controller that has a USB of its own
 //   8  u16  travel             stick: slide counts from stop to stop, kMinStickCounts or more;
 //                              0: by the table's dimensions
-//  10  u16  turn               stick: spin counts of a whole turn, in the same bounds
+//  10  u16  turn               stick: spin counts of a whole turn, within the same bounds
 //  12  u16  reserved           0
 //  14  u16  crc                CRC-16/CCITT-FALSE over bytes 0..13
-// What a kind does not use is 0. Over USB HID: the first bytes of one 64-byte output report, the
-// others 0. Over a serial line: COBS, then a 0.
+// Fields that a kind does not use are 0. Over USB HID: the first bytes of one 64-byte output
+// report, the others 0. Over a serial line: COBS, then a 0.
 #ifndef WIRE_DEVICE_COMMAND_H
 #define WIRE_DEVICE_COMMAND_H
 

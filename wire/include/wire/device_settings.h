@@ -1,6 +1,6 @@
 // The settings of the cabinet's micro-controller, and the report in which it tells them to the PC
 // that asks (kind 5 of wire/device_command.h), in the place of one frame: freestanding C++14, as
-// wire/device_frame.h, whose CRC it has.
+// wire/device_frame.h, with the same CRC.
 //
 // Layout of the settings (little endian), kDeviceSettingsBytes in all, as the controller keeps them
 // too; fields as in wire/device_command.h:
@@ -14,7 +14,7 @@
 //  38  u8   slide reversed     bit i: of rod i
 //  39  u8   spin reversed      the same
 // Layout of the report, kDeviceFrameBytes in all, packed as a frame is:
-//   0  u8   kind               kDeviceSettingsReport, which is no version of a frame
+//   0  u8   kind               kDeviceSettingsReport, which is not a version of a frame
 //   1  u8   abilities          of the board: bit 0: it has sensors, for which resolution and ps2
 //                              are; bit 1: it can be gamepads
 //   2  40 x u8                 the settings

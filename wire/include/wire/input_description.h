@@ -13,9 +13,9 @@ inline constexpr std::uint64_t kInputVersion = 1;
 
 template <class Codec, class Rod>
 void describe_input_rod(Codec& codec, Rod& rod) {
-  codec.flag(Flag{"driven", "else the other fields say nothing"}, rod.driven);
-  codec.fixed(Fixed{"slide", 20, 0x1p-18, "m", "wanted, along the rod"}, rod.slide);
-  codec.wrapped(Wrapped{"angle", 32, "wanted, about the rod; full turns count"}, rod.angle);
+  codec.flag(Flag{"driven", "otherwise the other fields have no meaning"}, rod.driven);
+  codec.fixed(Fixed{"slide", 20, 0x1p-18, "m", "target, along the rod"}, rod.slide);
+  codec.wrapped(Wrapped{"angle", 32, "target, about the rod; full turns count"}, rod.angle);
   codec.fixed(Fixed{"slide_rate", 16, 0x1p-9, "m/s", ""}, rod.slide_rate);
   codec.fixed(Fixed{"angle_rate", 16, 0x1p-7, "rad/s", ""}, rod.angle_rate);
 }

@@ -84,9 +84,10 @@ void describe_journal_header(Codec& codec, H& h) {
 template <class Codec, class H>
 void describe_journal_ticks_head(Codec& codec, H& head) {
   codec.constant(journal_kind(JournalKind::ticks));
-  codec.varint(Varint{"first_tick", kAnyTick, "", "one more than the last tick before"},
+  codec.varint(Varint{"first_tick", kAnyTick, "",
+                      "number of the first tick: one more than the last tick before"},
                head.first_tick);
-  codec.integer(Integer{"count", 8, kJournalBatch, "", "so many ticks follow, at least 1"},
+  codec.integer(Integer{"count", 8, kJournalBatch, "", "number of ticks that follow, at least 1"},
                 head.count);
 }
 
@@ -95,9 +96,11 @@ void describe_journal_setup(Codec& codec, S& s) {
   codec.integer(
       Integer{"mode", 2, kModeCount - 1, "", "0 match, 1 training, 2 challenge, 3 ladder"}, s.mode);
   codec.integer(Integer{"rule_set", 1, kRuleSetCount - 1, "", "0 arcade, 1 ITSF"}, s.rule_set);
-  codec.integer(Integer{"goals", 7, kMaxGoals, "", "that win a set; 0: as the rules have it"},
+  codec.integer(Integer{"goals", 7, kMaxGoals, "", "goals that win a set; 0: as in the rule set"},
                 s.goals);
-  codec.integer(Integer{"sets", 5, kMaxSets, "", "best of; 0: as the rules have it"}, s.sets);
+  codec.integer(
+      Integer{"sets", 5, kMaxSets, "", "best of this number of sets; 0: as in the rule set"},
+      s.sets);
   codec.integer(Integer{"match_ms", 22, kMaxMatchMs, "ms", "of a set; 0: no limit"}, s.match_ms);
   codec.integer(Integer{"date", 27, kLastDate, "", "of a challenge, such as 20261122; else 0"},
                 s.date);
@@ -108,8 +111,8 @@ template <class Codec, class T>
 void describe_journal_tick(Codec& codec, T& tick) {
   constexpr std::int64_t kDelta32 = std::numeric_limits<std::uint32_t>::max();
   codec.array(Group{"rods", "from -x to +x"}, tick.rods, [&](auto& rod) {
-    codec.flag(Flag{"changed", "against the tick before"}, rod.changed);
-    codec.when(Group{"changed", "only then follow:"}, rod.changed, [&] {
+    codec.flag(Flag{"changed", "from the tick before"}, rod.changed);
+    codec.when(Group{"changed", "the next fields only if it is 1:"}, rod.changed, [&] {
       codec.flag(Flag{"live", ""}, rod.live);
       codec.delta(Delta{"slide", kDelta32, "100 nm", "change"}, rod.slide);
       codec.delta(Delta{"angle", 2 * kJournalAngleLimit, "urad", "change"}, rod.angle);
@@ -125,14 +128,14 @@ void describe_journal_tick(Codec& codec, T& tick) {
                              command.kind);
                codec.integer(Integer{"team", 1, kTeamCount - 1, "", ""}, command.team);
                codec.integer(Integer{"value", 8, 255, "", ""}, command.value);
-               codec.when(Group{"kind", "8 only, tune, then follows:"},
+               codec.when(Group{"kind", "the next field only if it is 8, tune:"},
                           command.kind == number(RequestKind::tune), [&] {
                             codec.integer(
                                 Integer{"amount", 64, std::numeric_limits<std::uint64_t>::max(), "",
                                         "bits of a double, IEEE 754"},
                                 command.amount);
                           });
-               codec.when(Group{"kind", "9 only, set up, then follows:"},
+               codec.when(Group{"kind", "the next fields only if it is 9, set up:"},
                           command.kind == number(RequestKind::set_up),
                           [&] { describe_journal_setup(codec, command.setup); });
              });
@@ -157,7 +160,7 @@ void describe_journal_keyframe(Codec& codec, K& keyframe) {
 template <class Codec, class E>
 void describe_journal_end(Codec& codec, E& end) {
   codec.constant(journal_kind(JournalKind::end));
-  codec.varint(Varint{"ticks", kAnyTick, "", "in all"}, end.ticks);
+  codec.varint(Varint{"ticks", kAnyTick, "", "total"}, end.ticks);
   codec.integer(Integer{"state_hash", 64, std::numeric_limits<std::uint64_t>::max(), "", ""},
                 end.state_hash);
 }

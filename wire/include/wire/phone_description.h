@@ -37,9 +37,9 @@ inline constexpr std::uint64_t kAnyU64 = std::numeric_limits<std::uint64_t>::max
 template <class Codec, class M>
 void describe_phone_hello(Codec& codec, M& hello) {
   describe_phone_head(codec, PhoneKind::hello);
-  codec.integer(Integer{"session", 64, kAnyU64, "", "with ticket: of the state before"},
+  codec.integer(Integer{"session", 64, kAnyU64, "", "with ticket: of the last state"},
                 hello.session);
-  codec.integer(Integer{"ticket", 64, kAnyU64, "", "to have the same seat again; 0: a new one"},
+  codec.integer(Integer{"ticket", 64, kAnyU64, "", "to get the same seat again; 0: a new one"},
                 hello.ticket);
   codec.text(Text{"name", kMaxPhoneName, ""}, hello.name);
 }
@@ -58,9 +58,9 @@ void describe_phone_input(Codec& codec, M& input) {
                         "older ones are dropped"},
                 input.sequence);
   codec.array(Group{"rods", "of the pair, the one at -x first"}, input.rods, [&](auto& rod) {
-    codec.integer(Integer{"driven", 8, 1, "", "0: the other fields say nothing"}, rod.driven);
-    codec.fixed(Fixed{"slide", 16, 0x1p-14, "m", "wanted, along the rod"}, rod.slide);
-    codec.wrapped(Wrapped{"angle", 32, "wanted, about the rod; full turns count"}, rod.angle);
+    codec.integer(Integer{"driven", 8, 1, "", "0: the other fields have no meaning"}, rod.driven);
+    codec.fixed(Fixed{"slide", 16, 0x1p-14, "m", "target, along the rod"}, rod.slide);
+    codec.wrapped(Wrapped{"angle", 32, "target, about the rod; full turns count"}, rod.angle);
     codec.fixed(Fixed{"slide_rate", 16, 0x1p-9, "m/s", ""}, rod.slide_rate);
     codec.fixed(Fixed{"angle_rate", 16, 0x1p-7, "rad/s", ""}, rod.angle_rate);
   });
@@ -73,14 +73,14 @@ void describe_phone_state(Codec& codec, M& state) {
   codec.integer(Integer{"ticket", 64, kAnyU64, "", "the phone's secret"}, state.ticket);
   codec.integer(Integer{"team", 8, kTeamCount - 1, "", "of the pair"}, state.team);
   describe_pair(codec, state.pair);
-  codec.integer(Integer{"free", 8, 15, "", "pairs to be had: bit 2 * team + pair"}, state.free);
+  codec.integer(Integer{"free", 8, 15, "", "free pairs: bit 2 * team + pair"}, state.free);
   codec.array(Group{"rods", "of the pair, the one at -x first"}, state.rods, [&](auto& rod) {
     codec.integer(Integer{"line", 8, 3, "", "0 goalie .. 3 attack"}, rod.line);
     codec.integer(Integer{"men", 8, kMenOnRod, "", ""}, rod.men);
     codec.fixed(Fixed{"spacing", 16, 0x1p-14, "m", "between neighbours"}, rod.spacing);
     codec.fixed(Fixed{"slide_limit", 16, 0x1p-14, "m", "|slide| at most"}, rod.slide_limit);
   });
-  codec.text(Text{"name", 64, "as the roster has it"}, state.name);
+  codec.text(Text{"name", 64, "as in the roster"}, state.name);
 }
 
 template <class Codec, class M>
@@ -95,7 +95,7 @@ template <class Codec, class M>
 void describe_phone_pulse(Codec& codec, M& pulse) {
   describe_phone_head(codec, PhoneKind::pulse);
   codec.integer(Integer{"rod", 8, kPhoneRods - 1, "", "of the state's"}, pulse.rod);
-  codec.integer(Integer{"strength", 8, 255, "", "255: the most"}, pulse.strength);
+  codec.integer(Integer{"strength", 8, 255, "", "255: the maximum"}, pulse.strength);
   codec.integer(Integer{"ms", 16, kMaxPhonePulseMs, "ms", ""}, pulse.ms);
 }
 

@@ -50,8 +50,9 @@ void describe_man(Codec& codec, Man& man) {
   describe_pose(codec, man.body, kManSpin);
 }
 
-inline constexpr Fixed kShotAngle{"angle", 12, 0x1p-9, "rad",
-                                  "of a shot from straight ahead, counter-clockwise positive"};
+inline constexpr Fixed kShotAngle{
+    "angle", 12, 0x1p-9, "rad",
+    "direction of a shot, from straight ahead, counter-clockwise positive"};
 
 template <class Codec, class Event>
 void describe_event(Codec& codec, Event& event) {
@@ -104,26 +105,29 @@ void describe_rules_state(Codec& codec, S& s) {
   codec.flag(Flag{"timed", ""}, s.timed);
   codec.flag(Flag{"golden_goal", "the next goal decides"}, s.golden_goal);
   codec.fixed(Fixed{"seconds_left", 16, 0x1p-4, "s", "of a timed set", false}, s.seconds_left);
-  codec.integer(Integer{"next_server", 1, kTeamCount - 1, "", "has the ball next, or had it last"},
-                s.next_server);
+  codec.integer(
+      Integer{"next_server", 1, kTeamCount - 1, "", "team that serves next, or served last"},
+      s.next_server);
   codec.flag(Flag{"fouled", "since the last goal"}, s.fouled);
   codec.integer(Integer{"last_foul", 3, kFoulCount - 1, "",
                         "0 possession, 1 spin, 2 jarring, 3 technical, 4 time-out, 5 serve"},
                 s.last_foul);
   codec.integer(Integer{"last_foul_team", 1, kTeamCount - 1, "", ""}, s.last_foul_team);
-  codec.integer(Integer{"possession_team", 1, kTeamCount - 1, "", "has the ball, or had it last"},
-                s.possession_team);
-  codec.fixed(Fixed{"possession_seconds", 16, 0x1p-4, "s", "for so long", false},
+  codec.integer(
+      Integer{"possession_team", 1, kTeamCount - 1, "", "team that has the ball, or had it last"},
+      s.possession_team);
+  codec.fixed(Fixed{"possession_seconds", 16, 0x1p-4, "s", "since when it has possession", false},
               s.possession_seconds);
   codec.array(Group{"computer", "plays team 0 and 1"}, s.computer, [&](auto& is) {
     codec.flag(Flag{"is", ""}, is);
   });
-  codec.flag(Flag{"attract", "nobody plays: computers show a match"}, s.attract);
+  codec.flag(Flag{"attract", "nobody plays: computers play a demonstration match"}, s.attract);
   codec.integer(Integer{"rung", 3, kRungCount - 1, "", "of the ladder"}, s.rung);
-  codec.integer(Integer{"feed_rod", 3, kRods - 1, "", "training: to whom the ball is served"},
-                s.feed_rod);
+  codec.integer(
+      Integer{"feed_rod", 3, kRods - 1, "", "training: the rod to which the ball is served"},
+      s.feed_rod);
   codec.integer(Integer{"feed_man", 3, kMenOnRod - 1, "", ""}, s.feed_man);
-  codec.flag(Flag{"ball_visible", "in play, or in the goal it went into"}, s.ball_visible);
+  codec.flag(Flag{"ball_visible", "in play, or in a goal after scoring"}, s.ball_visible);
   codec.group(Group{"last_goal", "credited to"}, [&] { describe_shot(codec, s.last_goal); });
   codec.flag(Flag{"last_goal_own", "by a man of the team that conceded"}, s.last_goal_own);
   codec.group(Group{"last_shot", ""}, [&] { describe_shot(codec, s.last_shot); });
@@ -147,7 +151,7 @@ void describe_match_state(Codec& codec, S& s) {
     codec.flag(Flag{"is", ""}, is);
   });
   codec.integer(Integer{"last_scorer", 1, kTeamCount - 1, "", "team"}, s.last_scorer);
-  codec.fixed(Fixed{"screen_seconds", 24, 0x1p-10, "s", "since the screen came up", false},
+  codec.fixed(Fixed{"screen_seconds", 24, 0x1p-10, "s", "since the screen appeared", false},
               s.screen_seconds);
   codec.fixed(Fixed{"play_seconds", 24, 0x1p-10, "s", "match clock", false}, s.play_seconds);
 }

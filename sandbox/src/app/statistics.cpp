@@ -1,4 +1,4 @@
-#include "app/figures.h"
+#include "app/statistics.h"
 
 #include <cinttypes>
 #include <cstdio>
@@ -15,19 +15,19 @@ std::string text(const char* format, Values... values) {
 
 }  // namespace
 
-Figures figures_of(const Simulation& simulation) {
-  Figures f;
+Statistics statistics_of(const Simulation& simulation) {
+  Statistics f;
   f.scene = simulation.scene().name;
   f.rate = simulation.rate();
   f.seconds = simulation.time();
   f.steps = simulation.steps();
-  f.step = simulation.times().figures();
+  f.step = simulation.times().statistics();
   f.standing = scenes::measure(simulation.scene(), simulation.scene_poses(), f.seconds);
   f.hash = simulation.world().state_hash();
   return f;
 }
 
-std::string sentence(const Figures& f) {
+std::string sentence(const Statistics& f) {
   const scenes::Standing& s = f.standing;
   std::string out = text(
       "%s at %d Hz: %.3f s in %zu steps of %.1f us of processor time (median; p99 %.1f, max %.1f), "
@@ -39,7 +39,7 @@ std::string sentence(const Figures& f) {
   return out;
 }
 
-std::string json(const Figures& f) {
+std::string json(const Statistics& f) {
   const scenes::Standing& s = f.standing;
   return text(
       "{\n  \"scene\": \"%s\",\n  \"rate\": %d,\n  \"seconds\": %.4f,\n  \"steps\": %zu,\n"

@@ -9,12 +9,12 @@
 
 namespace sandbox {
 
-struct Figures {
+struct Statistics {
   std::string scene;
   int rate = 0;
   double seconds = 0.0;  // of scene time
   std::size_t steps = 0;
-  StepTimes::Figures step;  // [us]
+  StepTimes::Statistics step;  // [us]
   scenes::Standing standing;
   std::uint64_t hash = 0;  // of the world's state
   int frames = 0;          // drawn
@@ -22,8 +22,8 @@ struct Figures {
 };
 
 // Of the simulation's present state; without the frames.
-Figures figures_of(const Simulation& simulation);
-std::string sentence(const Figures& figures);
-std::string json(const Figures& figures);
+Statistics statistics_of(const Simulation& simulation);
+std::string sentence(const Statistics& statistics);
+std::string json(const Statistics& statistics);
 
 }  // namespace sandbox
