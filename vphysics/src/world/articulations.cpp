@@ -11,19 +11,17 @@ namespace vp {
 // Number of simultaneous contacts whose rows have memory reserved in advance.
 constexpr std::size_t kContactsReady = 32;
 
-// Links are bodies for collision detection; their pose and velocity are copies.
-void World::Impl::follow(Articulation& art) {
+void follow(Articulation& art, Bodies& bodies, BodyLists& lists) {
   if (art.remote) {
     art.remote = false;
     art.refresh();
-    for (const std::uint32_t b : art.bodies) impacts.remote_bodies[b] = 0;
-    impacts.bodies_are_dirty = true;
+    for (const std::uint32_t b : art.bodies) bodies[b].remote = false;
+    lists.invalidate_impacts();
   }
-  follow_poses(art);
-  follow_velocities(art, false);
+  follow_poses(art, bodies);
+  follow_velocities(art, bodies);
 }
-void World::Impl::follow_poses(const Articulation& art) {
-  ready_for_queries = false;
+void follow_poses(const Articulation& art, Bodies& bodies) {
   for (const std::uint32_t b : art.bodies) {
     Body& body = bodies[b];
     if (!body.is_followed()) continue;
@@ -31,16 +29,21 @@ void World::Impl::follow_poses(const Articulation& art) {
     body.moved();
   }
 }
-// carrying: contacts and joints caused the velocity change (contacts.cpp).
-void World::Impl::follow_velocities(const Articulation& art, bool carrying) {
-  for (const std::uint32_t b : art.bodies) {
-    Body& body = bodies[b];
-    if (!body.is_followed()) continue;
-    const se3 now = art.link_velocity(body.link, body.T.position());
-    if (carrying && !(impacts.forced[b] == Velocity{})) carry(b, now.w - body.w, now.v - body.v);
-    body.w = now.w;
-    body.v = now.v;
-  }
+void follow_velocities(const Articulation& art, Bodies& bodies) {
+  follow_velocities(art, bodies, [](std::uint32_t, const se3&) {});
+}
+
+bool stop_if_out_of_range(const StepContext& s, Articulation& art) {
+  if (art.in_range()) return false;
+  s.status.non_finite = true;
+  art.return_to_start();
+  follow(art, s.bodies, s.lists);
+  return true;
+}
+
+bool in_sub_steps(const std::vector<Articulation>& articulations, const Body& a, const Body& b) {
+  return (a.is_link && articulations[a.articulation].sub_stepped) ||
+         (b.is_link && articulations[b.articulation].sub_stepped);
 }
 
 void World::Impl::reserve_link_rows() {
@@ -78,7 +81,7 @@ void World::Impl::integrate_forces_of(Articulation& art, double dt) {
     status.non_finite = true;
     art.return_to_start();
   }
-  if (changed) follow_velocities(art, false);
+  if (changed) follow_velocities(art, bodies);
 }
 
 namespace {
@@ -178,7 +181,7 @@ void World::Impl::add_joint_rows(double h, double dt, RowsOf of) {
     Articulation& art = articulations[a];
     if (!art.alive || (of == RowsOf::sub_step && !art.sub_stepped)) continue;
     if (of == RowsOf::first_instant && !art.sub_stepped && !art.touched && art.solve_decoupled(h)) {
-      if (!art.remote) follow_velocities(art, false);
+      if (!art.remote) follow_velocities(art, bodies);
       continue;
     }
     if (art.remote) {
@@ -207,7 +210,7 @@ bool World::Impl::integrate_saturated_again(double dt, bool solved, bool all_bec
       continue;
     again = true;
     art.restart_forces();
-    follow_velocities(art, false);
+    follow_velocities(art, bodies);
     const auto note = [&](const auto& forced) {
       for (const std::uint32_t b : art.bodies) {
         if (bodies[b].first_collider != kNone)
@@ -242,8 +245,11 @@ void World::Impl::end_solve_articulations(bool first) {
   for (Articulation& art : articulations) {
     if (!art.alive || art.remote) continue;
     const Articulation::Change change = art.end_solve();
-    if (change == Articulation::Change::none || stop_if_out_of_range(art)) continue;
-    follow_velocities(art, first);
+    if (change == Articulation::Change::none || stop_if_out_of_range(context, art)) continue;
+    follow_velocities(art, bodies, [&](std::uint32_t b, const se3& now) {
+      if (first && !(impacts.forced[b] == Velocity{}))
+        carry(b, now.w - bodies[b].w, now.v - bodies[b].v);
+    });
     if (change == Articulation::Change::of_coordinates_too) follow(art);
   }
 }
@@ -252,24 +258,16 @@ void World::Impl::advance_articulations(double h) {
   for (Articulation& art : articulations) {
     if (!art.alive || impacts.stopped[art.bodies.front()]) continue;
     art.advance(h);
-    if (stop_if_out_of_range(art)) {
+    if (stop_if_out_of_range(context, art)) {
       hold(art.bodies.front());
     } else if (art.remote) {
-      ready_for_queries = false;
+      // its links wait
     } else if (art.keeps_twists() && !art.sub_stepped) {
-      follow_poses(art);
+      follow_poses(art, bodies);
     } else {
       follow(art);
     }
   }
-}
-
-bool World::Impl::stop_if_out_of_range(Articulation& art) {
-  if (art.in_range()) return false;
-  status.non_finite = true;
-  art.return_to_start();
-  follow(art);
-  return true;
 }
 
 // A link stops together with its whole articulation.

@@ -66,6 +66,7 @@ solve::ContactGraph::End end_of(const Bodies& bodies, std::uint32_t body) {
 bool BodyLists::refresh(const Bodies& bodies) {
   if (!dirty_) return false;
   dirty_ = false;
+  impacts_are_dirty_ = true;
   awake_bodies.clear();
   links.clear();
   some_continuous = some_sub_stepped = some_sleep = false;
@@ -84,6 +85,18 @@ bool BodyLists::refresh(const Bodies& bodies) {
   return true;
 }
 
+const std::vector<std::uint32_t>& BodyLists::of_impacts(const Bodies& bodies) {
+  if (!impacts_are_dirty_) return of_impacts_;
+  impacts_are_dirty_ = false;
+  of_impacts_.clear();
+  for (std::uint32_t i = 0; i < bodies.size(); ++i) {
+    const Body& body = bodies[i];
+    if (!body.alive || body.motion == Motion::fixed || body.remote) continue;
+    if (!body.is_link || body.first_collider != kNone) of_impacts_.push_back(i);
+  }
+  return of_impacts_;
+}
+
 void World::Impl::list_bodies() {
   if (!lists.refresh(bodies)) return;
   impacts.swept_body_pairs.invalidate();
@@ -93,34 +106,33 @@ void World::Impl::list_bodies() {
   reserve_link_rows();
 }
 
-// Marks contacts with points dirty. Reduces the clearance of the others by the displacement so far.
-void World::Impl::restart_displacement(std::uint32_t index) {
+void restart_displacement(const Stores& s, std::uint32_t index) {
   const auto for_speculative = [&](const auto& f) {
-    contact_store.for_each_of(bodies[index], [&](std::uint32_t contact, const Contact& c) {
+    s.contact_store.for_each_of(s.bodies[index], [&](std::uint32_t contact, const Contact& c) {
       if (!c.dirty && !c.parked && !c.of_link && c.slot.points == 0) f(contact, c);
     });
   };
   for_speculative(
-      [&](std::uint32_t, const Contact& c) { contact_store.use_clearance(c, body_set); });
-  std::fill_n(body_rows[index + 1].displacement, 6, 0.0f);
-  std::fill_n(sub_step.start_displacements[index].begin(), 6, 0.0f);
-  std::fill_n(bodies[index].bounded_at, 6, 1e9f);
+      [&](std::uint32_t, const Contact& c) { s.contact_store.use_clearance(c, s.body_set); });
+  std::fill_n(s.body_rows[index + 1].displacement, 6, 0.0f);
+  std::fill_n(s.start_displacements[index].begin(), 6, 0.0f);
+  std::fill_n(s.bodies[index].bounded_at, 6, 1e9f);
   for_speculative([&](std::uint32_t contact, const Contact& c) {
-    const double left = contact_store.clearance(c);
-    if (left > 0.0) return contact_store.set_clearance(c, left, body_set);
-    contact_store.reset_speculative(c, body_set);
-    contact_store.mark_dirty(contact);
+    const double left = s.contact_store.clearance(c);
+    if (left > 0.0) return s.contact_store.set_clearance(c, left, s.body_set);
+    s.contact_store.reset_speculative(c, s.body_set);
+    s.contact_store.mark_dirty(contact);
   });
-  contact_store.for_each_of(bodies[index], [&](std::uint32_t contact, const Contact& c) {
-    if (c.slot.points > 0 || c.sensor || c.of_link || c.parked) contact_store.mark_dirty(contact);
+  s.contact_store.for_each_of(s.bodies[index], [&](std::uint32_t contact, const Contact& c) {
+    if (c.slot.points > 0 || c.sensor || c.of_link || c.parked) s.contact_store.mark_dirty(contact);
   });
 }
 
 void World::Impl::load_rows(double dt) {
   constexpr std::uint8_t kFar = 1, kLeaves = 2, kPulled = 4;
   sub_step.awake_body_changed.resize(lists.awake_bodies.size());
-  const BodyRows step = rows_in(dt);
-  const Approach approach = approach_in(dt);
+  const BodyRows step = context.rows_in(dt);
+  const Approach approach = context.approach_in(dt);
   workers.in_parallel(
       lists.awake_bodies.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
@@ -138,35 +150,36 @@ void World::Impl::load_rows(double dt) {
   for (std::size_t k = 0; k < lists.awake_bodies.size(); ++k) {
     if (sub_step.awake_body_changed[k] == 0) continue;
     const std::uint32_t i = lists.awake_bodies[k];
-    if ((sub_step.awake_body_changed[k] & kFar) != 0) restart_displacement(i);
+    if ((sub_step.awake_body_changed[k] & kFar) != 0) restart_displacement(context, i);
     if ((sub_step.awake_body_changed[k] & kPulled) != 0)
       contact_store.mark_contacts_dirty(bodies[i]);
-    if (bodies[i].first_collider != kNone) update_bounds(i, dt, joins_sub_steps(bodies[i]));
+    if (bodies[i].first_collider != kNone)
+      update_bounds(context, i, dt, joins_sub_steps(bodies[i]));
   }
 }
 
-// Passes the bounds of colliders that may have left their enlarged ones to the broad phase.
-void World::Impl::update_bounds(std::uint32_t index, double dt, bool is_solver_driven) {
-  Body& body = bodies[index];
-  pose_colliders(bodies[index], colliders);
-  const Velocity pull = approach_in(dt).pull_of(body);
-  const double rotation = dt * (norm(body.w) + norm(pull.w));
+void update_bounds(const Stores& s, std::uint32_t index, double h, bool is_solver_driven) {
+  Body& body = s.bodies[index];
+  pose_colliders(s.bodies[index], s.colliders);
+  const Velocity pull = s.approach_in(h).pull_of(body);
+  const double rotation = h * (norm(body.w) + norm(pull.w));
   const Vec3 reference = reference_point(body);
-  for (std::uint32_t c = body.first_collider; c != kNone; c = colliders[c].next) {
-    const Collider& collider = colliders[c];
+  for (std::uint32_t c = body.first_collider; c != kNone; c = s.colliders[c].next) {
+    const Collider& collider = s.colliders[c];
     // Its centre moves along an arc, which deviates from its tangent by half the squared angle.
     const Vec3 arm = body.T * collider.centre - reference;
-    const Vec3 displacement = dt * (body.v + cross(body.w, arm));
+    const Vec3 displacement = h * (body.v + cross(body.w, arm));
     const double own = collider.geometry.kind == collide::Kind::sphere ? 0.0 : collider.radius;
-    const double more = rotation * own + 0.5 * rotation * rotation * norm(arm) + desc.contact_slop;
+    const double more =
+        rotation * own + 0.5 * rotation * rotation * norm(arm) + s.desc.contact_slop;
     // Half of the margin remains now, whether the enlarged bounds are new or old.
     const double half = 0.5 * kMargin * collider.size;
-    const Vec3 pulled = dt * (pull.v + cross(pull.w, arm));
+    const Vec3 pulled = h * (pull.v + cross(pull.w, arm));
     const collide::Bounds start = bounds_along(collider.bounds, pulled, 0.0);
-    finder.set_bounds(collider.proxy, bounds_along(start, displacement, more + half), half,
-                      2.0 * (displacement + pulled));
+    s.finder.set_bounds(collider.proxy, bounds_along(start, displacement, more + half), half,
+                        2.0 * (displacement + pulled));
   }
-  if (is_solver_driven) std::copy_n(body_rows[index + 1].displacement, 6, body.bounded_at);
+  if (is_solver_driven) std::copy_n(s.body_rows[index + 1].displacement, 6, body.bounded_at);
 }
 
 Velocity World::Impl::settle(const BodyRows& rows, std::uint32_t index) {

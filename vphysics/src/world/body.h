@@ -48,6 +48,7 @@ struct alignas(64) Body {
   bool allow_sleep = true;
   bool mass_from_colliders = false;             // updated as colliders are added and removed
   bool requested_continuous = false;            // when it is dynamic
+  bool remote = false;                          // a link of a remote articulation (remote.cpp)
   std::uint16_t region = solve::kSharedRegion;  // regions.cpp
   std::uint32_t lanes = 0;                      // number of its contact slots in the solver
   std::uint32_t first_joint = kNone, first_collider = kNone;
@@ -115,9 +116,14 @@ class BodyLists {
   void invalidate() { dirty_ = true; }
   // False: the lists have not changed.
   bool refresh(const Bodies& bodies);
+  // The bodies of the impact stage, ascending: all that are not fixed, and links with colliders
+  // except those of remote articulations.
+  const std::vector<std::uint32_t>& of_impacts(const Bodies& bodies);
+  void invalidate_impacts() { impacts_are_dirty_ = true; }
 
  private:
-  bool dirty_ = true;
+  bool dirty_ = true, impacts_are_dirty_ = true;
+  std::vector<std::uint32_t> of_impacts_;
 };
 
 // Whether it takes part in the sub-stepped solver.

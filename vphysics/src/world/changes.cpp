@@ -362,7 +362,6 @@ Expected<void> World::destroy_articulation(ArticulationId id) {
   art->destroy();
   impl_->free_articulations.push_back(id.index - 1);
   impl_->lists.invalidate();
-  impl_->impacts.bodies_are_dirty = true;
   TopologyHash(impl_->topology_hash).add(change_bits(Change::destroyed_articulation, id.index));
   if (impl_->recorder) impl_->log({calls::DestroyArticulation{id}});
   return {};

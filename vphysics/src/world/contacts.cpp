@@ -90,12 +90,12 @@ PairRecord& World::Impl::record_of(const ColliderPair& pair, std::uint32_t part)
 std::span<const collide::SubManifold> World::Impl::manifolds_of(const ColliderPair& pair,
                                                                 double margin) {
   const Collider &a = colliders[pair.a], &b = colliders[pair.b];
-  narrow.manifolds.clear();
+  shapes.manifolds.clear();
   collide::PairCache cache;
-  find_manifolds(a.geometry, a.T, b.geometry, b.T, margin, cache, {}, narrow.manifold_scratch,
-                 narrow.manifolds);
-  for (const collide::SubManifold& found : narrow.manifolds) note_limits(found.manifold);
-  return narrow.manifolds;
+  find_manifolds(a.geometry, a.T, b.geometry, b.T, margin, cache, {}, shapes.manifold_scratch,
+                 shapes.manifolds);
+  for (const collide::SubManifold& found : shapes.manifolds) note_limits(found.manifold);
+  return shapes.manifolds;
 }
 
 void World::Impl::add_contact(const ColliderPair& pair, const collide::Manifold& m,
@@ -241,7 +241,8 @@ void World::Impl::solve_contacts(double h, double dt, bool first) {
     impacts.contacts.assign(impacts.discrete_contacts.begin(), impacts.discrete_contacts.end());
   }
   find_swept_contacts(first);
-  const std::span<const std::uint32_t> solved = first ? impact_bodies() : impacts.concerned;
+  const std::span<const std::uint32_t> solved =
+      first ? lists.of_impacts(bodies) : impacts.concerned;
   for (const std::uint32_t i : solved) impacts.in_contact[i] = 0;
   for (const solve::ContactConstraint& c : impacts.contacts) {
     if (c.swept) impacts.in_contact[c.a] = impacts.in_contact[c.b] = 1;
@@ -260,7 +261,7 @@ void World::Impl::solve_contacts(double h, double dt, bool first) {
     if (first) carry(i, impacts.solver_bodies[i].w - body.w, impacts.solver_bodies[i].v - body.v);
     body.w = impacts.solver_bodies[i].w;
     body.v = impacts.solver_bodies[i].v;
-    (void)stop_if_out_of_range(i, impacts.start_poses[i]);
+    (void)stop_if_out_of_range(context, i, impacts.start_poses[i]);
   }
   note_link_impulses(impacts.contacts);
   end_solve_articulations(first);

@@ -84,15 +84,15 @@ void World::Impl::advance_within_step(std::uint32_t index) {
   if (body.advanced || body.asleep || !joins_sub_steps(body)) return;
   body.advanced = true;
   sub_step.advanced.push_back({index, body.T, body.w, body.v});
-  rows_in(dt_now).copy_to_body(body, index);
+  context.rows_in(dt_now).copy_to_body(body, index);
 }
 
 // Lists in narrow.dirty the contacts to test.
 void World::Impl::list_contacts_of_deviating(double left) {
   for (const std::uint32_t i : sub_step.deviating) {
     advance_within_step(i);
-    update_bounds(i, left, true);
-    rows_in(dt_now).note_searched(i);
+    update_bounds(context, i, left, true);
+    context.rows_in(dt_now).note_searched(i);
   }
   find_new_contacts();
   for (const std::uint32_t i : sub_step.deviating) {

@@ -250,7 +250,8 @@ void World::Impl::list_dirty_contacts(double dt, bool first) {
 void World::Impl::find_manifolds_of(std::span<const std::uint32_t> contacts, double dt) {
   std::vector<NarrowPhaseResult>& results = narrow.results;
   results.resize(contacts.size());
-  const NarrowPhaseInput input{bodies, colliders, joints, approach_in(dt), desc.contact_slop};
+  const NarrowPhaseInput input{bodies, colliders, joints, context.approach_in(dt),
+                               desc.contact_slop};
   workers.in_parallel(results.size(), kNarrowPhaseGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       results[k].contact = contacts[k];

@@ -30,14 +30,6 @@ struct PairRecord {
   PairPoint points[collide::kMaxPoints]{};
 };
 
-// A contact point of an impact of the step, or of a link in its sub-steps.
-struct StepContact {
-  ColliderId a, b;
-  Vec3 point, normal;  // from a to b
-  double impulse = 0.0;
-  Vec3 friction;  // on b
-};
-
 // Whether the current impact affects a body (impacts.cpp).
 enum class Concern : std::uint8_t { none, listed, searched };
 
@@ -47,14 +39,8 @@ struct ImpactStage {
   // State: length of the step in which the impulses of records and of articulations' joints were
   // computed [s]; 0: none yet.
   double step = 0.0;
-  // The bodies that the stage processes, ascending: all bodies that are not fixed, and links with
-  // colliders except those of remote articulations (remote.cpp).
-  std::vector<std::uint32_t> body_list;
-  bool bodies_are_dirty = true;  // some bodies in it have changed
   // Bodies were added or removed: drift and forced of bodies outside the list may not be 0.
   bool scratch_is_dirty = true;
-  std::vector<std::uint8_t>
-      remote_bodies;  // of each body: whether it is a link of a remote articulation
   SweptBodyPairs swept_body_pairs;
   DiscreteBodyPairs discrete_body_pairs;
 

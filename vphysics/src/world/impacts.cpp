@@ -137,7 +137,7 @@ void World::Impl::bring(std::uint32_t index, const Instant& now) {
 
 void World::Impl::move_within_step(std::uint32_t index, double h, bool freely) {
   advance_body(bodies[index], impacts.motions[index], h, freely, impacts.drift[index].w);
-  if (!stop_if_out_of_range(index, impacts.start_poses[index])) return;
+  if (!stop_if_out_of_range(context, index, impacts.start_poses[index])) return;
   impacts.stopped[index] = 1;
   refresh_motion_of(index, dt_now - impacts.times[index]);
   refresh_bounds_of(index, dt_now - impacts.times[index]);
@@ -167,7 +167,7 @@ void World::Impl::advance_links(const Instant& previous, const Instant& now) {
 }
 void World::Impl::refresh_links(double h) {
   for (const std::uint32_t i : lists.links) {
-    if (impacts.remote_bodies[i]) continue;
+    if (bodies[i].remote) continue;
     const collide::Motion before = impacts.motions[i];
     refresh_motion_of(i, h);
     refresh_bounds_of(i, h);
@@ -262,8 +262,7 @@ void World::Impl::find_swept_pairs_of_concerned(const Instant& now) {
   collide_remote(h);
   impacts.moved.assign(impacts.concerned.begin(), impacts.concerned.end());
   for (const std::uint32_t i : lists.links) {
-    if (!impacts.remote_bodies[i] && impacts.concerns[i] == Concern::none)
-      impacts.moved.push_back(i);
+    if (!bodies[i].remote && impacts.concerns[i] == Concern::none) impacts.moved.push_back(i);
   }
   impacts.swept_body_pairs.find(body_motions(), impacts.moved, desc.contact_slop, h);
   for (const std::uint32_t i : impacts.concerned) {
@@ -330,7 +329,7 @@ void World::Impl::stop_swept_pairs(const Instant& now, double h) {
 void World::Impl::stop_what_would_hit(const Instant& now) {
   status.impact_limit = true;
   const double h = status.time_lost = dt_now - now.time;
-  for (const std::uint32_t i : impact_bodies()) {
+  for (const std::uint32_t i : lists.of_impacts(bodies)) {
     bring(i, now);
     impacts.brought[i] = 0;
   }
@@ -354,7 +353,7 @@ void World::Impl::stop_what_would_hit(const Instant& now) {
 }
 
 void World::Impl::advance_to_end(const Instant& now) {
-  for (const std::uint32_t i : impact_bodies()) {
+  for (const std::uint32_t i : lists.of_impacts(bodies)) {
     const Body& body = bodies[i];
     if (body.is_link || is_still(body) || impacts.stopped[i]) continue;
     const double h = dt_now - std::exchange(impacts.times[i], dt_now);

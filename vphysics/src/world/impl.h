@@ -12,15 +12,11 @@
 #include <string>
 #include <vector>
 
-#include "collide/manifolds.h"
-#include "collide/pair_finder.h"
 #include "collide/shape_query.h"
 #include "collide/sweep.h"
 #include "solve/contact_slot.h"
-#include "world/approach.h"
 #include "world/articulation.h"
 #include "world/body.h"
-#include "world/body_rows.h"
 #include "world/collider.h"
 #include "world/contact_store.h"
 #include "world/digest.h"
@@ -30,13 +26,11 @@
 #include "world/joint_steps.h"
 #include "world/loads.h"
 #include "world/narrow_phase.h"
-#include "world/observed_stage.h"
 #include "world/parallel.h"
 #include "world/regions.h"
 #include "world/row_joints.h"
 #include "world/runs.h"
-#include "world/sleep_islands.h"
-#include "world/solver_limits.h"
+#include "world/step_context.h"
 
 namespace vp {
 
@@ -90,6 +84,8 @@ struct World::Impl {
   collide::PairFinder finder;
   Regions regions;
   SleepIslands sleep_islands;
+  ShapeScratch shapes;
+  SubStepScratch sub_step;
   SubStepState sub_step_state;
   ImpactStage impacts;
   bool ready_for_queries = false;  // nothing has moved since find_strays()
@@ -109,8 +105,18 @@ struct World::Impl {
   bool finds_contacts = false;
   bool position_error_now = false;  // of contacts or joints, so far
   NarrowPhaseScratch narrow;
-  SubStepScratch sub_step;
   std::vector<std::uint32_t> lost_bodies;  // bodies that left the range of numbers in the sub-steps
+
+  const StepContext context{
+      {desc, speed_unit, dt_now, workers, bodies, colliders, articulations, joints, body_rows,
+       body_set, sub_step.start_displacements, sub_step.searched, contact_store, finder, loads,
+       lists, sleep_islands, shapes},
+      observer,
+      status,
+      counters,
+      events,
+      step_contacts,
+      position_error_now};
 
   // recorder.cpp; precondition: there is a recorder.
   void log(const RecordedCall& call);
@@ -145,17 +151,15 @@ struct World::Impl {
   void summarize_colliders(std::uint32_t body);
 
   // forces.cpp
-  Velocity acceleration_of(const Body& body) const {
-    return loads.acceleration(body, desc.gravity);
-  }
   Expected<void> add_load(const char* call, BodyId id, const Vec3& force, const Vec3& torque);
   void clear_loads();
 
   // articulations.cpp
   void reserve_link_rows();
-  void follow(Articulation& articulation);  // ends its remote state
-  void follow_poses(const Articulation& articulation);
-  void follow_velocities(const Articulation& articulation, bool carrying);
+  void follow(Articulation& articulation) {
+    ready_for_queries = false;
+    vp::follow(articulation, bodies, lists);
+  }
   void integrate_articulations(double dt);
   void add_joint_rows(double h, double dt, RowsOf of);
   void integrate_forces_of(Articulation& art, double dt);
@@ -169,11 +173,9 @@ struct World::Impl {
   void begin_solve_articulations(bool first);
   void end_solve_articulations(bool first);
   void advance_articulations(double h);
-  bool stop_if_out_of_range(Articulation& articulation);
   void hold(std::uint32_t body);
 
   // remote.cpp
-  const std::vector<std::uint32_t>& impact_bodies();
   bool can_be_remote(const Articulation& articulation) const;
   void list_remote_articulations();
   bool is_near_awake_body(const collide::Bounds& box) const;
@@ -194,7 +196,6 @@ struct World::Impl {
   void refresh_motions(double h);
   void refresh_motion_of(std::uint32_t body, double h);
   void refresh_displacements(double h);
-  bool stop_if_out_of_range(std::uint32_t body, const SE3& start);
   collide::Motion motion_of(const Body& body, const Velocity& drift, double h) const;
   void advance_discrete_contacts(double h);
   void advance_body(Body& body, const collide::Motion& motion, double h, bool freely,
@@ -203,7 +204,7 @@ struct World::Impl {
   void apply_corrections(std::span<const std::uint32_t> of);
   void note_position_error();
   void finish_step();
-  InStage in(Stage stage) const { return {observer.get(), stage}; }
+  InStage in(Stage stage) const { return context.in(stage); }
   void count_contacts();
   void run(double dt);
   void feel_forces(double dt);
@@ -234,14 +235,8 @@ struct World::Impl {
 
   // bodies.cpp
   void list_bodies();
-  BodyRows rows_in(double dt) {
-    return {body_rows, sub_step.start_displacements,      sub_step.searched, loads, desc,
-            dt,        sub_steps_in(desc, speed_unit, dt)};
-  }
   void load_rows(double dt);
-  void restart_displacement(std::uint32_t body);
   Velocity settle(const BodyRows& rows, std::uint32_t body);
-  void update_bounds(std::uint32_t body, double dt, bool is_solver_driven);
   void add_proxy(std::uint32_t collider);
   void forget_lost_bodies();
   void forget_contacts(std::uint32_t body);
@@ -273,7 +268,6 @@ struct World::Impl {
   void remove_contact(std::uint32_t contact);
   void take_over(const NarrowPhaseResult& results);
   void assign_slot(std::uint32_t contact, const collide::Manifold& manifold);
-  Approach approach_in(double dt) const { return {bodies, loads, desc, speed_unit, dt}; }
   void update_dirty_contacts(double dt);
   void list_dirty_contacts(double dt, bool first);
   void find_manifolds_of(std::span<const std::uint32_t> contacts, double dt);
@@ -289,7 +283,6 @@ struct World::Impl {
   // link_contacts.cpp
   void find_bodies_on_links();
   void put_on_link(std::uint32_t body, Articulation& articulation);
-  bool in_sub_steps(const Body& a, const Body& b) const;
   void find_link_contacts(double dt, int sub_steps);
   solve::StepContext link_context(double h);
   void begin_links(double h);
@@ -302,9 +295,8 @@ struct World::Impl {
   void store_bodies_on_links();
 
   // sleep.cpp
-  IslandGraph island_graph() { return {bodies, colliders, contact_store, joints}; }
   void send_to_sleep();
-  void wake(std::uint32_t body);
+  void wake(std::uint32_t body) { vp::wake(context, body); }
   void wake_neighbours(std::uint32_t body);
 
   // part_contacts.cpp
@@ -323,7 +315,7 @@ struct World::Impl {
   // pairs.cpp
   BodyMotions body_motions() const { return {bodies, impacts.motions, impacts.bounds}; }
   ImpactTimes impact_times() {
-    return {colliders, impacts.motions, desc.contact_slop, narrow.parts_scratch};
+    return {colliders, impacts.motions, desc.contact_slop, shapes.parts_scratch};
   }
   void refresh_bounds(double h);
   void refresh_bounds_of(std::uint32_t body, double h);

@@ -61,18 +61,12 @@ void World::Impl::put_on_link(std::uint32_t index, Articulation& art) {
   impacts.bodies_on_links.push_back(index);
 }
 
-// Whether their contact is solved in the sub-steps.
-bool World::Impl::in_sub_steps(const Body& a, const Body& b) const {
-  return (a.is_link && articulations[a.articulation].sub_stepped) ||
-         (b.is_link && articulations[b.articulation].sub_stepped);
-}
-
 void World::Impl::find_link_contacts(double dt, int sub_steps) {
   impacts.discrete_pairs.clear();
   for (const Contact& c : contact_store.pool) {
     if (!c.alive || !c.of_link || c.sensor) continue;
     const Body &a = bodies[colliders[c.a].body], &b = bodies[colliders[c.b].body];
-    if (in_sub_steps(a, b) && !a.continuous && !b.continuous &&
+    if (in_sub_steps(articulations, a, b) && !a.continuous && !b.continuous &&
         !disables_collision(bodies, joints, colliders[c.a].body, colliders[c.b].body)) {
       impacts.discrete_pairs.push_back({c.key, c.a, c.b});
     }
@@ -84,7 +78,7 @@ void World::Impl::find_link_contacts(double dt, int sub_steps) {
     const std::uint32_t i = colliders[pair.a].body, j = colliders[pair.b].body;
     pose_colliders(bodies[i], colliders);
     pose_colliders(bodies[j], colliders);
-    const double approach_speed = approach_in(dt).of(colliders[pair.a], colliders[pair.b]);
+    const double approach_speed = context.approach_in(dt).of(colliders[pair.a], colliders[pair.b]);
     std::uint32_t part = 0;
     for (const auto& found : manifolds_of(pair, 2.0 * desc.contact_slop + approach_speed)) {
       add_contact(pair, found.manifold, part++, false, true, impacts.link_contacts);
@@ -146,7 +140,7 @@ void World::Impl::begin_links(double h) {
       status.non_finite = true;
       art.return_to_start();
     }
-    follow_velocities(art, false);
+    follow_velocities(art, bodies);
     for (const std::uint32_t b : art.bodies) {
       impacts.forced[b] = {bodies[b].w - impacts.forced[b].w, bodies[b].v - impacts.forced[b].v};
     }
@@ -195,7 +189,7 @@ solve::SolverBody World::Impl::solver_body_in_sub_step(std::uint32_t index, doub
     s.forced_w = s.forced_v = {};
     s.in_blocks = body.lanes > 0 || has_block_joints(body, joints);
     if (body.motion == Motion::dynamic) {
-      const Velocity a = acceleration_of(body);
+      const Velocity a = context.acceleration_of(body);
       s.forced_w = h * a.w;
       s.forced_v = h * a.v;
     }
@@ -238,7 +232,7 @@ void World::Impl::relax_links(double h) {
     if (!art.sub_stepped) continue;
     (void)art.end_solve();
     art.advance_sub_step(h);
-    if (!stop_if_out_of_range(art)) follow(art);
+    if (!stop_if_out_of_range(context, art)) follow(art);
   }
 }
 

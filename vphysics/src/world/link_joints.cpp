@@ -34,7 +34,7 @@ void World::Impl::find_bodies_joined_to_links() {
 
 bool World::Impl::is_in_sub_steps(const BodyJoint& joint) const {
   const Body &a = bodies[joint.a], &b = bodies[joint.b];
-  return in_sub_steps(a, b) && !a.continuous && !b.continuous;
+  return in_sub_steps(articulations, a, b) && !a.continuous && !b.continuous;
 }
 
 // At an instant: marks the bodies of joints in rows, which do not move freely.

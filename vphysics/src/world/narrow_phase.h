@@ -6,7 +6,6 @@
 
 #include "collide/manifolds.h"
 #include "collide/pair_finder.h"
-#include "collide/shape_query.h"
 
 namespace vp {
 
@@ -34,10 +33,6 @@ struct NarrowPhaseScratch {
   // Of a contact with parts (part_contacts.cpp).
   std::vector<collide::KnownPart> known_parts;
   std::vector<std::uint32_t> old_parts, claimed_parts;
-  // Used by all shape tests, also those of the impact stage and of queries.
-  std::vector<collide::SubManifold> manifolds;
-  collide::ManifoldScratch manifold_scratch;
-  collide::PartsScratch parts_scratch;
 };
 
 }  // namespace vp

@@ -20,11 +20,11 @@ bool is_swept(const Body& body, const Collider& c) {
 
 void World::Impl::refresh_bounds(double h) {
   if (!impacts.swept_body_pairs.dirty()) {
-    for (const std::uint32_t i : impact_bodies()) refresh_bounds_of(i, h);
+    for (const std::uint32_t i : lists.of_impacts(bodies)) refresh_bounds_of(i, h);
     return;
   }
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
-    if (!impacts.remote_bodies[i]) refresh_bounds_of(i, h);
+    if (!bodies[i].remote) refresh_bounds_of(i, h);
   }
 }
 void World::Impl::refresh_bounds_of(std::uint32_t i, double h) {
@@ -52,7 +52,7 @@ void World::Impl::find_discrete_pairs(double h) {
     const Body &a = bodies[pair.a], &b = bodies[pair.b];
     const bool continuous = a.continuous || b.continuous;
     if (!continuous && !a.is_link && !b.is_link) continue;  // belongs to the sub-stepped solver
-    const bool sensors_only = in_sub_steps(a, b);
+    const bool sensors_only = in_sub_steps(articulations, a, b);
     const bool carries_sensor = (a.continuous && a.has_sensor) || (b.continuous && b.has_sensor);
     if ((continuous && !carries_sensor) || !may_overlap(a, b)) continue;
     if (disables_collision(bodies, joints, pair.a, pair.b)) continue;
@@ -174,7 +174,7 @@ void World::Impl::add_swept_pairs(std::uint32_t index, std::uint32_t other, doub
       if (!overlap(near, cb.bounds) || !should_collide(ca, cb)) continue;
       if (b.continuous && other < index && is_swept(b, cb)) continue;
       const double separation =
-          times.separation(ca, cb, margin, narrow.manifold_scratch, narrow.manifolds);
+          times.separation(ca, cb, margin, shapes.manifold_scratch, shapes.manifolds);
       if (separation > margin) continue;
       const ColliderPair pair = make_pair(colliders, i, j);
       impacts.swept_pairs.push_back({pair, pair.a == i, ca.sensor || cb.sensor, separation});
@@ -197,8 +197,8 @@ void World::Impl::find_touching_pairs(double h) {
   const auto bounds_of_body = [this](std::uint32_t i) -> const collide::Bounds& {
     return bounds_at_pose(bodies[i], colliders);
   };
-  for (const collide::IndexPair& p :
-       impacts.swept_body_pairs.find(body_motions(), impact_bodies(), desc.contact_slop, h)) {
+  for (const collide::IndexPair& p : impacts.swept_body_pairs.find(
+           body_motions(), lists.of_impacts(bodies), desc.contact_slop, h)) {
     if (empty(impacts.bounds[p.a]) || empty(impacts.bounds[p.b])) continue;
     if (!overlap(grown(bounds_of_body(p.a), desc.contact_slop), bounds_of_body(p.b))) continue;
     add_swept_pairs_of(p, 0.0);
@@ -209,8 +209,8 @@ void World::Impl::find_touching_pairs(double h) {
 // Finds the swept pairs that can collide within h. Precondition: all bodies are at the same time.
 void World::Impl::find_swept_pairs(double h) {
   impacts.swept_pairs.clear();
-  for (const collide::IndexPair& p :
-       impacts.swept_body_pairs.find(body_motions(), impact_bodies(), desc.contact_slop, h)) {
+  for (const collide::IndexPair& p : impacts.swept_body_pairs.find(
+           body_motions(), lists.of_impacts(bodies), desc.contact_slop, h)) {
     if (overlap(impacts.bounds[p.a], impacts.bounds[p.b])) add_swept_pairs_of(p, h);
   }
   sort_swept_pairs();

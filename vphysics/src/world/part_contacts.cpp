@@ -71,7 +71,7 @@ void World::Impl::find_parts(const NarrowPhaseResult& look) {
     narrow.known_parts.push_back({part.sub_a, part.sub_b, part.cache});
     narrow.old_parts.push_back(p);
   }
-  narrow.manifolds.clear();
+  shapes.manifolds.clear();
   const Body &body_a = bodies[a.body], &body_b = bodies[b.body];
   const Vec3 about = reference_point(body_b), arm = about - reference_point(body_a);
   const collide::SearchMargin by_part(look.margin, look.margin_at_rest,
@@ -79,30 +79,30 @@ void World::Impl::find_parts(const NarrowPhaseResult& look) {
                                       dt_now * (body_b.w - body_a.w), about);
   find_manifolds(
       a.geometry, a.T, b.geometry, b.T, look.by_part ? by_part : collide::SearchMargin(look.margin),
-      contact_store[index].cache, narrow.known_parts, narrow.manifold_scratch, narrow.manifolds);
-  for (const collide::SubManifold& found : narrow.manifolds) note_limits(found.manifold);
+      contact_store[index].cache, narrow.known_parts, shapes.manifold_scratch, shapes.manifolds);
+  for (const collide::SubManifold& found : shapes.manifolds) note_limits(found.manifold);
   if (contact_store[index].sensor) {
-    const bool touches = !narrow.manifolds.empty();
+    const bool touches = !shapes.manifolds.empty();
     if (touches != contact_store[index].touching)
       events.touch(colliders, contact_store[index], touches);
     return;
   }
   double clearance = look.clearance;
-  if (narrow.manifolds.empty()) {
+  if (shapes.manifolds.empty()) {
     clearance = std::max(
-        clearance, distance_of_parts(a.geometry, a.T, b.geometry, b.T, narrow.parts_scratch.cast) -
+        clearance, distance_of_parts(a.geometry, a.T, b.geometry, b.T, shapes.parts_scratch.cast) -
                        desc.contact_slop);
   }
   contact_store.set_clearance(contact_store[index], clearance, body_set);
   narrow.claimed_parts.clear();
-  for (const collide::SubManifold& found : narrow.manifolds)
+  for (const collide::SubManifold& found : shapes.manifolds)
     narrow.claimed_parts.push_back(claim_part(contact_store, colliders, narrow.old_parts, found));
   for (const std::uint32_t p : narrow.old_parts) {
     if (p != kNone) contact_store.remove(p, body_set);
   }
   std::uint32_t last = kNone;
-  for (std::size_t k = 0; k < narrow.manifolds.size(); ++k) {
-    collide::SubManifold& found = narrow.manifolds[k];
+  for (std::size_t k = 0; k < shapes.manifolds.size(); ++k) {
+    collide::SubManifold& found = shapes.manifolds[k];
     std::uint32_t p = narrow.claimed_parts[k];
     if (p == kNone) {
       Contact part;

@@ -222,7 +222,7 @@ void World::Impl::find_strays() {
 
 Query World::Impl::query(const QueryFilter& filter) {
   find_strays();
-  return {bodies, colliders, finder, queries, narrow.parts_scratch, filter};
+  return {bodies, colliders, finder, queries, shapes.parts_scratch, filter};
 }
 
 // --- ray casts -----------------------------------------------------------------------------------

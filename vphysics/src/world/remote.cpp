@@ -25,18 +25,6 @@ constexpr double kRemoteSlide = 0.03, kClear = 0.01;
 
 }  // namespace
 
-const std::vector<std::uint32_t>& World::Impl::impact_bodies() {
-  if (!impacts.bodies_are_dirty) return impacts.body_list;
-  impacts.bodies_are_dirty = false;
-  impacts.body_list.clear();
-  for (std::uint32_t i = 0; i < bodies.size(); ++i) {
-    const Body& body = bodies[i];
-    if (!body.alive || body.motion == Motion::fixed || impacts.remote_bodies[i]) continue;
-    if (!body.is_link || body.first_collider != kNone) impacts.body_list.push_back(i);
-  }
-  return impacts.body_list;
-}
-
 // Valid until a body or a collider is added or removed.
 bool World::Impl::can_be_remote(const Articulation& art) const {
   if (!art.keeps_twists() || !art.is_decoupled()) return false;
@@ -54,8 +42,7 @@ bool World::Impl::can_be_remote(const Articulation& art) const {
 void World::Impl::list_remote_articulations() {
   const bool few = !lists.some_sub_stepped && desc.sleep_after <= 0.0 &&
                    lists.awake_bodies.size() <= kFewMovingBodies;
-  impacts.remote_bodies.assign(bodies.size(), 0);
-  impacts.bodies_are_dirty = impacts.scratch_is_dirty = true;
+  impacts.scratch_is_dirty = true;
   for (Articulation& art : articulations) {
     if (!art.alive) continue;
     update_if_remote(art);
@@ -100,10 +87,10 @@ void World::Impl::make_remote() {
     if (is_near_awake_body(collide::grown(box, kClear))) continue;
     art.set_remote(box);
     for (const std::uint32_t b : art.bodies) {
-      impacts.remote_bodies[b] = 1;
+      bodies[b].remote = true;
       impacts.bounds[b] = {};
     }
-    impacts.bodies_are_dirty = true;
+    lists.invalidate_impacts();
   }
 }
 

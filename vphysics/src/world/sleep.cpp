@@ -91,7 +91,7 @@ std::span<const std::uint32_t> SleepIslands::wake(const IslandGraph& graph, std:
 void World::Impl::send_to_sleep() {
   for (const std::uint32_t i : lists.awake_bodies) sleep_islands.watch(bodies[i], i, desc, dt_now);
   sleep_islands.find_resting(
-      island_graph(), desc.sleep_after, [&](std::span<const std::uint32_t> island) {
+      context.island_graph(), desc.sleep_after, [&](std::span<const std::uint32_t> island) {
         for (const std::uint32_t i : island) {
           Body& body = bodies[i];
           body.asleep = true;
@@ -107,18 +107,17 @@ void World::Impl::send_to_sleep() {
       });
 }
 
-// Wakes the body and its island.
-void World::Impl::wake(std::uint32_t seed) {
-  bodies[seed].rest_time = 0.0;
-  if (!bodies[seed].asleep) return;
-  const BodyRows rows = rows_in(dt_now);
-  for (const std::uint32_t i : sleep_islands.wake(island_graph(), seed)) {
-    if (dt_now > 0.0 && rows.load(bodies[i], i)) restart_displacement(i);
-    contact_store.for_each_of(bodies[i], [&](std::uint32_t contact, Contact&) {
-      contact_store.unpark(contact, body_set);
+void wake(const Stores& s, std::uint32_t seed) {
+  s.bodies[seed].rest_time = 0.0;
+  if (!s.bodies[seed].asleep) return;
+  const BodyRows rows = s.rows_in(s.dt);
+  for (const std::uint32_t i : s.sleep_islands.wake(s.island_graph(), seed)) {
+    if (s.dt > 0.0 && rows.load(s.bodies[i], i)) restart_displacement(s, i);
+    s.contact_store.for_each_of(s.bodies[i], [&](std::uint32_t contact, Contact&) {
+      s.contact_store.unpark(contact, s.body_set);
     });
   }
-  lists.invalidate();
+  s.lists.invalidate();
 }
 
 void World::Impl::wake_neighbours(std::uint32_t index) {

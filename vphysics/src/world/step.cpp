@@ -42,8 +42,8 @@ void World::Impl::begin_step(double dt) {
   status = {};
   position_error_now = false;
   counters = {};
-  narrow.manifold_scratch.triangles_tested = 0;
-  narrow.manifold_scratch.crowded = narrow.manifold_scratch.rough = false;
+  shapes.manifold_scratch.triangles_tested = 0;
+  shapes.manifold_scratch.crowded = shapes.manifold_scratch.rough = false;
   narrow.renewed = 0;
   events.clear();
   step_contacts.clear();
@@ -89,7 +89,7 @@ void World::Impl::begin_step(double dt) {
   finds_contacts = has_contacts_to_find();
   if (lists.some_sub_stepped) load_rows(dt);
   if (finds_contacts) {
-    for (const std::uint32_t i : lists.links) update_bounds(i, dt, false);
+    for (const std::uint32_t i : lists.links) update_bounds(context, i, dt, false);
   }
 }
 
@@ -151,7 +151,7 @@ void World::Impl::begin_impact_stage(double dt) {
   impacts.contacts.reserve(capacity);
   impacts.link_contacts.reserve(capacity);
   step_contacts.reserve(4 * capacity);
-  narrow.manifolds.reserve(kManifoldsOfPair);
+  shapes.manifolds.reserve(kManifoldsOfPair);
   std::size_t dofs = 0;
   for (const Articulation& art : articulations) dofs = std::max(dofs, art.dofs.size());
   impacts.instant.reserve(capacity, impacts.joint_rows.capacity(), dofs);
@@ -176,7 +176,7 @@ void World::Impl::begin_impact_stage(double dt) {
     impacts.drift.assign(n, {});
     impacts.forced.assign(n, {});
   }
-  for (const std::uint32_t i : impact_bodies()) {
+  for (const std::uint32_t i : lists.of_impacts(bodies)) {
     impacts.drift[i] = impacts.forced[i] = {};
     if (!bodies[i].is_link) impacts.start_poses[i] = bodies[i].T;
   }
@@ -184,39 +184,38 @@ void World::Impl::begin_impact_stage(double dt) {
 
 // For the bodies that the impact stage moves.
 void World::Impl::integrate_forces(double dt) {
-  for (const std::uint32_t i : impact_bodies()) {
+  for (const std::uint32_t i : lists.of_impacts(bodies)) {
     Body& body = bodies[i];
     if (body.motion != Motion::dynamic || joins_sub_steps(body)) continue;
     impacts.forced[i] = {body.w, body.v};
     if (body.is_link) continue;
-    const Velocity a = acceleration_of(body);
+    const Velocity a = context.acceleration_of(body);
     body.v += dt * a.v;
     if (loads.is_torqued(body)) body.w += dt * a.w;
     body.v *= 1.0 / (1.0 + dt * body.linear_damping);
     body.w *= 1.0 / (1.0 + dt * body.angular_damping);
   }
   integrate_articulations(dt);
-  for (const std::uint32_t i : impact_bodies()) {
+  for (const std::uint32_t i : lists.of_impacts(bodies)) {
     const Body& body = bodies[i];
     if (joins_sub_steps(body)) continue;
-    const bool stopped = !body.is_link && stop_if_out_of_range(i, impacts.start_poses[i]);
+    const bool stopped = !body.is_link && stop_if_out_of_range(context, i, impacts.start_poses[i]);
     if (body.motion != Motion::dynamic) continue;
     impacts.forced[i] =
         stopped ? Velocity{} : Velocity{body.w - impacts.forced[i].w, body.v - impacts.forced[i].v};
   }
 }
 
-// Not for links.
-bool World::Impl::stop_if_out_of_range(std::uint32_t index, const SE3& start) {
-  Body& body = bodies[index];
+bool stop_if_out_of_range(const StepContext& s, std::uint32_t index, const SE3& start) {
+  Body& body = s.bodies[index];
   if (in_range(body.w) && in_range(body.v) && in_range(body.T.position())) return false;
-  status.non_finite = true;
+  s.status.non_finite = true;
   body.w = body.v = {};
   body.prescribed = {};
   body.T = start;
   body.moved();
-  restart_displacement(index);
-  forget_joints(bodies[index], joints);
+  restart_displacement(s, index);
+  forget_joints(s.bodies[index], s.joints);
   return true;
 }
 
@@ -278,11 +277,11 @@ collide::Motion World::Impl::motion_of(const Body& body, const Velocity& more, d
 // computed: at the mean velocity, their contacts would approach again at once.
 void World::Impl::refresh_motions(double h) {
   if (!impacts.swept_body_pairs.dirty()) {
-    for (const std::uint32_t i : impact_bodies()) refresh_motion_of(i, h);
+    for (const std::uint32_t i : lists.of_impacts(bodies)) refresh_motion_of(i, h);
     return;
   }
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
-    if (!impacts.remote_bodies[i]) refresh_motion_of(i, h);
+    if (!bodies[i].remote) refresh_motion_of(i, h);
   }
 }
 void World::Impl::refresh_motion_of(std::uint32_t i, double h) {
@@ -333,7 +332,7 @@ void World::Impl::advance_body(Body& body, const collide::Motion& m, double h, b
 
 // Without the impact stage: advances all bodies to the end of the step at once.
 void World::Impl::advance_all(double dt) {
-  const BodyRows rows = rows_in(dt);
+  const BodyRows rows = context.rows_in(dt);
   workers.in_parallel(
       lists.awake_bodies.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
@@ -349,7 +348,7 @@ void World::Impl::advance_all(double dt) {
     const SE3 start = body.T;
     const Velocity more = body.motion == Motion::dynamic ? settle(rows, i) : Velocity{};
     advance_body(body, {reference_point(body), body.v + more.v, body.w + more.w}, dt, true, more.w);
-    (void)stop_if_out_of_range(i, start);
+    (void)stop_if_out_of_range(context, i, start);
   }
   forget_lost_bodies();
 }
@@ -390,10 +389,10 @@ void take_back(Vec3& velocity, const Vec3& added, double fraction) {
 // such a body would gain speed in each step in which it is stopped, and fly off when released.
 void World::Impl::take_back_forces(double h) {
   const double fraction = h / dt_now;
-  for (const std::uint32_t i : impact_bodies()) {
+  for (const std::uint32_t i : lists.of_impacts(bodies)) {
     Body& body = bodies[i];
     if (!impacts.stopped[i] || body.is_link || body.motion != Motion::dynamic) continue;
-    const Velocity a = acceleration_of(body);
+    const Velocity a = context.acceleration_of(body);
     take_back(body.v, dt_now * a.v, fraction);
     take_back(body.w, dt_now * a.w, fraction);
   }
@@ -420,7 +419,7 @@ void World::Impl::run(double dt) {
   if (lists.some_sub_stepped) {
     stop_fast_rotating_bodies(
         {bodies, colliders, contact_store, lists.awake_bodies, body_rows,
-         sub_step.start_displacements, desc.contact_slop, workers, narrow.parts_scratch},
+         sub_step.start_displacements, desc.contact_slop, workers, shapes.parts_scratch},
         sub_step.fast_rotation);
   }
   if (!has_impact_stage()) {
@@ -435,12 +434,12 @@ void World::Impl::run(double dt) {
 void World::Impl::feel_forces(double dt) {
   const auto stage = in(Stage::forces);
   integrate_forces(dt);
-  const BodyRows rows = rows_in(dt);
+  const BodyRows rows = context.rows_in(dt);
   for (const std::uint32_t i : lists.awake_bodies) {
     if (joins_sub_steps(bodies[i]) && bodies[i].motion == Motion::dynamic) {
       impacts.drift[i] = settle(rows, i);
       if (bodies[i].is_solver_driven()) continue;
-      const Velocity a = acceleration_of(bodies[i]);
+      const Velocity a = context.acceleration_of(bodies[i]);
       impacts.forced[i] = {dt * a.w, dt * a.v};
     }
   }
@@ -448,9 +447,9 @@ void World::Impl::feel_forces(double dt) {
 }
 
 void World::Impl::count_contacts() {
-  status.manifold_limit |= narrow.manifold_scratch.crowded;
-  status.distance_limit |= narrow.manifold_scratch.rough;
-  counters.triangles = narrow.manifold_scratch.triangles_tested;
+  status.manifold_limit |= shapes.manifold_scratch.crowded;
+  status.distance_limit |= shapes.manifold_scratch.rough;
+  counters.triangles = shapes.manifold_scratch.triangles_tested;
   solve::ColourSet colours;
   for (std::size_t region = 0; region < contact_store.graph.regions(); ++region) {
     colours.insert(contact_store.graph.colours_in_use(region));
@@ -474,6 +473,7 @@ void World::Impl::note_position_error() {
 }
 
 void World::Impl::finish_step() {
+  ready_for_queries = false;  // an observer of the step may have asked
   count_contacts();
   note_position_error();
   if (desc.sleep_after > 0.0) {
