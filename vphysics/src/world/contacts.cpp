@@ -94,7 +94,8 @@ std::span<const collide::SubManifold> World::Impl::manifolds_of(const ColliderPa
   collide::PairCache cache;
   find_manifolds(a.geometry, a.T, b.geometry, b.T, margin, cache, {}, shapes.manifold_scratch,
                  shapes.manifolds);
-  for (const collide::SubManifold& found : shapes.manifolds) note_limits(found.manifold);
+  for (const collide::SubManifold& found : shapes.manifolds)
+    status.distance_limit |= found.manifold.rough;
   return shapes.manifolds;
 }
 

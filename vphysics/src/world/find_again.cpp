@@ -11,7 +11,7 @@
 #include <span>
 
 #include "solve/row_vector.h"
-#include "world/impl.h"
+#include "world/contact_search.h"
 #include "world/validate.h"
 
 namespace vp {
@@ -49,124 +49,118 @@ void load_inertias_of(solve::ContactBlock<P>& block, int lane,
 
 }  // namespace
 
-void World::Impl::load_inertias_of(const Contact& c) {
+void ContactSearch::load_inertias_of(const Contact& c) {
   if (c.slot.points == 0) return;
-  solve::ContactGraph& graph = contact_store.graph;
+  solve::ContactGraph& graph = s_.contact_store.graph;
   const int lane = solve::ContactGraph::lane(c.slot);
-  c.slot.points == 1 ? vp::load_inertias_of(graph.block<1>(c.slot), lane, std::span(body_rows))
-                     : vp::load_inertias_of(graph.block<4>(c.slot), lane, std::span(body_rows));
+  c.slot.points == 1 ? vp::load_inertias_of(graph.block<1>(c.slot), lane, std::span(s_.body_rows))
+                     : vp::load_inertias_of(graph.block<4>(c.slot), lane, std::span(s_.body_rows));
 }
 
-bool World::Impl::list_deviating_bodies(double left) {
-  const std::vector<std::uint32_t>& awake = lists.awake_bodies;
-  std::vector<std::uint8_t>& flags = sub_step.deviates;
+bool ContactSearch::list_deviating_bodies(double left) {
+  const std::vector<std::uint32_t>& awake = s_.lists.awake_bodies;
+  std::vector<std::uint8_t>& flags = deviates_;
   flags.resize(awake.size());
   std::atomic<bool> some = false;
-  workers.in_parallel(awake.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
-    if (solve::passes().find_deviating(body_rows.data(), sub_step.searched.data(),
+  s_.workers.in_parallel(awake.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
+    if (solve::passes().find_deviating(s_.body_rows.data(), s_.searched.data(),
                                        awake.data() + begin, end - begin, static_cast<float>(left),
                                        flags.data() + begin))
       some.store(true, std::memory_order_relaxed);
   });
-  sub_step.deviating.clear();
+  deviating_.clear();
   if (!some) return false;
   for (std::size_t k = 0; k < awake.size(); ++k) {
     const std::uint32_t i = awake[k];
-    if (flags[k] != 0 && joins_sub_steps(bodies[i]) && is_in_range(body_rows[i + 1]))
-      sub_step.deviating.push_back(i);
+    if (flags[k] != 0 && joins_sub_steps(s_.bodies[i]) && is_in_range(s_.body_rows[i + 1]))
+      deviating_.push_back(i);
   }
-  return !sub_step.deviating.empty();
+  return !deviating_.empty();
 }
 
 // Sets the pose and the velocities of a body to those of the present sub-step.
-void World::Impl::advance_within_step(std::uint32_t index) {
-  Body& body = bodies[index];
+void ContactSearch::advance_within_step(std::uint32_t index) {
+  Body& body = s_.bodies[index];
   if (body.advanced || body.asleep || !joins_sub_steps(body)) return;
   body.advanced = true;
-  sub_step.advanced.push_back({index, body.T, body.w, body.v});
-  context.rows_in(dt_now).copy_to_body(body, index);
+  advanced_.push_back({index, body.T, body.w, body.v});
+  s_.rows_in(s_.dt).copy_to_body(body, index);
 }
 
-// Lists in narrow.dirty the contacts to test.
-void World::Impl::list_contacts_of_deviating(double left) {
-  for (const std::uint32_t i : sub_step.deviating) {
+// Lists in dirty_ the contacts to test.
+void ContactSearch::list_contacts_of_deviating(double left) {
+  for (const std::uint32_t i : deviating_) {
     advance_within_step(i);
-    update_bounds(context, i, left, true);
-    context.rows_in(dt_now).note_searched(i);
+    update_bounds(s_, i, left, true);
+    s_.rows_in(s_.dt).note_searched(i);
   }
   find_new_contacts();
-  for (const std::uint32_t i : sub_step.deviating) {
-    contact_store.for_each_of(bodies[i], [&](std::uint32_t index, const Contact& c) {
+  for (const std::uint32_t i : deviating_) {
+    s_.contact_store.for_each_of(s_.bodies[i], [&](std::uint32_t index, const Contact& c) {
       if (c.dirty || c.of_link || c.sensor || c.parked || c.is_part()) return;
-      if (c.slot.points > 0 ? outruns_its_slot(c, left, body_set)
-                            : contact_store.may_touch_within(c, left, body_set))
-        contact_store.mark_dirty(index);
+      if (c.slot.points > 0 ? outruns_its_slot(c, left, s_.body_set)
+                            : s_.contact_store.may_touch_within(c, left, s_.body_set))
+        s_.contact_store.mark_dirty(index);
     });
   }
-  contact_store.take_dirty(narrow.dirty);
-  std::erase_if(narrow.dirty, [&](std::uint32_t index) {
-    const Contact& c = contact_store[index];
+  s_.contact_store.take_dirty(dirty_);
+  std::erase_if(dirty_, [&](std::uint32_t index) {
+    const Contact& c = s_.contact_store[index];
     if (!c.alive || !c.dirty) return true;
-    const std::uint32_t a = colliders[c.a].body, b = colliders[c.b].body;
+    const std::uint32_t a = s_.colliders[c.a].body, b = s_.colliders[c.b].body;
     // The joints of a woken island would not be solved in this step.
-    const bool wakes_joints = (bodies[a].asleep || bodies[b].asleep) && !joints.empty();
+    const bool wakes_joints = (s_.bodies[a].asleep || s_.bodies[b].asleep) && !s_.joints.empty();
     const bool must_wait =
-        wakes_joints || !is_in_range(body_rows[a + 1]) || !is_in_range(body_rows[b + 1]);
-    if (c.sensor || must_wait) narrow.dirty_next_step.push_back(index);
+        wakes_joints || !is_in_range(s_.body_rows[a + 1]) || !is_in_range(s_.body_rows[b + 1]);
+    if (c.sensor || must_wait) dirty_next_step_.push_back(index);
     if (c.sensor || c.of_link || must_wait) return true;
     for (const std::uint32_t body : {a, b}) {
       advance_within_step(body);
-      pose_colliders(bodies[body], colliders);
+      pose_colliders(s_.bodies[body], s_.colliders);
     }
     return false;
   });
 }
 
-SearchedAgain World::Impl::find_contacts_within_step(double left) {
+SearchedAgain ContactSearch::find_again(double left) {
   SearchedAgain changed;
   if (!list_deviating_bodies(left)) return changed;
   // Contacts that wait for the next step are not tested now.
-  narrow.dirty_next_step.clear();
-  narrow.dirty_next_step.swap(contact_store.dirty);
+  dirty_next_step_.clear();
+  dirty_next_step_.swap(s_.contact_store.dirty);
   list_contacts_of_deviating(left);
-  for (std::size_t done = 0; done < narrow.dirty.size(); done += narrow.results.size()) {
-    const std::span<const std::uint32_t> waiting = std::span(narrow.dirty).subspan(done);
+  for (std::size_t done = 0; done < dirty_.size(); done += results_.size()) {
+    const std::span<const std::uint32_t> waiting = std::span(dirty_).subspan(done);
     find_manifolds_of(waiting.first(std::min(waiting.size(), kNarrowPhaseBatch)), left);
-    for (const NarrowPhaseResult& found : narrow.results) {
-      Contact& c = contact_store[found.contact];
+    for (const NarrowPhaseResult& found : results_) {
+      Contact& c = s_.contact_store[found.contact];
       const bool had_slots = c.slot.points > 0 || c.first_part != kNone;
       // A slot whose impulses are not reported yet is not released.
       if (c.slot.points > 0 && found.manifold.count == 0) {
         c.dirty = false;
         continue;
       }
-      const std::uint32_t renewed = narrow.renewed;
+      const std::uint32_t renewed = renewed_;
       take_over(found);
-      changed.has_new_slots |= narrow.renewed != renewed;
-      const Contact& taken = contact_store[found.contact];  // the pool may have grown
+      changed.has_new_slots |= renewed_ != renewed;
+      const Contact& taken = s_.contact_store[found.contact];  // the pool may have grown
       load_inertias_of(taken);
-      for (std::uint32_t p = taken.first_part; p != kNone; p = contact_store[p].next_part)
-        load_inertias_of(contact_store[p]);
+      for (std::uint32_t p = taken.first_part; p != kNone; p = s_.contact_store[p].next_part)
+        load_inertias_of(s_.contact_store[p]);
       changed.has_old_slots |= had_slots;
     }
   }
-  contact_store.dirty.insert(contact_store.dirty.end(), narrow.dirty_next_step.begin(),
-                             narrow.dirty_next_step.end());
-  const std::size_t awake = lists.awake_bodies.size();
-  list_bodies();
-  changed.has_woken = lists.awake_bodies.size() != awake;
-  changed.has_old_slots |= changed.has_woken;
-  sub_step.awake_body_changed.resize(lists.awake_bodies.size());
-  for (const BodyAtStart& start : sub_step.advanced) {
-    Body& body = bodies[start.body];
+  s_.contact_store.dirty.insert(s_.contact_store.dirty.end(), dirty_next_step_.begin(),
+                                dirty_next_step_.end());
+  for (const BodyAtStart& start : advanced_) {
+    Body& body = s_.bodies[start.body];
     body.T = start.T;
     body.w = start.w;
     body.v = start.v;
     body.advanced = false;
     body.moved();
   }
-  sub_step.advanced.clear();
-  changed.has_new_slots |= changed.has_old_slots;
+  advanced_.clear();
   return changed;
 }
 

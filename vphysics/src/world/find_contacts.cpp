@@ -11,8 +11,9 @@
 #include <span>
 #include <utility>
 
+#include "solve/contact_slot.h"
 #include "solve/row_vector.h"
-#include "world/impl.h"
+#include "world/contact_search.h"
 #include "world/lane_fields.h"
 
 namespace vp {
@@ -100,58 +101,65 @@ void find_manifold_of(Contact& c, NarrowPhaseResult& found, const NarrowPhaseInp
 
 }  // namespace
 
-// Swept bodies and links collide only in the impact stage. A sleeping body collides with bodies
-// that were created or moved by the user since the last step, and with links.
-bool World::Impl::has_contacts_to_find() const {
-  return lists.some_sub_stepped ||
-         (lists.some_sleep &&
-          (finder.has_moved() || !contact_store.dirty.empty() || !lists.links.empty()));
+bool ContactSearch::is_needed() const {
+  return s_.lists.some_sub_stepped ||
+         (s_.lists.some_sleep &&
+          (s_.finder.has_moved() || !s_.contact_store.dirty.empty() || !s_.lists.links.empty()));
 }
 
-void World::Impl::find_contacts(double dt) {
-  {
-    const auto stage = in(Stage::broad_phase);
-    find_new_contacts();
-    drop_separated_link_contacts();
-    find_bodies_on_links();
+void ContactSearch::begin_step(std::size_t contacts) {
+  const std::size_t n = s_.bodies.size();
+  renewed_ = 0;
+  for (auto* list : {&dirty_, &dirty_next_step_}) list->reserve(s_.contact_store.dirty.capacity());
+  results_.reserve(std::min(contacts, kNarrowPhaseBatch));
+  to_pose_.reserve(n);
+  new_pairs_.reserve(contacts);
+  deviating_.reserve(n);
+  deviates_.reserve(n);
+  advanced_.reserve(64 + n / 8);  // grows in a step in which more bodies deviate
+}
+
+void ContactSearch::find_pairs() {
+  find_new_contacts();
+  drop_separated_link_contacts();
+}
+
+void ContactSearch::find_new_contacts() {
+  new_pairs_.clear();
+  s_.finder.update(new_pairs_);
+  for (const collide::ProxyPair& pair : new_pairs_) {
+    add_contact_pair(s_.finder.user(pair.a), s_.finder.user(pair.b));
   }
-  update_dirty_contacts(dt);
 }
 
-void World::Impl::find_new_contacts() {
-  narrow.new_pairs.clear();
-  finder.update(narrow.new_pairs);
-  for (const collide::ProxyPair& pair : narrow.new_pairs) {
-    add_contact_pair(finder.user(pair.a), finder.user(pair.b));
-  }
+bool ContactSearch::has_separated(const Contact& c) const {
+  return !s_.finder.should_pair(s_.colliders[c.a].proxy, s_.colliders[c.b].proxy);
 }
-
-bool World::Impl::has_separated(const Contact& c) const {
-  return !finder.should_pair(colliders[c.a].proxy, colliders[c.b].proxy);
-}
-void World::Impl::drop_contact(std::uint32_t index) {
-  const Contact& c = contact_store[index];
-  finder.remove_pair(colliders[c.a].proxy, colliders[c.b].proxy);
-  remove_contact(index);
+void ContactSearch::drop(std::uint32_t index) {
+  Contact& c = s_.contact_store[index];
+  s_.finder.remove_pair(s_.colliders[c.a].proxy, s_.colliders[c.b].proxy);
+  if (c.touching && !c.is_part()) s_.events.touch(s_.colliders, c, false);
+  s_.contact_store.remove(index, s_.body_set);
 }
 
 // Contacts of links are tested elsewhere. All other contacts are removed when they are tested and
 // their enlarged bounds have separated, so this needs no pass over them.
-void World::Impl::drop_separated_link_contacts() {
-  if (lists.links.empty()) return;
-  for (const std::uint32_t proxy : finder.moved()) {
-    if (!finder.exists(proxy)) continue;
-    const std::uint32_t collider = finder.user(proxy);
-    contact_store.for_each_of(bodies[colliders[collider].body], [&](std::uint32_t i, Contact& c) {
-      if (c.of_link && (c.a == collider || c.b == collider) && has_separated(c)) drop_contact(i);
-    });
+void ContactSearch::drop_separated_link_contacts() {
+  if (s_.lists.links.empty()) return;
+  for (const std::uint32_t proxy : s_.finder.moved()) {
+    if (!s_.finder.exists(proxy)) continue;
+    const std::uint32_t collider = s_.finder.user(proxy);
+    s_.contact_store.for_each_of(
+        s_.bodies[s_.colliders[collider].body], [&](std::uint32_t i, Contact& c) {
+          if (c.of_link && (c.a == collider || c.b == collider) && has_separated(c)) drop(i);
+        });
   }
 }
 
-void World::Impl::add_contact_pair(std::uint32_t i, std::uint32_t j) {
-  const ColliderPair pair = make_pair(colliders, i, j);
-  const Collider &a = colliders[pair.a], &b = colliders[pair.b];
-  const Body &body_a = bodies[a.body], &body_b = bodies[b.body];
+void ContactSearch::add_contact_pair(std::uint32_t i, std::uint32_t j) {
+  const ColliderPair pair = make_pair(s_.colliders, i, j);
+  const Collider &a = s_.colliders[pair.a], &b = s_.colliders[pair.b];
+  const Body &body_a = s_.bodies[a.body], &body_b = s_.bodies[b.body];
   const bool sensor = a.sensor || b.sensor;
   const bool pushes = body_a.motion == Motion::dynamic || body_b.motion == Motion::dynamic;
   if (!should_collide(a, b) || never_collide(body_a, body_b) || !(pushes || sensor)) return;
@@ -162,155 +170,147 @@ void World::Impl::add_contact_pair(std::uint32_t i, std::uint32_t j) {
   c.sensor = sensor;
   c.of_link = body_a.is_link || body_b.is_link;
   c.has_parts = has_parts(a.geometry, b.geometry);
-  const std::uint32_t index = contact_store.add(c, body_set);
-  if (!c.of_link) contact_store.mark_dirty(index);
-  contact_store.set_speculative(index, 0.0, body_set);
-  contact_store.reset_speculative(contact_store[index], body_set);
+  const std::uint32_t index = s_.contact_store.add(c, s_.body_set);
+  if (!c.of_link) s_.contact_store.mark_dirty(index);
+  s_.contact_store.set_speculative(index, 0.0, s_.body_set);
+  s_.contact_store.reset_speculative(s_.contact_store[index], s_.body_set);
 }
 
-// Reports an end; the finder's pair stays.
-void World::Impl::remove_contact(std::uint32_t index) {
-  Contact& c = contact_store[index];
-  if (c.touching && !c.is_part()) events.touch(colliders, c, false);
-  contact_store.remove(index, body_set);
-}
-
-void World::Impl::find_dirty_contacts(double dt) {
+void ContactSearch::find_dirty_contacts(double dt, const ContactRuns& runs) {
   const float step = static_cast<float>(dt);
-  const ContactRuns runs = contact_runs();
-  std::vector<std::uint32_t>& found = sub_step.blocks.words;
+  std::vector<std::uint32_t>& found = runs.block_bits.words;
   (void)runs.number();
   runs.for_parts([&](const auto& pass, const auto& part, std::size_t first) {
     pass.find_moved(part, step, static_cast<float>(kRevolution), found.data() + first);
   });
   std::size_t next = 0;
   runs.for_runs([&](const auto&, const auto&, const auto& blocks) {
-    for (const auto& block : blocks) contact_store.mark_dirty_slots(block.contact, found[next++]);
+    for (const auto& block : blocks)
+      s_.contact_store.mark_dirty_slots(block.contact, found[next++]);
   });
-  const std::span<solve::SpeculativeBlock> blocks = contact_store.speculative.blocks();
+  const std::span<solve::SpeculativeBlock> blocks = s_.contact_store.speculative.blocks();
   found.resize(std::max(found.size(), blocks.size()));
-  workers.in_parallel(blocks.size(), kBodyGrain / solve::kLanes,
-                      [&](std::size_t begin, std::size_t end) {
-                        solve::passes().find_closer(blocks.data() + begin, end - begin,
-                                                    body_rows.data(), step, found.data() + begin);
-                      });
+  s_.workers.in_parallel(
+      blocks.size(), kBodyGrain / solve::kLanes, [&](std::size_t begin, std::size_t end) {
+        solve::passes().find_closer(blocks.data() + begin, end - begin, s_.body_rows.data(), step,
+                                    found.data() + begin);
+      });
   for (std::size_t b = 0; b < blocks.size(); ++b)
-    contact_store.mark_dirty_pairs(blocks[b], found[b]);
+    s_.contact_store.mark_dirty_pairs(blocks[b], found[b]);
 }
 
-// Tests dirty contacts in the order of their indices, then those of bodies that these have woken.
-void World::Impl::update_dirty_contacts(double dt) {
-  narrow.dirty_next_step.clear();
-  for (bool first = true; first || !contact_store.dirty.empty(); first = false) {
+// Tests dirty contacts in the order of their indices, then those of bodies that these have
+// woken.
+void ContactSearch::update(double dt, const ContactRuns& runs) {
+  dirty_next_step_.clear();
+  for (bool first = true; first || !s_.contact_store.dirty.empty(); first = false) {
     std::size_t done = 0;
     do {
       {
-        const auto stage = in(Stage::narrow_phase);
-        if (done == 0) list_dirty_contacts(dt, first);
-        const std::span<const std::uint32_t> left = std::span(narrow.dirty).subspan(done);
+        const auto stage = s_.in(Stage::narrow_phase);
+        if (first && done == 0) find_dirty_contacts(dt, runs);
+        if (done == 0) list_dirty_contacts();
+        const std::span<const std::uint32_t> left = std::span(dirty_).subspan(done);
         find_manifolds_of(left.first(std::min(left.size(), kNarrowPhaseBatch)), dt);
       }
-      const auto stage = in(Stage::contact_slots);
-      for (const NarrowPhaseResult& found : narrow.results) take_over(found);
-      done += narrow.results.size();
-    } while (done < narrow.dirty.size());
+      const auto stage = s_.in(Stage::contact_slots);
+      for (const NarrowPhaseResult& found : results_) take_over(found);
+      done += results_.size();
+    } while (done < dirty_.size());
   }
-  contact_store.dirty.swap(narrow.dirty_next_step);
+  s_.contact_store.dirty.swap(dirty_next_step_);
 }
 
 // Lists the contacts to test. Removes those whose enlarged bounds have separated.
-void World::Impl::list_dirty_contacts(double dt, bool first) {
-  if (first) find_dirty_contacts(dt);
-  contact_store.take_dirty(narrow.dirty);
-  std::vector<std::uint32_t>& to_pose = narrow.to_pose;
+void ContactSearch::list_dirty_contacts() {
+  s_.contact_store.take_dirty(dirty_);
+  std::vector<std::uint32_t>& to_pose = to_pose_;
   to_pose.clear();
   std::size_t count = 0;
-  for (const std::uint32_t index : narrow.dirty) {
-    const Contact& c = contact_store[index];
+  for (const std::uint32_t index : dirty_) {
+    const Contact& c = s_.contact_store[index];
     if (!c.alive || !c.dirty || c.parked) continue;
     if (c.of_link) continue;  // tested in link_contacts.cpp
     if (has_separated(c)) {
-      drop_contact(index);
+      drop(index);
       continue;
     }
-    narrow.dirty[count++] = index;
+    dirty_[count++] = index;
     for (const std::uint32_t collider : {c.a, c.b}) {
-      Body& body = bodies[colliders[collider].body];
+      Body& body = s_.bodies[s_.colliders[collider].body];
       if (body.posed || body.pose_pending) continue;
       body.pose_pending = true;
-      to_pose.push_back(colliders[collider].body);
+      to_pose.push_back(s_.colliders[collider].body);
     }
   }
-  narrow.dirty.resize(count);
-  workers.in_parallel(to_pose.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) pose_colliders(bodies[to_pose[k]], colliders);
+  dirty_.resize(count);
+  s_.workers.in_parallel(to_pose.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) pose_colliders(s_.bodies[to_pose[k]], s_.colliders);
   });
 }
 
-void World::Impl::find_manifolds_of(std::span<const std::uint32_t> contacts, double dt) {
-  std::vector<NarrowPhaseResult>& results = narrow.results;
+void ContactSearch::find_manifolds_of(std::span<const std::uint32_t> contacts, double dt) {
+  std::vector<NarrowPhaseResult>& results = results_;
   results.resize(contacts.size());
-  const NarrowPhaseInput input{bodies, colliders, joints, context.approach_in(dt),
-                               desc.contact_slop};
-  workers.in_parallel(results.size(), kNarrowPhaseGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      results[k].contact = contacts[k];
-      find_manifold_of(contact_store[contacts[k]], results[k], input);
-    }
-  });
+  const NarrowPhaseInput input{s_.bodies, s_.colliders, s_.joints, s_.approach_in(dt),
+                               s_.desc.contact_slop};
+  s_.workers.in_parallel(results.size(), kNarrowPhaseGrain,
+                         [&](std::size_t begin, std::size_t end) {
+                           for (std::size_t k = begin; k < end; ++k) {
+                             results[k].contact = contacts[k];
+                             find_manifold_of(s_.contact_store[contacts[k]], results[k], input);
+                           }
+                         });
 }
 
-void World::Impl::note_limits(const collide::Manifold& manifold) {
-  status.distance_limit |= manifold.rough;
-}
-
-void World::Impl::take_over(const NarrowPhaseResult& found) {
+void ContactSearch::take_over(const NarrowPhaseResult& found) {
   const std::uint32_t index = found.contact;
   const bool separated = found.clearance >= kNeverTouches;
-  contact_store[index].dirty = false;
-  if (!separated) ++counters.narrow_phase_pairs;
-  note_limits(found.manifold);
-  if (contact_store[index].has_parts) {
+  s_.contact_store[index].dirty = false;
+  if (!separated) ++s_.counters.narrow_phase_pairs;
+  s_.status.distance_limit |= found.manifold.rough;
+  if (s_.contact_store[index].has_parts) {
     if (separated) {
-      contact_store.remove_parts(index, body_set);
+      s_.contact_store.remove_parts(index, s_.body_set);
     } else {
       find_parts(found);
     }
-  } else if (contact_store[index].sensor) {
+  } else if (s_.contact_store[index].sensor) {
     const bool collides = found.manifold.count > 0;
-    if (collides != contact_store[index].touching)
-      events.touch(colliders, contact_store[index], collides);
+    if (collides != s_.contact_store[index].touching)
+      s_.events.touch(s_.colliders, s_.contact_store[index], collides);
   } else if (found.manifold.count > 0) {
     assign_slot(index, found.manifold);
     return;
   }
-  Contact& c = contact_store[index];  // the pool may have grown
+  Contact& c = s_.contact_store[index];  // the pool may have grown
   if (c.sensor) {
     c.dirty = true;
   } else if (!c.has_parts || separated) {
-    if (c.touching) events.touch(colliders, c, false);
+    if (c.touching) s_.events.touch(s_.colliders, c, false);
     if (c.slot.points > 0) {
-      contact_store.release_slot(index, body_set);
-      contact_store.set_speculative(index, found.clearance, body_set);
+      s_.contact_store.release_slot(index, s_.body_set);
+      s_.contact_store.set_speculative(index, found.clearance, s_.body_set);
     } else {
-      contact_store.set_clearance(c, found.clearance, body_set);
+      s_.contact_store.set_clearance(c, found.clearance, s_.body_set);
     }
   }
-  contact_store.park(index, body_set);  // it has no points: parks it if nothing awake may change it
-  if (c.sensor && !c.parked) narrow.dirty_next_step.push_back(index);  // in the next step
+  s_.contact_store.park(index,
+                        s_.body_set);  // it has no points: parks it if nothing awake may change it
+  if (c.sensor && !c.parked) dirty_next_step_.push_back(index);  // in the next step
 }
 
-void World::Impl::assign_slot(std::uint32_t index, const collide::Manifold& m) {
-  Contact& c = contact_store[index];
-  solve::ContactGraph& graph = contact_store.graph;
-  ++narrow.renewed;
-  const Collider &a = colliders[c.a], &b = colliders[c.b];
-  const auto end_a = end_of(bodies, a.body), end_b = end_of(bodies, b.body);
-  wake(a.body);
-  wake(b.body);
+void ContactSearch::assign_slot(std::uint32_t index, const collide::Manifold& m) {
+  Contact& c = s_.contact_store[index];
+  solve::ContactGraph& graph = s_.contact_store.graph;
+  ++renewed_;
+  const Collider &a = s_.colliders[c.a], &b = s_.colliders[c.b];
+  const auto end_a = end_of(s_.bodies, a.body), end_b = end_of(s_.bodies, b.body);
+  wake(s_, a.body);
+  wake(s_, b.body);
   SlotImpulses impulses;
   if (c.slot.points == 0) {
-    contact_store.assign_slot(index, points_of(c, a, b), body_set);
+    s_.contact_store.assign_slot(index, points_of(c, a, b), s_.body_set);
   } else {
     impulses = c.slot.points == 1
                    ? impulses_in(graph.block<1>(c.slot), solve::ContactGraph::lane(c.slot))
@@ -319,8 +319,8 @@ void World::Impl::assign_slot(std::uint32_t index, const collide::Manifold& m) {
   solve::NewContact n{};
   n.normal = m.normal;
   // The world row has no centre of its own: the other body's centre makes the arms short.
-  n.x_a = reference_point(bodies[a.body]);
-  n.x_b = reference_point(bodies[b.body]);
+  n.x_a = reference_point(s_.bodies[a.body]);
+  n.x_b = reference_point(s_.bodies[b.body]);
   if (end_a.row == solve::kWorldRow) n.x_a = n.x_b;
   if (end_b.row == solve::kWorldRow) n.x_b = n.x_a;
   n.count = std::min<int>(m.count, c.slot.points);
@@ -337,13 +337,13 @@ void World::Impl::assign_slot(std::uint32_t index, const collide::Manifold& m) {
   n.old_friction = impulses.friction;
   n.old_moment = impulses.moment;
   n.slid_limit = slide_limit;
-  contact_store.points += static_cast<std::uint32_t>(n.count) - c.count;
+  s_.contact_store.points += static_cast<std::uint32_t>(n.count) - c.count;
   c.count = static_cast<std::uint8_t>(n.count);
   for (int i = 0; i < n.count; ++i) {
     c.feature[i] = m.points[i].feature;
     c.position[i] = m.points[i].position;
   }
-  const solve::BodyRow &row_a = body_rows[end_a.row], &row_b = body_rows[end_b.row];
+  const solve::BodyRow &row_a = s_.body_rows[end_a.row], &row_b = s_.body_rows[end_b.row];
   if (c.slot.points == 1) {
     write_slot(graph.block<1>(c.slot), solve::ContactGraph::lane(c.slot), n, row_a, row_b);
     graph.block<1>(c.slot).touches.lane[solve::ContactGraph::lane(c.slot)] = c.touching ? 1 : 0;

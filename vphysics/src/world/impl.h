@@ -18,6 +18,7 @@
 #include "world/articulation.h"
 #include "world/body.h"
 #include "world/collider.h"
+#include "world/contact_search.h"
 #include "world/contact_store.h"
 #include "world/digest.h"
 #include "world/events.h"
@@ -25,7 +26,6 @@
 #include "world/joint.h"
 #include "world/joint_steps.h"
 #include "world/loads.h"
-#include "world/narrow_phase.h"
 #include "world/parallel.h"
 #include "world/regions.h"
 #include "world/row_joints.h"
@@ -49,13 +49,6 @@ struct SubStepState {
                         // 0: none yet [s]
   double last_step_length = 0.0;  // sub-step length that scales the bias velocity [s]
   bool position_error = false;    // the last step ended with one, of contacts or joints
-};
-
-// What find_contacts_within_step() has changed.
-struct SearchedAgain {
-  bool has_new_slots = false;  // contact slots, new or with other points
-  bool has_old_slots = false;  // of those that had impulses before, or woken bodies
-  bool has_woken = false;      // bodies, whose slots have no inertias yet
 };
 
 struct World::Impl {
@@ -103,8 +96,7 @@ struct World::Impl {
   // --- of the current step
   double dt_now = 0.0;  // 0: no step is running
   bool finds_contacts = false;
-  bool position_error_now = false;  // of contacts or joints, so far
-  NarrowPhaseScratch narrow;
+  bool position_error_now = false;         // of contacts or joints, so far
   std::vector<std::uint32_t> lost_bodies;  // bodies that left the range of numbers in the sub-steps
 
   const StepContext context{
@@ -117,6 +109,7 @@ struct World::Impl {
       events,
       step_contacts,
       position_error_now};
+  ContactSearch contact_search{context};
 
   // recorder.cpp; precondition: there is a recorder.
   void log(const RecordedCall& call);
@@ -207,6 +200,8 @@ struct World::Impl {
   InStage in(Stage stage) const { return context.in(stage); }
   void count_contacts();
   void run(double dt);
+  void find_contacts(double dt);
+  SearchedAgain find_contacts_within_step(double left);
   void feel_forces(double dt);
   void take_back_forces(double h);
 
@@ -256,30 +251,6 @@ struct World::Impl {
   void take_back_row_joints(const RowJointStep& step);
   void note_open_row_joints();
 
-  // find_contacts.cpp
-  bool has_contacts_to_find() const;
-  void find_contacts(double dt);
-  void find_new_contacts();
-  void find_dirty_contacts(double dt);
-  void drop_separated_link_contacts();
-  bool has_separated(const Contact& contact) const;
-  void drop_contact(std::uint32_t contact);
-  void add_contact_pair(std::uint32_t collider_i, std::uint32_t collider_j);
-  void remove_contact(std::uint32_t contact);
-  void take_over(const NarrowPhaseResult& results);
-  void assign_slot(std::uint32_t contact, const collide::Manifold& manifold);
-  void update_dirty_contacts(double dt);
-  void list_dirty_contacts(double dt, bool first);
-  void find_manifolds_of(std::span<const std::uint32_t> contacts, double dt);
-  void note_limits(const collide::Manifold& manifold);
-
-  // find_again.cpp
-  void load_inertias_of(const Contact& contact);
-  bool list_deviating_bodies(double left);
-  void advance_within_step(std::uint32_t body);
-  void list_contacts_of_deviating(double left);
-  SearchedAgain find_contacts_within_step(double left);
-
   // link_contacts.cpp
   void find_bodies_on_links();
   void put_on_link(std::uint32_t body, Articulation& articulation);
@@ -298,9 +269,6 @@ struct World::Impl {
   void send_to_sleep();
   void wake(std::uint32_t body) { vp::wake(context, body); }
   void wake_neighbours(std::uint32_t body);
-
-  // part_contacts.cpp
-  void find_parts(const NarrowPhaseResult& look);
 
   // sub_steps.cpp
   void run_sub_steps(double dt);

@@ -34,12 +34,6 @@ struct JointScratch {
   solve::LargeVector<solve::Gone> displacements;  // by row, for bodies with joints
 };
 
-struct BodyAtStart {
-  std::uint32_t body;
-  SE3 T;
-  Vec3 w, v;
-};
-
 // Data of the sub-steps of a step. Keeps its capacity between steps.
 struct SubStepScratch {
   BlockBits blocks;
@@ -48,11 +42,6 @@ struct SubStepScratch {
   std::vector<std::array<float, 6>>
       start_displacements;  // of each body: displacement of its row at the start of the step
   solve::LargeVector<solve::SearchedMotion> searched;  // of each body
-  // Scratch of find_contacts_within_step(): a flag of each awake body; bodies; bodies in their
-  // poses within the step, and their state at its start.
-  std::vector<std::uint8_t> deviates;
-  std::vector<std::uint32_t> deviating;
-  std::vector<BodyAtStart> advanced;
   FastRotationScratch fast_rotation;
   // Of each awake body; 1: its row alone does not advance it.
   std::vector<std::uint8_t> awake_body_changed;

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "world/impl.h"
+#include "world/contact_search.h"
 #include "world/lane_fields.h"
 
 namespace vp {
@@ -56,79 +56,81 @@ std::uint32_t claim_part(const ContactStore& contacts, const Colliders& collider
 
 }  // namespace
 
-void World::Impl::find_parts(const NarrowPhaseResult& look) {
+void ContactSearch::find_parts(const NarrowPhaseResult& look) {
   const std::uint32_t index = look.contact;
-  const Collider &a = colliders[contact_store[index].a], &b = colliders[contact_store[index].b];
-  const std::uint32_t first = contact_store[index].first_part;
-  if (first != kNone && contact_store[first].parked) {
-    wake(a.body);
-    wake(b.body);
+  const Collider &a = s_.colliders[s_.contact_store[index].a],
+                 &b = s_.colliders[s_.contact_store[index].b];
+  const std::uint32_t first = s_.contact_store[index].first_part;
+  if (first != kNone && s_.contact_store[first].parked) {
+    wake(s_, a.body);
+    wake(s_, b.body);
   }
-  narrow.known_parts.clear();
-  narrow.old_parts.clear();
-  for (std::uint32_t p = first; p != kNone; p = contact_store[p].next_part) {
-    const Contact& part = contact_store[p];
-    narrow.known_parts.push_back({part.sub_a, part.sub_b, part.cache});
-    narrow.old_parts.push_back(p);
+  known_parts_.clear();
+  old_parts_.clear();
+  for (std::uint32_t p = first; p != kNone; p = s_.contact_store[p].next_part) {
+    const Contact& part = s_.contact_store[p];
+    known_parts_.push_back({part.sub_a, part.sub_b, part.cache});
+    old_parts_.push_back(p);
   }
-  shapes.manifolds.clear();
-  const Body &body_a = bodies[a.body], &body_b = bodies[b.body];
+  s_.shapes.manifolds.clear();
+  const Body &body_a = s_.bodies[a.body], &body_b = s_.bodies[b.body];
   const Vec3 about = reference_point(body_b), arm = about - reference_point(body_a);
   const collide::SearchMargin by_part(look.margin, look.margin_at_rest,
-                                      dt_now * (body_b.v - body_a.v - cross(body_a.w, arm)),
-                                      dt_now * (body_b.w - body_a.w), about);
+                                      s_.dt * (body_b.v - body_a.v - cross(body_a.w, arm)),
+                                      s_.dt * (body_b.w - body_a.w), about);
   find_manifolds(
       a.geometry, a.T, b.geometry, b.T, look.by_part ? by_part : collide::SearchMargin(look.margin),
-      contact_store[index].cache, narrow.known_parts, shapes.manifold_scratch, shapes.manifolds);
-  for (const collide::SubManifold& found : shapes.manifolds) note_limits(found.manifold);
-  if (contact_store[index].sensor) {
-    const bool touches = !shapes.manifolds.empty();
-    if (touches != contact_store[index].touching)
-      events.touch(colliders, contact_store[index], touches);
+      s_.contact_store[index].cache, known_parts_, s_.shapes.manifold_scratch, s_.shapes.manifolds);
+  for (const collide::SubManifold& found : s_.shapes.manifolds)
+    s_.status.distance_limit |= found.manifold.rough;
+  if (s_.contact_store[index].sensor) {
+    const bool touches = !s_.shapes.manifolds.empty();
+    if (touches != s_.contact_store[index].touching)
+      s_.events.touch(s_.colliders, s_.contact_store[index], touches);
     return;
   }
   double clearance = look.clearance;
-  if (shapes.manifolds.empty()) {
-    clearance = std::max(
-        clearance, distance_of_parts(a.geometry, a.T, b.geometry, b.T, shapes.parts_scratch.cast) -
-                       desc.contact_slop);
+  if (s_.shapes.manifolds.empty()) {
+    clearance = std::max(clearance, distance_of_parts(a.geometry, a.T, b.geometry, b.T,
+                                                      s_.shapes.parts_scratch.cast) -
+                                        s_.desc.contact_slop);
   }
-  contact_store.set_clearance(contact_store[index], clearance, body_set);
-  narrow.claimed_parts.clear();
-  for (const collide::SubManifold& found : shapes.manifolds)
-    narrow.claimed_parts.push_back(claim_part(contact_store, colliders, narrow.old_parts, found));
-  for (const std::uint32_t p : narrow.old_parts) {
-    if (p != kNone) contact_store.remove(p, body_set);
+  s_.contact_store.set_clearance(s_.contact_store[index], clearance, s_.body_set);
+  claimed_parts_.clear();
+  for (const collide::SubManifold& found : s_.shapes.manifolds)
+    claimed_parts_.push_back(claim_part(s_.contact_store, s_.colliders, old_parts_, found));
+  for (const std::uint32_t p : old_parts_) {
+    if (p != kNone) s_.contact_store.remove(p, s_.body_set);
   }
   std::uint32_t last = kNone;
-  for (std::size_t k = 0; k < shapes.manifolds.size(); ++k) {
-    collide::SubManifold& found = shapes.manifolds[k];
-    std::uint32_t p = narrow.claimed_parts[k];
+  for (std::size_t k = 0; k < s_.shapes.manifolds.size(); ++k) {
+    collide::SubManifold& found = s_.shapes.manifolds[k];
+    std::uint32_t p = claimed_parts_[k];
     if (p == kNone) {
       Contact part;
-      part.key = contact_store[index].key;
-      part.a = contact_store[index].a;
-      part.b = contact_store[index].b;
+      part.key = s_.contact_store[index].key;
+      part.a = s_.contact_store[index].a;
+      part.b = s_.contact_store[index].b;
       part.aggregate = index;
       part.dirty = false;
       part.sub_a = found.sub_a;
       part.sub_b = found.sub_b;
-      p = contact_store.add(part, body_set);
+      p = s_.contact_store.add(part, s_.body_set);
     }
-    Contact& part = contact_store[p];
+    Contact& part = s_.contact_store[p];
     part.sub_a = found.sub_a;
     part.sub_b = found.sub_b;
     part.cache = found.cache;
     part.next_part = kNone;
-    (last == kNone ? contact_store[index].first_part : contact_store[last].next_part) = p;
+    (last == kNone ? s_.contact_store[index].first_part : s_.contact_store[last].next_part) = p;
     last = p;
     put_deepest_first(found.manifold);
     assign_slot(p, found.manifold);
   }
-  if (last == kNone) contact_store[index].first_part = kNone;
-  const Contact& aggregate = contact_store[index];
-  if (aggregate.touching && !contact_store.touches_in_parts(aggregate))
-    events.part_events.push_back({index, kNone, 0.0, 0.0, {}, {}});
+  if (last == kNone) s_.contact_store[index].first_part = kNone;
+  const Contact& aggregate = s_.contact_store[index];
+  if (aggregate.touching && !s_.contact_store.touches_in_parts(aggregate))
+    s_.events.part_events.push_back({index, kNone, 0.0, 0.0, {}, {}});
 }
 
 }  // namespace vp

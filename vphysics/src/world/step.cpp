@@ -44,7 +44,6 @@ void World::Impl::begin_step(double dt) {
   counters = {};
   shapes.manifold_scratch.triangles_tested = 0;
   shapes.manifold_scratch.crowded = shapes.manifold_scratch.rough = false;
-  narrow.renewed = 0;
   events.clear();
   step_contacts.clear();
   impacts.next_records.clear();
@@ -54,10 +53,7 @@ void World::Impl::begin_step(double dt) {
   impacts.records.reserve(capacity);
   impacts.next_records.reserve(capacity);
   contact_store.reserve(capacity);
-  for (auto* list : {&narrow.dirty, &narrow.dirty_next_step})
-    list->reserve(contact_store.dirty.capacity());
-  narrow.results.reserve(std::min(capacity, kNarrowPhaseBatch));
-  narrow.to_pose.reserve(n);
+  contact_search.begin_step(capacity);
   lost_bodies.reserve(n);
   sleep_islands.reserve(n);
   for (const std::uint32_t i : impacts.bodies_on_links) bodies[i].on_link = false;
@@ -67,7 +63,6 @@ void World::Impl::begin_step(double dt) {
     art.forget_step();
   }
   list_bodies();
-  narrow.new_pairs.reserve(capacity);
   body_rows.resize(n + 1);
   contact_store.graph.resize(n + 1);
   divide_into_regions(dt);
@@ -77,16 +72,13 @@ void World::Impl::begin_step(double dt) {
   sub_step.start_displacements.resize(n);
   sub_step.velocity_changes.resize(n);
   sub_step.searched.resize(n);
-  sub_step.deviating.reserve(n);
-  sub_step.deviates.reserve(n);
   sub_step.fast_rotation.rotates_fast.reserve(n);
-  sub_step.fast_rotation.shortened.reserve(64 + n / 8);  // grows, as the next
-  sub_step.advanced.reserve(64 + n / 8);  // grows in a step in which more bodies deviate
+  sub_step.fast_rotation.shortened.reserve(64 + n / 8);  // grows if more bodies rotate fast
   impacts.row_joints.clear();
   if (has_impact_stage()) begin_impact_stage(dt);
   sub_step.joints.active.reserve(joints.size());
   events.report_destroyed(colliders);
-  finds_contacts = has_contacts_to_find();
+  finds_contacts = contact_search.is_needed();
   if (lists.some_sub_stepped) load_rows(dt);
   if (finds_contacts) {
     for (const std::uint32_t i : lists.links) update_bounds(context, i, dt, false);
@@ -431,6 +423,27 @@ void World::Impl::run(double dt) {
   run_impacts(dt);
 }
 
+void World::Impl::find_contacts(double dt) {
+  {
+    const auto stage = in(Stage::broad_phase);
+    contact_search.find_pairs();
+    find_bodies_on_links();
+  }
+  contact_search.update(dt, contact_runs());
+}
+
+// Before a sub-step.
+SearchedAgain World::Impl::find_contacts_within_step(double left) {
+  SearchedAgain changed = contact_search.find_again(left);
+  const std::size_t awake = lists.awake_bodies.size();
+  list_bodies();
+  changed.has_woken = lists.awake_bodies.size() != awake;
+  changed.has_old_slots |= changed.has_woken;
+  changed.has_new_slots |= changed.has_old_slots;
+  sub_step.awake_body_changed.resize(lists.awake_bodies.size());
+  return changed;
+}
+
 void World::Impl::feel_forces(double dt) {
   const auto stage = in(Stage::forces);
   integrate_forces(dt);
@@ -462,7 +475,7 @@ void World::Impl::count_contacts() {
   counters.regions = regions.state.count;
   if (colours.has(solve::kLastColour)) status.colour_limit = true;
   counters.pairs += counters.manifolds + contact_store.speculative.size();
-  counters.recycled = counters.manifolds - std::min(counters.manifolds, narrow.renewed);
+  counters.recycled = counters.manifolds - std::min(counters.manifolds, contact_search.renewed());
   counters.events = static_cast<std::uint32_t>(events.all().size());
 }
 

@@ -92,7 +92,7 @@ void World::Impl::drop_contacts(std::uint32_t index) {
       events.destroyed.push_back({colliders.id(c.a), colliders.id(c.b), c.sensor});
       c.touching = false;
     }
-    drop_contact(contact);
+    contact_search.drop(contact);
   });
   ready_for_queries = false;
 }

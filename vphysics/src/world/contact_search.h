@@ -1,0 +1,103 @@
+// Finds the contacts of the sub-stepped bodies and updates their manifolds.
+//
+//   find_pairs   new pairs of the broad phase become contacts
+//   update       tests the dirty contacts: those that may have moved by more than a small amount
+//                since their last test. The others keep their slots, whose separations follow the
+//                bodies' displacements (contact_block.h)
+//   find_again   before a sub-step: the same for bodies whose velocity has changed since
+//
+// Reads the bodies, their colliders and solver rows. Writes the contact store, and reports the
+// events of contacts that end and of sensors. Wakes bodies that a manifold connects.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "world/runs.h"
+#include "world/step_context.h"
+
+namespace vp {
+
+// The result of the narrow phase for one contact.
+struct NarrowPhaseResult {
+  std::uint32_t contact;
+  collide::Manifold manifold;
+  // Search distances, with motion and at rest, and the distance that is free of contact [m].
+  double margin, margin_at_rest, clearance;
+  bool by_part;  // of a compound: each part has its own margin
+};
+
+// Contacts that are tested in one batch, before their results are taken over: with their colliders
+// and bodies they fit into the second-level cache.
+inline constexpr std::size_t kNarrowPhaseBatch = 512;
+
+// What find_again() has changed.
+struct SearchedAgain {
+  bool has_new_slots = false;  // contact slots, new or with other points
+  bool has_old_slots = false;  // of those that had impulses before, or woken bodies
+  bool has_woken = false;      // bodies, whose slots have no inertias yet
+};
+
+class ContactSearch {
+ public:
+  explicit ContactSearch(const StepContext& context) : s_(context) {}
+
+  // Reserves memory for a number of contacts.
+  void begin_step(std::size_t contacts);
+  // Swept bodies and links collide only in the impact stage. A sleeping body collides with bodies
+  // that were created or moved by the user since the last step, and with links.
+  bool is_needed() const;
+  void find_pairs();
+  void update(double dt, const ContactRuns& runs);
+  // left: remaining time of the step. has_woken is left to the caller, who updates the body lists.
+  SearchedAgain find_again(double left);
+  // Removes a contact and its pair of the broad phase.
+  void drop(std::uint32_t contact);
+  // Manifolds put into contact slots in this step.
+  std::uint32_t renewed() const { return renewed_; }
+
+ private:
+  // The state at the start of the step of a body in its pose of a sub-step.
+  struct BodyAtStart {
+    std::uint32_t body;
+    SE3 T;
+    Vec3 w, v;
+  };
+
+  // find_contacts.cpp
+  void find_new_contacts();
+  void drop_separated_link_contacts();
+  bool has_separated(const Contact& contact) const;
+  void add_contact_pair(std::uint32_t collider_i, std::uint32_t collider_j);
+  void find_dirty_contacts(double dt, const ContactRuns& runs);
+  void list_dirty_contacts();
+  void find_manifolds_of(std::span<const std::uint32_t> contacts, double dt);
+  void take_over(const NarrowPhaseResult& found);
+  void assign_slot(std::uint32_t contact, const collide::Manifold& manifold);
+  // part_contacts.cpp
+  void find_parts(const NarrowPhaseResult& look);
+  // find_again.cpp
+  void load_inertias_of(const Contact& contact);
+  bool list_deviating_bodies(double left);
+  void advance_within_step(std::uint32_t body);
+  void list_contacts_of_deviating(double left);
+
+  const StepContext s_;
+  std::uint32_t renewed_ = 0;
+  // Contacts without a slot that the next step must test: sensors, and those that have to wait.
+  std::vector<std::uint32_t> dirty_next_step_;
+
+  // --- scratch; keeps its capacity between steps
+  std::vector<collide::ProxyPair> new_pairs_;
+  std::vector<std::uint32_t> dirty_;    // contacts of this iteration
+  std::vector<std::uint32_t> to_pose_;  // bodies
+  std::vector<NarrowPhaseResult> results_;
+  std::vector<collide::KnownPart> known_parts_;  // of a contact with parts
+  std::vector<std::uint32_t> old_parts_, claimed_parts_;
+  std::vector<std::uint8_t> deviates_;    // of each awake body
+  std::vector<std::uint32_t> deviating_;  // bodies
+  std::vector<BodyAtStart> advanced_;
+};
+
+}  // namespace vp
