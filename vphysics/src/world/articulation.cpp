@@ -192,7 +192,7 @@ void Articulation::find_responses() {
   same_drive_as_previous_.assign(v.size(), 0);
 }
 
-// All stops are so far that none gets a row (add_stops(), articulations.cpp).
+// All stops are so far that none gets a row (add_stops(), row_solve.cpp).
 bool Articulation::stops_are_inactive(double h) const {
   for (const std::size_t i : stopped_) {
     const JointDof& dof = dofs[i];

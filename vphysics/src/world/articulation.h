@@ -126,7 +126,7 @@ class Articulation {
   // --- in sub-steps, while sub-stepped bodies are on its links (link_contacts.cpp)
   bool sub_stepped = false;      // in this step
   bool touched = false;          // by a contact of the current instant, in the impact stage
-  bool needs_next_pose = false;  // scratch of find_next_poses (link_joints.cpp)
+  bool needs_next_pose = false;  // scratch of find_next_poses (row_solve.cpp)
   // Stores the velocities at which advance_sub_step() moves: v with the solver's changes so far.
   // end_solve() may still change v.
   void store_sub_step_velocity();

@@ -99,11 +99,9 @@ const std::vector<std::uint32_t>& BodyLists::of_impacts(const Bodies& bodies) {
 
 void World::Impl::list_bodies() {
   if (!lists.refresh(bodies)) return;
-  impacts.swept_body_pairs.invalidate();
   regions.sort(bodies, lists.awake_bodies);
-  list_remote_articulations();
-  impacts.discrete_body_pairs.list_filters(bodies);
-  reserve_link_rows();
+  impacts.list_bodies();
+  row_solve.reserve();
 }
 
 void restart_displacement(const Stores& s, std::uint32_t index) {
@@ -229,7 +227,7 @@ void World::Impl::jumped(std::uint32_t index) {
   contact_store.mark_contacts_dirty(bodies[index]);
   std::fill_n(body.bounded_at, 6, 1e9f);
   if (body.motion != Motion::fixed) return;
-  impacts.swept_body_pairs.invalidate();
+  impacts.invalidate_pairs();
   pose_colliders(bodies[index], colliders);
   for (std::uint32_t c = body.first_collider; c != kNone; c = colliders[c].next) {
     finder.set_bounds(colliders[c].proxy, colliders[c].bounds, kMargin * colliders[c].size);

@@ -36,20 +36,6 @@ void add_points_of(const Contact& c, const solve::ContactBlock<P>& block, bool o
 
 }  // namespace
 
-// Records the impulses of the last solve().
-void World::Impl::note_contacts(std::span<const solve::ContactConstraint> solved) {
-  for (const solve::ContactConstraint& c : solved) {
-    for (int i = 0; i < c.count; ++i) {
-      const solve::ContactPoint& p = c.points[i];
-      if (p.normal_impulse <= 0.0) continue;
-      step_contacts.push_back(
-          {colliders.id(c.collider_a), colliders.id(c.collider_b), p.position, c.normal,
-           p.normal_impulse,
-           p.tangent_impulse[0] * c.tangent[0] + p.tangent_impulse[1] * c.tangent[1]});
-    }
-  }
-}
-
 void World::contacts_of(BodyId id, std::vector<ContactPoint>& points) const {
   const Body* body = impl_->find(id);
   VP_ASSERT(body && "contacts_of: the body does not exist (any more)");

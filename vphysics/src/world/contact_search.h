@@ -1,8 +1,9 @@
 // Finds the contacts of the sub-stepped bodies and updates their manifolds.
 //
 //   find_pairs   new pairs of the broad phase become contacts
-//   update       tests the dirty contacts: those that may have moved by more than a small amount
-//                since their last test. The others keep their slots, whose separations follow the
+//   update       removes the dirty contacts whose enlarged bounds have separated and tests the
+//                others; dirty are those that may have moved by more than a small amount since the
+//                last test. All other contacts keep their slots, whose separations follow the
 //                bodies' displacements (contact_block.h)
 //   find_again   before a sub-step: the same for bodies whose velocity has changed since
 //

@@ -83,7 +83,7 @@ class World::Impl::Drawing {
         draw_contact(c, world_.contact_store.graph.block<4>(c.slot));
       }
     }
-    for (const PairRecord& record : world_.impacts.records) draw_record(record);
+    for (const PairRecord& record : world_.pair_contacts.records()) draw_record(record);
   }
 
  private:

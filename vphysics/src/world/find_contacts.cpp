@@ -1,10 +1,4 @@
-// Finds the contacts and updates their manifolds.
-//
-//   broad phase     new pairs become contacts
-//   dirty contacts  those that may have moved by more than a small amount since the last test; the
-//                   ones whose enlarged bounds have separated are removed
-//   narrow phase    tests only these; the others keep their slots, whose separations follow the
-//                   bodies' displacements (contact_block.h)
+// The search for contacts at the start of a step.
 #include <algorithm>
 #include <bit>
 #include <cmath>

@@ -1,85 +1,163 @@
-// Data of the impact stage, which handles continuous bodies and links in the order of time
-// (step.cpp, contacts.cpp), and of links in the sub-steps (link_contacts.cpp).
+// The impact stage: moves continuous bodies and links through a step in the order of time.
+//
+//   begin_step          pairs, warm starts for the length of the step
+//   integrate_forces    of the bodies that no sub-step moves
+//   note_sub_steps_of   the other bodies: how the sub-steps have moved them
+//   run                 contacts at the start of the step, then one impact after the other
+//                       (impacts.cpp); at the end all bodies are at the end of the step
+//
+// Reads colliders, loads and the contact store's filters. Writes poses and velocities of bodies and
+// articulations, the records of pairs, events, status and counters. Wakes bodies that a moving one
+// may meet.
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
-#include "solve/contact_solver.h"
-#include "solve/instant_scratch.h"
+#include "collide/sweep.h"
 #include "world/impact_pairs.h"
 #include "world/impact_queue.h"
+#include "world/pair_contacts.h"
+#include "world/row_solve.h"
 
 namespace vp {
 
-struct PairPoint {
-  std::uint32_t feature;
-  double normal_impulse;
-  Vec3 friction;  // world frame
-  Vec3 position;  // world frame
-};
+class ImpactStage {
+ public:
+  ImpactStage(const StepContext& context, PairContacts& pair_contacts, RowSolve& rows)
+      : s_(context), pair_contacts_(pair_contacts), rows_(rows) {}
 
-// State of a pair of colliders that persists between steps.
-struct PairRecord {
-  std::uint64_t key = 0;  // serials of both
-  std::uint32_t a = 0, b = 0;
-  std::uint32_t part = 0;  // index of the manifold, for pairs with several
-  std::uint32_t count = 0;
-  bool touching = false;  // the pair touches; only of part 0
-  Vec3 rolling;
-  PairPoint points[collide::kMaxPoints]{};
-};
+  // The lists of bodies have changed.
+  void list_bodies();
+  // A fixed body was moved.
+  void invalidate_pairs() { swept_body_pairs_.invalidate(); }
 
-// Whether the current impact affects a body (impacts.cpp).
-enum class Concern : std::uint8_t { none, listed, searched };
+  // Reserves memory for a number of pairs.
+  void begin_step(double dt, std::size_t pairs);
+  void integrate_forces(double dt);
+  // drift: mean velocity over the step less that at its end.
+  void note_sub_steps_of(std::uint32_t body, const Velocity& drift);
+  std::span<Velocity> drift() { return drift_; }
+  void run(double dt);
 
-struct ImpactStage {
-  // State, sorted by key and part; next_records: of the current step.
-  std::vector<PairRecord> records, next_records;
-  // State: length of the step in which the impulses of records and of articulations' joints were
-  // computed [s]; 0: none yet.
-  double step = 0.0;
+  // State: the length of the step that impulses in rows and records are from, 0: none yet [s].
+  double step_length() const { return step_length_; }
+  void set_step_length(double length) { step_length_ = length; }
+
+ private:
+  // Whether the current impact affects a body.
+  enum class Concern : std::uint8_t { none, listed, searched };
+
+  // impact_motions.cpp
+  const std::vector<std::uint32_t>& moving_bodies() const { return s_.lists.of_impacts(s_.bodies); }
+  void rescale_impulses(double dt);
+  void load_body(std::uint32_t body);
+  void load_bodies(std::span<const std::uint32_t> of);
+  collide::Motion motion_of(const Body& body, const Velocity& drift, double h) const;
+  void refresh_motions(double h);
+  void refresh_motion_of(std::uint32_t body, double h);
+  void refresh_displacements(double h);
+  void advance_discrete_contacts(double h);
+  void apply_corrections(std::span<const std::uint32_t> of);
+  void take_back_forces(double h);
+
+  // remote.cpp
+  bool can_be_remote(const Articulation& articulation) const;
+  bool is_near_awake_body(const collide::Bounds& box) const;
+  void collide_remote(double h);
+  void make_remote();
+
+  // pairs.cpp
+  BodyMotions body_motions() const { return {s_.bodies, motions_, bounds_}; }
+  ImpactTimes impact_times() {
+    return {s_.colliders, motions_, s_.desc.contact_slop, s_.shapes.parts_scratch};
+  }
+  void refresh_bounds(double h);
+  void refresh_bounds_of(std::uint32_t body, double h);
+  double discrete_margin(const ColliderPair& pair, double h) const;
+  void find_discrete_pairs(double h);
+  void find_touching_pairs(double h);
+  void find_swept_pairs(double h);
+  void add_swept_pairs_of(const collide::IndexPair& pair, double h);
+  void add_swept_pairs(std::uint32_t swept_body, std::uint32_t other_body, double h);
+  void sort_swept_pairs();
+
+  // impact_contacts.cpp
+  void find_discrete_contacts(double h);
+  void find_swept_contacts(bool warm);
+  void note_touched_articulations();
+  void note_joined_bodies();
+  RowJointStep row_joint_step(double h, double dt, bool first) const;
+  bool solve_instant(std::span<const std::uint32_t> solved, double h, double dt, bool first);
+  void solve_contacts(double h, double dt, bool first);
+  void carry(std::uint32_t body, const Vec3& change_w, const Vec3& change_v);
+
+  // impact_articulations.cpp
+  void integrate_articulations(double dt);
+  void integrate_forces_of(Articulation& articulation, double dt);
+  void restore_warm_starts();
+  bool integrate_saturated_again(double dt, bool solved, bool all_become_rows);
+  void begin_solve_articulations(bool first);
+  void end_solve_articulations(bool first);
+  void store_implicit_impulses();
+  void advance_articulations(double h);
+  void hold(std::uint32_t body);
+
+  // impacts.cpp
+  void queue_swept_pairs(double now, double h);
+  double time_of(const SweptPair& swept, double h);
+  void look_at_waiting(std::uint32_t pair, const Instant& now);
+  bool next_impact(const Instant& now, Instant& next);
+  void report_reached_sensors();
+  void bring(std::uint32_t body, const Instant& now);
+  void bring_concerned(std::uint32_t body, const Instant& now);
+  void move_within_step(std::uint32_t body, double h, bool freely);
+  void concern(std::uint32_t body);
+  void advance_links(const Instant& previous, const Instant& now);
+  void refresh_links(double h);
+  void concern_bodies_that_meet(const Instant& now);
+  bool touches_at(const QueuedPair& pair, const Instant& now);
+  void concern_what_touches(const Instant& now);
+  void find_swept_pairs_of(std::uint32_t body, const Instant& now, double h);
+  void find_swept_pairs_of_concerned(const Instant& now);
+  void solve_impact(const Instant& previous, const Instant& now);
+  void stop_swept_pairs(const Instant& now, double h);
+  void stop_what_would_hit(const Instant& now);
+  void advance_to_end(const Instant& now);
+
+  const StepContext s_;
+  PairContacts& pair_contacts_;
+  RowSolve& rows_;
+  double step_length_ = 0.0;
   // Bodies were added or removed: drift and forced of bodies outside the list may not be 0.
-  bool scratch_is_dirty = true;
-  SweptBodyPairs swept_body_pairs;
-  DiscreteBodyPairs discrete_body_pairs;
+  bool scratch_is_dirty_ = true;
+  SweptBodyPairs swept_body_pairs_;
+  DiscreteBodyPairs discrete_body_pairs_;
 
   // --- of each body
-  std::vector<SE3> start_poses;
-  std::vector<collide::Motion> motions;     // for the rest of the step
-  std::vector<collide::Bounds> bounds;      // swept bounds for the rest of the step
-  std::vector<Velocity> drift;              // mean velocity over the step less that at its end
-  std::vector<Velocity> forced;             // velocity change from the step's forces
-  std::vector<std::uint8_t> stopped;        // at rest for the rest of the step
-  std::vector<std::uint8_t> in_contact;     // in a swept contact of the last solve
-  std::vector<std::uint8_t> moves_rigidly;  // moves to its next impact at the twist of its sweep
+  std::vector<SE3> start_poses_;
+  std::vector<collide::Motion> motions_;     // for the rest of the step
+  std::vector<collide::Bounds> bounds_;      // swept bounds for the rest of the step
+  std::vector<Velocity> drift_;              // mean velocity over the step less that at its end
+  std::vector<Velocity> forced_;             // velocity change from the step's forces
+  std::vector<std::uint8_t> stopped_;        // at rest for the rest of the step
+  std::vector<std::uint8_t> in_contact_;     // in a swept contact of the last solve
+  std::vector<std::uint8_t> moves_rigidly_;  // moves to its next impact at the twist of its sweep
   // Of a free body: the time within the step of its pose. Links are at the last impact.
-  std::vector<double> times;
-  std::vector<std::uint8_t> brought;  // has advanced within the step
-  std::vector<Concern> concerns;
-  std::vector<double> first_impacts;  // of each body, among the pairs that are being queued [s]
-  std::vector<solve::SolverBody> solver_bodies;
+  std::vector<double> times_;
+  std::vector<std::uint8_t> brought_;  // has advanced within the step
+  std::vector<Concern> concerns_;
+  std::vector<double> first_impacts_;  // among the pairs that are being queued [s]
 
   // --- of an impact
-  std::vector<std::uint32_t> concerned, moved;  // bodies
-  std::vector<std::uint32_t> reached_sensors;   // pairs of the queue
-  std::vector<ColliderPair> discrete_pairs;
-  std::vector<SweptPair> swept_pairs;
-  std::vector<solve::ContactConstraint> discrete_contacts, contacts;
-  std::vector<solve::JointRow> joint_rows;
-  std::vector<solve::JointPair> joint_pairs;
-  std::vector<solve::SolverArticulation> solver_articulations;
-  std::vector<double> link_rows;
-  solve::InstantScratch instant;
+  std::vector<std::uint32_t> concerned_, moved_;  // bodies
+  std::vector<std::uint32_t> reached_sensors_;    // pairs of the queue
+  std::vector<ColliderPair> discrete_pairs_;
+  std::vector<SweptPair> swept_pairs_;
+  std::vector<solve::ContactConstraint> discrete_contacts_, contacts_;
 
-  // --- of a step
-  ImpactQueue queue;
-  std::vector<std::uint32_t> row_joints;  // alive joints in rows (row_joints.h)
-  std::vector<SE3> next_poses;            // of each body: next pose, of links in these joints
-
-  // --- of the sub-steps
-  std::vector<solve::ContactConstraint> link_contacts;
-  std::vector<std::uint32_t> bodies_on_links;
+  ImpactQueue queue_;  // of a step
 };
 
 }  // namespace vp

@@ -1,7 +1,8 @@
 // What a world owns: stores, the parts that work on them, and the order of the step (step.cpp).
 //
-// A part gets the data that it works on with each call and does not know the world. The methods
-// here connect the parts, such as waking, which touches most of them, and help the public calls.
+// A part knows the stores and what the step puts out (step_context.h), or gets the data that it
+// works on with each call; it does not know the world. The methods here connect the parts and help
+// the public calls.
 #pragma once
 
 #include <array>
@@ -13,22 +14,12 @@
 #include <vector>
 
 #include "collide/shape_query.h"
-#include "collide/sweep.h"
-#include "solve/contact_slot.h"
-#include "world/articulation.h"
-#include "world/body.h"
-#include "world/collider.h"
 #include "world/contact_search.h"
-#include "world/contact_store.h"
 #include "world/digest.h"
-#include "world/events.h"
 #include "world/impact_stage.h"
-#include "world/joint.h"
 #include "world/joint_steps.h"
-#include "world/loads.h"
-#include "world/parallel.h"
+#include "world/link_contacts.h"
 #include "world/regions.h"
-#include "world/row_joints.h"
 #include "world/runs.h"
 #include "world/step_context.h"
 
@@ -80,7 +71,6 @@ struct World::Impl {
   ShapeScratch shapes;
   SubStepScratch sub_step;
   SubStepState sub_step_state;
-  ImpactStage impacts;
   bool ready_for_queries = false;  // nothing has moved since find_strays()
   QueryScratch queries;
   struct Incoming;
@@ -109,7 +99,13 @@ struct World::Impl {
       events,
       step_contacts,
       position_error_now};
+
+  // --- parts of the step, in their order
   ContactSearch contact_search{context};
+  PairContacts pair_contacts{context};
+  RowSolve row_solve{context};
+  LinkContacts link_contacts{context, pair_contacts, row_solve};
+  ImpactStage impacts{context, pair_contacts, row_solve};
 
   // recorder.cpp; precondition: there is a recorder.
   void log(const RecordedCall& call);
@@ -147,86 +143,31 @@ struct World::Impl {
   Expected<void> add_load(const char* call, BodyId id, const Vec3& force, const Vec3& torque);
   void clear_loads();
 
-  // articulations.cpp
-  void reserve_link_rows();
+  // A link's pose and velocities are updated before they are read.
+  void update_if_remote(Articulation& articulation) {
+    if (articulation.remote) follow(articulation);
+  }
+  void update_all_remote() {
+    for (Articulation& art : articulations) update_if_remote(art);
+  }
   void follow(Articulation& articulation) {
     ready_for_queries = false;
     vp::follow(articulation, bodies, lists);
   }
-  void integrate_articulations(double dt);
-  void add_joint_rows(double h, double dt, RowsOf of);
-  void integrate_forces_of(Articulation& art, double dt);
-  bool integrate_saturated_again(double dt, bool solved, bool all_become_rows);
-  RowJointStep row_joint_step(double h, double dt, bool first) const;
-  void store_implicit_impulses();
-  void load_warm_start(std::uint64_t key, std::uint32_t part, bool warm,
-                       solve::ContactConstraint& c) const;
-  void restore_warm_starts();
-  bool solve_instant(std::span<const std::uint32_t> solved, double h, double dt, bool first);
-  void begin_solve_articulations(bool first);
-  void end_solve_articulations(bool first);
-  void advance_articulations(double h);
-  void hold(std::uint32_t body);
-
-  // remote.cpp
-  bool can_be_remote(const Articulation& articulation) const;
-  void list_remote_articulations();
-  bool is_near_awake_body(const collide::Bounds& box) const;
-  void collide_remote(double h);
-  void make_remote();
-  void update_if_remote(Articulation& articulation);
-  void update_all_remote();
 
   // step.cpp
   void begin_step(double dt);
   void divide_into_regions(double dt);
-  void rescale_impacts(double dt);
-  void begin_impact_stage(double dt);
-  void integrate_forces(double dt);
-  solve::SolverBody solver_body(std::uint32_t body, const Vec3& at) const;
-  void refresh_solver_bodies(std::span<const std::uint32_t> of);
-  void note_touched_articulations();
-  void refresh_motions(double h);
-  void refresh_motion_of(std::uint32_t body, double h);
-  void refresh_displacements(double h);
-  collide::Motion motion_of(const Body& body, const Velocity& drift, double h) const;
-  void advance_discrete_contacts(double h);
-  void advance_body(Body& body, const collide::Motion& motion, double h, bool freely,
-                    const Vec3& more_w);
-  void advance_all(double dt);
-  void apply_corrections(std::span<const std::uint32_t> of);
-  void note_position_error();
-  void finish_step();
-  InStage in(Stage stage) const { return context.in(stage); }
-  void count_contacts();
   void run(double dt);
   void find_contacts(double dt);
   SearchedAgain find_contacts_within_step(double left);
   void feel_forces(double dt);
-  void take_back_forces(double h);
-
-  // impacts.cpp
-  void queue_swept_pairs(double now, double h);
-  double time_of(const SweptPair& swept, double h);
-  void look_at_waiting(std::uint32_t pair, const Instant& now);
-  bool next_impact(const Instant& now, Instant& next);
-  void report_reached_sensors();
-  void bring(std::uint32_t body, const Instant& now);
-  void bring_concerned(std::uint32_t body, const Instant& now);
-  void move_within_step(std::uint32_t body, double h, bool freely);
-  void concern(std::uint32_t body);
-  void advance_links(const Instant& previous, const Instant& now);
-  void refresh_links(double h);
-  void concern_bodies_that_meet(const Instant& now);
-  bool touches_at(const QueuedPair& pair, const Instant& now);
-  void concern_what_touches(const Instant& now);
-  void find_swept_pairs_of(std::uint32_t body, const Instant& now, double h);
-  void find_swept_pairs_of_concerned(const Instant& now);
-  void solve_impact(const Instant& previous, const Instant& now);
-  void stop_swept_pairs(const Instant& now, double h);
-  void stop_what_would_hit(const Instant& now);
-  void advance_to_end(const Instant& now);
-  void run_impacts(double dt);
+  bool has_impact_stage() const;
+  void advance_all(double dt);
+  void count_contacts();
+  void note_position_error();
+  void finish_step();
+  InStage in(Stage stage) const { return context.in(stage); }
 
   // bodies.cpp
   void list_bodies();
@@ -239,31 +180,6 @@ struct World::Impl {
 
   // joints.cpp
   void remove_joint(std::uint32_t joint);
-
-  // link_joints.cpp
-  void list_row_joints();
-  void find_bodies_joined_to_links();
-  bool is_in_sub_steps(const BodyJoint& joint) const;
-  void note_joined_bodies();
-  RowEnd row_end(std::uint32_t body, const RowJointStep& step) const;
-  void find_next_poses(double h);
-  void add_row_joints(const RowJointStep& step);
-  void take_back_row_joints(const RowJointStep& step);
-  void note_open_row_joints();
-
-  // link_contacts.cpp
-  void find_bodies_on_links();
-  void put_on_link(std::uint32_t body, Articulation& articulation);
-  void find_link_contacts(double dt, int sub_steps);
-  solve::StepContext link_context(double h);
-  void begin_links(double h);
-  void solve_links(double h);
-  void move_links(double h);
-  void relax_links(double h);
-  void end_links(double dt, int sub_steps);
-  solve::SolverBody solver_body_in_sub_step(std::uint32_t body, double h) const;
-  void load_bodies_on_links();
-  void store_bodies_on_links();
 
   // sleep.cpp
   void send_to_sleep();
@@ -279,40 +195,6 @@ struct World::Impl {
 
   // touches.cpp
   void report_changes();
-
-  // pairs.cpp
-  BodyMotions body_motions() const { return {bodies, impacts.motions, impacts.bounds}; }
-  ImpactTimes impact_times() {
-    return {colliders, impacts.motions, desc.contact_slop, shapes.parts_scratch};
-  }
-  void refresh_bounds(double h);
-  void refresh_bounds_of(std::uint32_t body, double h);
-  void find_discrete_pairs(double h);
-  void find_touching_pairs(double h);
-  void find_swept_pairs(double h);
-  void add_swept_pairs_of(const collide::IndexPair& pair, double h);
-  void add_swept_pairs(std::uint32_t swept_body, std::uint32_t other_body, double h);
-  void sort_swept_pairs();
-  double discrete_margin(const ColliderPair& pair, double h) const;
-
-  // joint_reactions.cpp
-  void note_link_impulses(std::span<const solve::ContactConstraint> solved);
-
-  // contacts.cpp
-  PairRecord& record_of(const ColliderPair& pair, std::uint32_t part = 0);
-  std::span<const collide::SubManifold> manifolds_of(const ColliderPair& pair, double margin);
-  void add_contact(const ColliderPair& pair, const collide::Manifold& manifold, std::uint32_t part,
-                   bool swept, bool warm, std::vector<solve::ContactConstraint>& out);
-  void find_discrete_contacts(double h);
-  void find_swept_contacts(bool warm);
-  void solve_contacts(double h, double dt, bool first);
-  void carry(std::uint32_t body, const Vec3& change_w, const Vec3& change_v);
-  void report_contacts(std::span<const solve::ContactConstraint> solved, double time);
-  bool has_impact_stage() const;
-  void note_contacts(std::span<const solve::ContactConstraint> solved);
-  void remember_impulses(std::span<const solve::ContactConstraint> solved, double scale);
-  void report_ends();
-  void report_sensor(const ColliderPair& pair, const Vec3& point, const Vec3& normal, double time);
 
   class Drawing;  // debug_draw.cpp
 

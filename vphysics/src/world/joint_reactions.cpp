@@ -183,26 +183,6 @@ Vec3 JointReactions::acceleration(int link, const Vec3& point) const {
   return (1.0 / step_) * (velocity(work_->poses[1][l]) - velocity(work_->poses[0][l]));
 }
 
-// Records the impulses of contacts on links in a solve, at the contact points of the solver.
-void World::Impl::note_link_impulses(std::span<const solve::ContactConstraint> solved) {
-  for (const solve::ContactConstraint& c : solved) {
-    const Body &a = bodies[c.a], &b = bodies[c.b];
-    if (!a.is_link && !b.is_link) continue;
-    const Vec3 at = impacts.solver_bodies[c.b].x;
-    Vec3 impulse{}, moment = c.rolling_mass > 0.0 ? c.rolling_impulse : Vec3{};  // on b
-    for (int i = 0; i < c.count; ++i) {
-      const solve::ContactPoint& p = c.points[i];
-      const Vec3 of_point = p.normal_impulse * c.normal + p.tangent_impulse[0] * c.tangent[0] +
-                            p.tangent_impulse[1] * c.tangent[1];
-      impulse += of_point;
-      moment += cross(p.arm_b, of_point);
-    }
-    moment += cross(at, impulse);
-    if (b.is_link) articulations[b.articulation].add_external_impulse(b.link, impulse, moment);
-    if (a.is_link) articulations[a.articulation].add_external_impulse(a.link, -impulse, -moment);
-  }
-}
-
 JointForce World::joint_reaction(ArticulationId id, int link) const {
   Articulation* art = impl_->find(id);
   const bool has = art && link >= 0 && link < art->model().links();

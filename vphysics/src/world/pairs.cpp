@@ -1,7 +1,7 @@
 // Pairs of colliders that may collide within the rest of the step.
 #include <algorithm>
 
-#include "world/impl.h"
+#include "world/impact_stage.h"
 
 namespace vp {
 namespace {
@@ -18,67 +18,67 @@ bool is_swept(const Body& body, const Collider& c) {
 
 }  // namespace
 
-void World::Impl::refresh_bounds(double h) {
-  if (!impacts.swept_body_pairs.dirty()) {
-    for (const std::uint32_t i : lists.of_impacts(bodies)) refresh_bounds_of(i, h);
+void ImpactStage::refresh_bounds(double h) {
+  if (!swept_body_pairs_.dirty()) {
+    for (const std::uint32_t i : moving_bodies()) refresh_bounds_of(i, h);
     return;
   }
-  for (std::uint32_t i = 0; i < bodies.size(); ++i) {
-    if (!bodies[i].remote) refresh_bounds_of(i, h);
+  for (std::uint32_t i = 0; i < s_.bodies.size(); ++i) {
+    if (!s_.bodies[i].remote) refresh_bounds_of(i, h);
   }
 }
-void World::Impl::refresh_bounds_of(std::uint32_t i, double h) {
-  const Body& body = bodies[i];
+void ImpactStage::refresh_bounds_of(std::uint32_t i, double h) {
+  const Body& body = s_.bodies[i];
   if (!body.alive || body.first_collider == kNone) {
-    impacts.bounds[i] = {};
+    bounds_[i] = {};
   } else if (body.unbounded) {
-    impacts.bounds[i] = bounds_at_pose(bodies[i], colliders);
+    bounds_[i] = bounds_at_pose(s_.bodies[i], s_.colliders);
   } else {
-    impacts.bounds[i] = grown(bounds_at_pose(bodies[i], colliders),
-                              desc.contact_slop + travel_of_bounds(body, impacts.motions[i], h));
+    bounds_[i] = grown(bounds_at_pose(s_.bodies[i], s_.colliders),
+                       s_.desc.contact_slop + travel_of_bounds(body, motions_[i], h));
   }
 }
 
-double World::Impl::discrete_margin(const ColliderPair& pair, double h) const {
-  const std::uint32_t a = colliders[pair.a].body, b = colliders[pair.b].body;
-  return desc.contact_slop + travel(bodies[a], impacts.motions[a], h) +
-         travel(bodies[b], impacts.motions[b], h);
+double ImpactStage::discrete_margin(const ColliderPair& pair, double h) const {
+  const std::uint32_t a = s_.colliders[pair.a].body, b = s_.colliders[pair.b].body;
+  return s_.desc.contact_slop + travel(s_.bodies[a], motions_[a], h) +
+         travel(s_.bodies[b], motions_[b], h);
 }
 
 // Pairs without a swept collider.
-void World::Impl::find_discrete_pairs(double h) {
-  impacts.discrete_pairs.clear();
-  for (const collide::IndexPair& pair : impacts.discrete_body_pairs.find(body_motions())) {
-    const Body &a = bodies[pair.a], &b = bodies[pair.b];
+void ImpactStage::find_discrete_pairs(double h) {
+  discrete_pairs_.clear();
+  for (const collide::IndexPair& pair : discrete_body_pairs_.find(body_motions())) {
+    const Body &a = s_.bodies[pair.a], &b = s_.bodies[pair.b];
     const bool continuous = a.continuous || b.continuous;
     if (!continuous && !a.is_link && !b.is_link) continue;  // belongs to the sub-stepped solver
-    const bool sensors_only = in_sub_steps(articulations, a, b);
+    const bool sensors_only = in_sub_steps(s_.articulations, a, b);
     const bool carries_sensor = (a.continuous && a.has_sensor) || (b.continuous && b.has_sensor);
     if ((continuous && !carries_sensor) || !may_overlap(a, b)) continue;
-    if (disables_collision(bodies, joints, pair.a, pair.b)) continue;
-    wake(pair.a);
-    wake(pair.b);
-    pose_colliders(bodies[pair.a], colliders);
-    pose_colliders(bodies[pair.b], colliders);
-    const double margin = desc.contact_slop + travel(a, impacts.motions[pair.a], h) +
-                          travel(b, impacts.motions[pair.b], h);
-    for (std::uint32_t i = a.first_collider; i != kNone; i = colliders[i].next) {
-      const Collider& ca = colliders[i];
+    if (disables_collision(s_.bodies, s_.joints, pair.a, pair.b)) continue;
+    wake(s_, pair.a);
+    wake(s_, pair.b);
+    pose_colliders(s_.bodies[pair.a], s_.colliders);
+    pose_colliders(s_.bodies[pair.b], s_.colliders);
+    const double margin =
+        s_.desc.contact_slop + travel(a, motions_[pair.a], h) + travel(b, motions_[pair.b], h);
+    for (std::uint32_t i = a.first_collider; i != kNone; i = s_.colliders[i].next) {
+      const Collider& ca = s_.colliders[i];
       const collide::Bounds near = grown(ca.bounds, margin);
-      if (!overlap(near, impacts.bounds[pair.b])) continue;
-      for (std::uint32_t j = b.first_collider; j != kNone; j = colliders[j].next) {
-        const Collider& cb = colliders[j];
+      if (!overlap(near, bounds_[pair.b])) continue;
+      for (std::uint32_t j = b.first_collider; j != kNone; j = s_.colliders[j].next) {
+        const Collider& cb = s_.colliders[j];
         if (!overlap(near, cb.bounds) || !should_collide(ca, cb)) continue;
         if (continuous && (is_swept(a, ca) || is_swept(b, cb))) continue;
         if (sensors_only && !ca.sensor && !cb.sensor) continue;
         if (pushable_or_sensed(a, b, ca, cb))
-          impacts.discrete_pairs.push_back(make_pair(colliders, i, j));
+          discrete_pairs_.push_back(make_pair(s_.colliders, i, j));
       }
     }
   }
-  std::sort(impacts.discrete_pairs.begin(), impacts.discrete_pairs.end(),
+  std::sort(discrete_pairs_.begin(), discrete_pairs_.end(),
             [](const ColliderPair& p, const ColliderPair& q) { return p.key < q.key; });
-  counters.pairs += static_cast<std::uint32_t>(impacts.discrete_pairs.size());
+  s_.counters.pairs += static_cast<std::uint32_t>(discrete_pairs_.size());
 }
 
 collide::SweepQuery ImpactTimes::sweep_query(const SweptPair& p, double h) const {
@@ -152,75 +152,74 @@ double radius_from(const Vec3& x, const Collider& c) {
 
 // Adds the pairs of a continuous body's colliders with those of another body that can collide
 // within h.
-void World::Impl::add_swept_pairs(std::uint32_t index, std::uint32_t other, double h) {
-  wake(other);
-  const Body &a = bodies[index], &b = bodies[other];
-  const collide::Motion &ma = impacts.motions[index], &mb = impacts.motions[other];
+void ImpactStage::add_swept_pairs(std::uint32_t index, std::uint32_t other, double h) {
+  wake(s_, other);
+  const Body &a = s_.bodies[index], &b = s_.bodies[other];
+  const collide::Motion &ma = motions_[index], &mb = motions_[other];
   const ImpactTimes times = impact_times();
-  pose_colliders(bodies[index], colliders);
+  pose_colliders(s_.bodies[index], s_.colliders);
   const double speed = norm(ma.v - mb.v);
   const double wa = norm(ma.w), wb = norm(mb.w);
-  for (std::uint32_t i = a.first_collider; i != kNone; i = colliders[i].next) {
-    const Collider& ca = colliders[i];
+  for (std::uint32_t i = a.first_collider; i != kNone; i = s_.colliders[i].next) {
+    const Collider& ca = s_.colliders[i];
     if (!is_swept(a, ca)) continue;
     const double own = speed + wa * radius_from(ma.x, ca);
     const double far = radius_from(mb.x, ca) + own * h;
-    const double margin = desc.contact_slop + (own + wb * far) * h;
+    const double margin = s_.desc.contact_slop + (own + wb * far) * h;
     const collide::Bounds near = grown(ca.bounds, margin), from_b = moved(near, -b.T.position());
-    for (std::uint32_t j = b.first_collider; j != kNone; j = colliders[j].next) {
-      Collider& cb = colliders[j];
+    for (std::uint32_t j = b.first_collider; j != kNone; j = s_.colliders[j].next) {
+      Collider& cb = s_.colliders[j];
       if (b.is_link && !empty(cb.around_line) && !overlap(from_b, cb.around_line)) continue;
       pose_collider(b, cb);
       if (!overlap(near, cb.bounds) || !should_collide(ca, cb)) continue;
       if (b.continuous && other < index && is_swept(b, cb)) continue;
       const double separation =
-          times.separation(ca, cb, margin, shapes.manifold_scratch, shapes.manifolds);
+          times.separation(ca, cb, margin, s_.shapes.manifold_scratch, s_.shapes.manifolds);
       if (separation > margin) continue;
-      const ColliderPair pair = make_pair(colliders, i, j);
-      impacts.swept_pairs.push_back({pair, pair.a == i, ca.sensor || cb.sensor, separation});
+      const ColliderPair pair = make_pair(s_.colliders, i, j);
+      swept_pairs_.push_back({pair, pair.a == i, ca.sensor || cb.sensor, separation});
     }
   }
 }
 
 // Two continuous bodies are paired once, in the order of their slots. Exception: a sensor that is
 // not swept is paired with the swept colliders of the other body.
-void World::Impl::add_swept_pairs_of(const collide::IndexPair& p, double h) {
-  if (disables_collision(bodies, joints, p.a, p.b)) return;
-  const bool a = impacts.swept_body_pairs.sweeps(p.a), b = impacts.swept_body_pairs.sweeps(p.b);
+void ImpactStage::add_swept_pairs_of(const collide::IndexPair& p, double h) {
+  if (disables_collision(s_.bodies, s_.joints, p.a, p.b)) return;
+  const bool a = swept_body_pairs_.sweeps(p.a), b = swept_body_pairs_.sweeps(p.b);
   if (a) add_swept_pairs(p.a, p.b, h);
-  if (b && (!a || bodies[p.a].has_sensor)) add_swept_pairs(p.b, p.a, h);
+  if (b && (!a || s_.bodies[p.a].has_sensor)) add_swept_pairs(p.b, p.a, h);
 }
 
 // Finds the swept pairs that touch. Precondition: all bodies are at the same time.
-void World::Impl::find_touching_pairs(double h) {
-  impacts.swept_pairs.clear();
+void ImpactStage::find_touching_pairs(double h) {
+  swept_pairs_.clear();
   const auto bounds_of_body = [this](std::uint32_t i) -> const collide::Bounds& {
-    return bounds_at_pose(bodies[i], colliders);
+    return bounds_at_pose(s_.bodies[i], s_.colliders);
   };
-  for (const collide::IndexPair& p : impacts.swept_body_pairs.find(
-           body_motions(), lists.of_impacts(bodies), desc.contact_slop, h)) {
-    if (empty(impacts.bounds[p.a]) || empty(impacts.bounds[p.b])) continue;
-    if (!overlap(grown(bounds_of_body(p.a), desc.contact_slop), bounds_of_body(p.b))) continue;
+  for (const collide::IndexPair& p :
+       swept_body_pairs_.find(body_motions(), moving_bodies(), s_.desc.contact_slop, h)) {
+    if (empty(bounds_[p.a]) || empty(bounds_[p.b])) continue;
+    if (!overlap(grown(bounds_of_body(p.a), s_.desc.contact_slop), bounds_of_body(p.b))) continue;
     add_swept_pairs_of(p, 0.0);
   }
   sort_swept_pairs();
 }
 
 // Finds the swept pairs that can collide within h. Precondition: all bodies are at the same time.
-void World::Impl::find_swept_pairs(double h) {
-  impacts.swept_pairs.clear();
-  for (const collide::IndexPair& p : impacts.swept_body_pairs.find(
-           body_motions(), lists.of_impacts(bodies), desc.contact_slop, h)) {
-    if (overlap(impacts.bounds[p.a], impacts.bounds[p.b])) add_swept_pairs_of(p, h);
+void ImpactStage::find_swept_pairs(double h) {
+  swept_pairs_.clear();
+  for (const collide::IndexPair& p :
+       swept_body_pairs_.find(body_motions(), moving_bodies(), s_.desc.contact_slop, h)) {
+    if (overlap(bounds_[p.a], bounds_[p.b])) add_swept_pairs_of(p, h);
   }
   sort_swept_pairs();
-  counters.pairs = std::max(
-      counters.pairs,
-      static_cast<std::uint32_t>(impacts.discrete_pairs.size() + impacts.swept_pairs.size()));
+  s_.counters.pairs = std::max(
+      s_.counters.pairs, static_cast<std::uint32_t>(discrete_pairs_.size() + swept_pairs_.size()));
 }
 
-void World::Impl::sort_swept_pairs() {
-  std::sort(impacts.swept_pairs.begin(), impacts.swept_pairs.end(),
+void ImpactStage::sort_swept_pairs() {
+  std::sort(swept_pairs_.begin(), swept_pairs_.end(),
             [](const SweptPair& p, const SweptPair& q) { return p.pair.key < q.pair.key; });
 }
 

@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "world/impl.h"
+#include "world/impact_stage.h"
 
 namespace vp {
 namespace {
@@ -26,44 +26,46 @@ constexpr double kRemoteSlide = 0.03, kClear = 0.01;
 }  // namespace
 
 // Valid until a body or a collider is added or removed.
-bool World::Impl::can_be_remote(const Articulation& art) const {
+bool ImpactStage::can_be_remote(const Articulation& art) const {
   if (!art.keeps_twists() || !art.is_decoupled()) return false;
   for (const std::uint32_t b : art.bodies) {
-    if (bodies[b].first_joint != kNone) return false;
-    if (bodies[b].first_collider == kNone) continue;
-    for (const Body& other : bodies) {
+    if (s_.bodies[b].first_joint != kNone) return false;
+    if (s_.bodies[b].first_collider == kNone) continue;
+    for (const Body& other : s_.bodies) {
       const bool tested = !other.is_link && other.motion != Motion::fixed;  // as awake bodies
-      if (other.alive && !tested && may_overlap(bodies[b], other)) return false;
+      if (other.alive && !tested && may_overlap(s_.bodies[b], other)) return false;
     }
   }
   return true;
 }
 
-void World::Impl::list_remote_articulations() {
-  const bool few = !lists.some_sub_stepped && desc.sleep_after <= 0.0 &&
-                   lists.awake_bodies.size() <= kFewMovingBodies;
-  impacts.scratch_is_dirty = true;
-  for (Articulation& art : articulations) {
+void ImpactStage::list_bodies() {
+  swept_body_pairs_.invalidate();
+  discrete_body_pairs_.list_filters(s_.bodies);
+  const bool few = !s_.lists.some_sub_stepped && s_.desc.sleep_after <= 0.0 &&
+                   s_.lists.awake_bodies.size() <= kFewMovingBodies;
+  scratch_is_dirty_ = true;
+  for (Articulation& art : s_.articulations) {
     if (!art.alive) continue;
-    update_if_remote(art);
+    if (art.remote) follow(art, s_.bodies, s_.lists);
     art.can_be_remote = few && can_be_remote(art);
   }
 }
 
-bool World::Impl::is_near_awake_body(const collide::Bounds& box) const {
-  return std::any_of(lists.awake_bodies.begin(), lists.awake_bodies.end(),
-                     [&](std::uint32_t m) { return overlap(box, impacts.bounds[m]); });
+bool ImpactStage::is_near_awake_body(const collide::Bounds& box) const {
+  return std::any_of(s_.lists.awake_bodies.begin(), s_.lists.awake_bodies.end(),
+                     [&](std::uint32_t m) { return overlap(box, bounds_[m]); });
 }
 
 // Call it after the AABBs of the other articulations are updated. Articulations that an awake body
 // may collide with within h, or that have translated far, stop being remote.
-void World::Impl::collide_remote(double h) {
-  for (Articulation& art : articulations) {
+void ImpactStage::collide_remote(double h) {
+  for (Articulation& art : s_.articulations) {
     if (!art.remote) continue;
-    if (art.slides_since_remote(h) + desc.contact_slop < kRemoteSlide &&
+    if (art.slides_since_remote(h) + s_.desc.contact_slop < kRemoteSlide &&
         !is_near_awake_body(art.remote_box))
       continue;
-    follow(art);
+    follow(art, s_.bodies, s_.lists);
     for (const std::uint32_t b : art.bodies) {
       refresh_motion_of(b, h);
       refresh_bounds_of(b, h);
@@ -72,34 +74,26 @@ void World::Impl::collide_remote(double h) {
 }
 
 // Called at the start of the impact stage.
-void World::Impl::make_remote() {
-  for (Articulation& art : articulations) {
+void ImpactStage::make_remote() {
+  for (Articulation& art : s_.articulations) {
     if (art.remote || !art.can_be_remote || art.sub_stepped) continue;
     collide::Bounds box;
     Vec3 line;
     for (const std::uint32_t b : art.bodies) {
-      if (bodies[b].first_collider == kNone) continue;
-      box = merged(box, bounds_at_pose(bodies[b], colliders));
-      line = art.line_of(bodies[b].link);
+      if (s_.bodies[b].first_collider == kNone) continue;
+      box = merged(box, bounds_at_pose(s_.bodies[b], s_.colliders));
+      line = art.line_of(s_.bodies[b].link);
     }
     const Vec3 along = kRemoteSlide * Vec3{std::fabs(line.x), std::fabs(line.y), std::fabs(line.z)};
-    box = collide::grown({box.lower - along, box.upper + along}, desc.contact_slop);
+    box = collide::grown({box.lower - along, box.upper + along}, s_.desc.contact_slop);
     if (is_near_awake_body(collide::grown(box, kClear))) continue;
     art.set_remote(box);
     for (const std::uint32_t b : art.bodies) {
-      bodies[b].remote = true;
-      impacts.bounds[b] = {};
+      s_.bodies[b].remote = true;
+      bounds_[b] = {};
     }
-    lists.invalidate_impacts();
+    s_.lists.invalidate_impacts();
   }
-}
-
-// Updates a remote articulation before its links are read.
-void World::Impl::update_if_remote(Articulation& art) {
-  if (art.remote) follow(art);
-}
-void World::Impl::update_all_remote() {
-  for (Articulation& art : articulations) update_if_remote(art);
 }
 
 }  // namespace vp

@@ -336,9 +336,9 @@ void World::Impl::adopt(Incoming& from) {
   }
   from.contacts.adopt();
   sub_step_state = from.sub_steps;
-  impacts.step = from.impact_step;
+  impacts.set_step_length(from.impact_step);
   ready_for_queries = false;
-  impacts.records.swap(from.records);
+  pair_contacts.swap_records(from.records);
   events.destroyed.swap(from.destroyed_pairs);
   events.clear();
   step_contacts.clear();

@@ -121,12 +121,12 @@ void World::Impl::write(Sink& sink) {
   sink.u64(topology_hash);
   sink.u64(bodies.size());
   sink.u64(articulations.size());
-  sink.u64(impacts.records.size());
+  sink.u64(pair_contacts.records().size());
   sink.u64(events.destroyed.size());
   put(sink, sub_step_state.length);
   put(sink, sub_step_state.last_step_length);
   sink.u64(sub_step_state.position_error ? 1 : 0);
-  put(sink, impacts.step);
+  put(sink, impacts.step_length());
   for (const Body& body : bodies) {
     if (body.is_link) continue;
     const Mat3& R = body.T.rotation();
@@ -147,7 +147,7 @@ void World::Impl::write(Sink& sink) {
       for (const double x : art.dofs[i].impulses) put(sink, x);
     }
   }
-  for (const PairRecord& record : impacts.records) put(sink, record);
+  for (const PairRecord& record : pair_contacts.records()) put(sink, record);
   for (const DestroyedPair& pair : events.destroyed) put(sink, pair);
   for (const BodyJoint& joint : joints) {
     if (joint.alive) put(sink, joint);

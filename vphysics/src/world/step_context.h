@@ -9,6 +9,7 @@
 #include "collide/manifolds.h"
 #include "collide/pair_finder.h"
 #include "collide/shape_query.h"
+#include "collide/sweep.h"
 #include "solve/passes.h"
 #include "world/approach.h"
 #include "world/articulation.h"
@@ -95,10 +96,14 @@ void wake(const Stores& stores, std::uint32_t body);
 void restart_displacement(const Stores& stores, std::uint32_t body);
 // Passes the bounds of colliders that may leave their enlarged ones within h to the broad phase.
 void update_bounds(const Stores& stores, std::uint32_t body, double h, bool is_solver_driven);
+// Moves the body for h. freely: as a tumbling body without contact at the mean angular velocity
+// w + more_w, instead of at the constant twist.
+void advance_body(Body& body, const collide::Motion& motion, double h, bool freely,
+                  const Vec3& more_w);
 // A body out of the range of numbers stops at `start`. Not for links.
 bool stop_if_out_of_range(const StepContext& context, std::uint32_t body, const SE3& start);
 
-// --- links (articulations.cpp)
+// --- links (links.cpp)
 
 // Links are bodies for collision detection; their poses and velocities are copies. Copies both, and
 // ends the remote state (remote.cpp).

@@ -211,8 +211,8 @@ void World::Impl::take_sub_steps(double dt, int n) {
   JointSteps joint_steps(
       {bodies, joints, body_rows, sub_step.start_displacements, workers, speed_unit},
       sub_step.joints, h);
-  const bool links = !impacts.bodies_on_links.empty();
-  if (links) find_link_contacts(dt, n);
+  const bool links = !link_contacts.empty();
+  if (links) link_contacts.begin_sub_steps(dt, n);
   const bool contacts_alone = !links && joint_steps.empty();
   // The next sub-step applies the velocity changes by the contacts of the last one again, body by
   // body. Not if joints or links take part, which rotate within the step.
@@ -235,7 +235,7 @@ void World::Impl::take_sub_steps(double dt, int n) {
         runs.everywhere([&](std::size_t region) { steps.load_inertias(region); });
       warm_starts |= changed.has_old_slots;
     }
-    if (links) begin_links(h);
+    if (links) link_contacts.begin_sub_step(h);
     joint_steps.warm_start();
     if (repeats) {
       runs.everywhere([&](std::size_t region) {
@@ -258,14 +258,14 @@ void World::Impl::take_sub_steps(double dt, int n) {
       for (int iteration = 0; iteration < kIterations; ++iteration) {
         joint_steps.solve(iteration);
         runs.everywhere([&](std::size_t region) { steps.solve_contacts(region, iteration); });
-        if (links) solve_links(h);
+        if (links) link_contacts.iterate(h);
       }
-      if (links) move_links(h);
+      if (links) link_contacts.move(h);
       runs.everywhere([&](std::size_t region) { steps.move(region); });
       joint_steps.prepare();
       joint_steps.relax();
       runs.everywhere([&](std::size_t region) { steps.relax(region, last); });
-      if (links) relax_links(h);
+      if (links) link_contacts.relax(h);
     }
     steps.accumulate_impulses();
   }

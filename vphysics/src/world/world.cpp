@@ -74,14 +74,7 @@ Expected<BodyId> World::create_body(const BodyDesc& desc) {
 
 // Ends all contacts of a collider. The next step reports their end events.
 void World::Impl::drop_contacts(std::uint32_t index) {
-  std::erase_if(impacts.records, [&](const PairRecord& r) {
-    if (r.a != index && r.b != index) return false;
-    if (r.touching) {
-      events.destroyed.push_back(
-          {colliders.id(r.a), colliders.id(r.b), colliders[r.a].sensor || colliders[r.b].sensor});
-    }
-    return true;
-  });
+  pair_contacts.forget(index);
   const Collider& collider = colliders[index];
   wake(collider.body);
   wake_neighbours(collider.body);
