@@ -102,12 +102,13 @@ bool ContactSearch::is_needed() const {
 }
 
 void ContactSearch::begin_step(std::size_t contacts) {
-  const std::size_t n = s_.bodies.size();
   renewed_ = 0;
   for (auto* list : {&dirty_, &dirty_next_step_}) list->reserve(s_.contact_store.dirty.capacity());
   results_.reserve(std::min(contacts, kNarrowPhaseBatch));
-  to_pose_.reserve(n);
   new_pairs_.reserve(contacts);
+  const std::size_t n = s_.bodies.size();
+  if (n <= to_pose_.capacity()) return;
+  to_pose_.reserve(n);
   deviating_.reserve(n);
   deviates_.reserve(n);
   advanced_.reserve(64 + n / 8);  // grows in a step in which more bodies deviate

@@ -2,32 +2,26 @@
 #include "world/impact_stage.h"
 
 namespace vp {
+namespace {
+
+void integrate_forces_of(const StepContext& s, Articulation& art, double dt) {
+  bool changed = false;
+  if (!art.integrate_forces(dt, changed)) {
+    s.status.non_finite = true;
+    art.return_to_start();
+  }
+  if (changed) follow_velocities(art, s.bodies);
+}
+
+}  // namespace
 
 void ImpactStage::integrate_articulations(double dt) {
   for (Articulation& art : s_.articulations) {
     if (!art.alive || art.sub_stepped) continue;  // integrated in the sub-steps
     art.mark_start();
     if (art.remote) continue;  // balanced: only its motors exert forces
-    integrate_forces_of(art, dt);
+    integrate_forces_of(s_, art, dt);
   }
-}
-
-void ImpactStage::integrate_forces_of(Articulation& art, double dt) {
-  bool changed = false;
-  if (!art.integrate_forces(dt, changed)) {
-    s_.status.non_finite = true;
-    art.return_to_start();
-  }
-  if (changed) follow_velocities(art, s_.bodies);
-}
-
-// Before the instant is solved again: what it gave is no warm start, since its motors were too
-// strong.
-void ImpactStage::restore_warm_starts() {
-  for (const solve::JointRow& row : rows_.rows()) {
-    if (row.remember) *row.remember = row.warm_start;
-  }
-  pair_contacts_.reload_warm_starts(contacts_);
 }
 
 // Whether a motor exceeds its limit that was predicted to stay below it: it is a row now, the
@@ -47,13 +41,18 @@ bool ImpactStage::integrate_saturated_again(double dt, bool solved, bool all_bec
       }
     };
     note([](const Body& body, const Velocity&) { return Velocity{body.w, body.v}; });
-    integrate_forces_of(art, dt);
+    integrate_forces_of(s_, art, dt);
     note([](const Body& body, const Velocity& before) {
       return Velocity{body.w - before.w, body.v - before.v};
     });
   }
-  if (again) restore_warm_starts();
-  return again;
+  if (!again) return false;
+  // What the instant gave is no warm start, since its motors were too strong.
+  for (const solve::JointRow& row : rows_.rows()) {
+    if (row.remember) *row.remember = row.warm_start;
+  }
+  pair_contacts_.reload_warm_starts(contacts_);
+  return true;
 }
 
 void ImpactStage::begin_solve_articulations(bool first) {

@@ -42,24 +42,21 @@ void ImpactStage::carry(std::uint32_t body, const Vec3& change_w, const Vec3& ch
   remove_carried(forced_[body].v, change_v);
 }
 
+// Marks articulations in contact. Bodies of joints in rows do not move freely.
 void ImpactStage::note_touched_articulations() {
+  const auto touch = [this](const Body& body) {
+    if (body.is_link) s_.articulations[body.articulation].touched = true;
+  };
   for (Articulation& art : s_.articulations) art.touched = false;
   for (const solve::ContactConstraint& c : contacts_) {
-    for (const std::uint32_t i : {c.a, c.b}) {
-      if (s_.bodies[i].is_link) s_.articulations[s_.bodies[i].articulation].touched = true;
-    }
+    for (const std::uint32_t i : {c.a, c.b}) touch(s_.bodies[i]);
   }
-  note_joined_bodies();
-}
-
-// At an instant: marks the bodies of joints in rows, which do not move freely.
-void ImpactStage::note_joined_bodies() {
   for (const std::uint32_t i : rows_.joints()) {
     const BodyJoint& joint = s_.joints[i];
     if (rows_.is_in_sub_steps(joint)) continue;
     for (const std::uint32_t b : {joint.a, joint.b}) {
       in_contact_[b] = 1;
-      if (s_.bodies[b].is_link) s_.articulations[s_.bodies[b].articulation].touched = true;
+      touch(s_.bodies[b]);
     }
   }
 }

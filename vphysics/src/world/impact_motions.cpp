@@ -15,6 +15,19 @@ void take_back(Vec3& velocity, const Vec3& added, double fraction) {
   if (with > 0.0) velocity *= 1.0 - std::min(1.0, fraction * with / dot(velocity, velocity));
 }
 
+// The constant twist for h. For a tumbling body, the twist that leads to the same final rotation.
+collide::Motion motion_of(const Body& body, const Velocity& more, double h) {
+  collide::Motion motion{reference_point(body), body.v + more.v, body.w + more.w};
+  const Vec3& mean = more.w == Vec3{} ? body.w : motion.w;
+  if (h > 0.0 && body.tumbles() && body.rotates_freely() && !hardly_rotates(mean, h)) {
+    const Mat3& R = body.T.rotation();
+    const Vec3 w = transposed_times(R, mean);
+    const FreeRotation rotation = free_rotation(body.central, body.inverse_central, w, h);
+    motion.w = (1.0 / h) * (R * mean_rotation(rotation));
+  }
+  return motion;
+}
+
 }  // namespace
 
 // Scales the warm-start impulses by the ratio of the step lengths.
@@ -38,34 +51,41 @@ void ImpactStage::rescale_impulses(double dt) {
   }
 }
 
-void ImpactStage::begin_step(double dt, std::size_t capacity) {
-  rescale_impulses(dt);
+void ImpactStage::reserve(std::size_t pairs) {
+  const std::size_t n = s_.bodies.size();
+  if (bounds_.size() == n && pairs <= reserved_) return;
+  reserved_ = std::max(pairs, reserved_);
   // More manifolds than a pair has, unless many parts of a compound touch at once. So a world's
   // first contact allocates nothing.
   constexpr std::size_t kManifoldsOfPair = 64;
-  const std::size_t n = s_.bodies.size();
-  swept_body_pairs_.reserve(n, capacity);
-  discrete_body_pairs_.reserve(n, capacity);
-  discrete_pairs_.reserve(capacity);
-  swept_pairs_.reserve(capacity);
-  discrete_contacts_.reserve(capacity);
-  contacts_.reserve(capacity);
-  s_.step_contacts.reserve(4 * capacity);
+  swept_body_pairs_.reserve(n, reserved_);
+  discrete_body_pairs_.reserve(n, reserved_);
+  discrete_pairs_.reserve(reserved_);
+  swept_pairs_.reserve(reserved_);
+  discrete_contacts_.reserve(reserved_);
+  contacts_.reserve(reserved_);
+  s_.step_contacts.reserve(4 * reserved_);
   s_.shapes.manifolds.reserve(kManifoldsOfPair);
+  queue_.reserve(reserved_);
+  reached_sensors_.reserve(reserved_);
   bounds_.resize(n);
   motions_.resize(n);
   start_poses_.resize(n);
+  first_impacts_.resize(n);
+  concerned_.reserve(n);
+  moved_.reserve(n);
+}
+
+void ImpactStage::begin_step(double dt, std::size_t pairs) {
+  rescale_impulses(dt);
+  reserve(pairs);
+  const std::size_t n = s_.bodies.size();
   stopped_.assign(n, 0);
   in_contact_.assign(n, 0);
   moves_rigidly_.assign(n, 0);
   brought_.assign(n, 0);
   times_.assign(n, 0.0);
   concerns_.assign(n, Concern::none);
-  first_impacts_.resize(n);
-  concerned_.reserve(n);
-  moved_.reserve(n);
-  queue_.reserve(capacity);
-  reached_sensors_.reserve(capacity);
   if (scratch_is_dirty_) {
     scratch_is_dirty_ = false;
     drift_.assign(n, {});
@@ -107,39 +127,24 @@ void ImpactStage::note_sub_steps_of(std::uint32_t index, const Velocity& drift) 
   forced_[index] = {s_.dt * a.w, s_.dt * a.v};
 }
 
-void ImpactStage::load_body(std::uint32_t index) {
-  (void)rows_.load_body(index, reference_point(s_.bodies[index]), forced_[index]);
-}
-
-// Updates the bodies of `of` except links. Of links and other bodies, updates only those in contact
-// or with row joints, which are few.
+// Loads the bodies of `of` except links. Of links and other bodies, loads only those in contact or
+// with row joints, which are few.
 void ImpactStage::load_bodies(std::span<const std::uint32_t> of) {
+  const auto load = [this](std::uint32_t i) {
+    (void)rows_.load_body(i, reference_point(s_.bodies[i]), forced_[i]);
+  };
   for (const std::uint32_t i : of) {
-    const Body& body = s_.bodies[i];
-    if (!body.is_link) load_body(i);
+    if (!s_.bodies[i].is_link) load(i);
   }
   for (const solve::ContactConstraint& c : contacts_) {
     for (const std::uint32_t i : {c.a, c.b}) {
       const bool listed = !s_.bodies[i].is_link && s_.bodies[i].motion == Motion::dynamic;
-      if (!listed) load_body(i);
+      if (!listed) load(i);
     }
   }
   for (const solve::JointPair& pair : rows_.pairs()) {
-    for (const std::uint32_t i : {pair.a.body, pair.b.body}) load_body(i);
+    for (const std::uint32_t i : {pair.a.body, pair.b.body}) load(i);
   }
-}
-
-// The constant twist for h. For a tumbling body, the twist that leads to the same final rotation.
-collide::Motion ImpactStage::motion_of(const Body& body, const Velocity& more, double h) const {
-  collide::Motion motion{reference_point(body), body.v + more.v, body.w + more.w};
-  const Vec3& mean = more.w == Vec3{} ? body.w : motion.w;
-  if (h > 0.0 && body.tumbles() && body.rotates_freely() && !hardly_rotates(mean, h)) {
-    const Mat3& R = body.T.rotation();
-    const Vec3 w = transposed_times(R, mean);
-    const FreeRotation rotation = free_rotation(body.central, body.inverse_central, w, h);
-    motion.w = (1.0 / h) * (R * mean_rotation(rotation));
-  }
-  return motion;
 }
 
 // Motions for the rest of the step. Bodies in contact move at the velocity that the solver has

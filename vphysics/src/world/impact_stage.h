@@ -52,9 +52,8 @@ class ImpactStage {
   // impact_motions.cpp
   const std::vector<std::uint32_t>& moving_bodies() const { return s_.lists.of_impacts(s_.bodies); }
   void rescale_impulses(double dt);
-  void load_body(std::uint32_t body);
+  void reserve(std::size_t pairs);
   void load_bodies(std::span<const std::uint32_t> of);
-  collide::Motion motion_of(const Body& body, const Velocity& drift, double h) const;
   void refresh_motions(double h);
   void refresh_motion_of(std::uint32_t body, double h);
   void refresh_displacements(double h);
@@ -63,7 +62,6 @@ class ImpactStage {
   void take_back_forces(double h);
 
   // remote.cpp
-  bool can_be_remote(const Articulation& articulation) const;
   bool is_near_awake_body(const collide::Bounds& box) const;
   void collide_remote(double h);
   void make_remote();
@@ -87,7 +85,6 @@ class ImpactStage {
   void find_discrete_contacts(double h);
   void find_swept_contacts(bool warm);
   void note_touched_articulations();
-  void note_joined_bodies();
   RowJointStep row_joint_step(double h, double dt, bool first) const;
   bool solve_instant(std::span<const std::uint32_t> solved, double h, double dt, bool first);
   void solve_contacts(double h, double dt, bool first);
@@ -95,8 +92,6 @@ class ImpactStage {
 
   // impact_articulations.cpp
   void integrate_articulations(double dt);
-  void integrate_forces_of(Articulation& articulation, double dt);
-  void restore_warm_starts();
   bool integrate_saturated_again(double dt, bool solved, bool all_become_rows);
   void begin_solve_articulations(bool first);
   void end_solve_articulations(bool first);
@@ -130,6 +125,7 @@ class ImpactStage {
   PairContacts& pair_contacts_;
   RowSolve& rows_;
   double step_length_ = 0.0;
+  std::size_t reserved_ = 0;  // number of pairs
   // Bodies were added or removed: drift and forced of bodies outside the list may not be 0.
   bool scratch_is_dirty_ = true;
   SweptBodyPairs swept_body_pairs_;

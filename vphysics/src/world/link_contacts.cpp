@@ -10,14 +10,18 @@
 namespace vp {
 
 void LinkContacts::begin_step(std::size_t contacts) {
-  for (const std::uint32_t i : bodies_) s_.bodies[i].on_link = false;
-  bodies_.clear();
-  for (Articulation& art : s_.articulations) art.sub_stepped = false;
-  if (s_.articulations.empty()) return;
+  if (!bodies_.empty()) {
+    for (const std::uint32_t i : bodies_) s_.bodies[i].on_link = false;
+    for (Articulation& art : s_.articulations) art.sub_stepped = false;
+    bodies_.clear();
+  }
+  if (s_.articulations.empty() || (forced_.size() == s_.bodies.size() && contacts <= reserved_))
+    return;
   bodies_.reserve(s_.bodies.size());
-  forced_.reserve(s_.bodies.size());
+  forced_.resize(s_.bodies.size());
   contacts_.reserve(contacts);
   pairs_.reserve(contacts);
+  reserved_ = std::max(contacts, reserved_);
 }
 
 // Finds the bodies near links, and the articulations that take part: those near a body, and those
@@ -78,7 +82,7 @@ void LinkContacts::put_on_link(std::uint32_t index, Articulation& art) {
 }
 
 void LinkContacts::begin_sub_steps(double dt, int sub_steps) {
-  forced_.assign(s_.bodies.size(), {});
+  std::fill(forced_.begin(), forced_.end(), Velocity{});
   pairs_.clear();
   for (const Contact& c : s_.contact_store.pool) {
     if (!c.alive || !c.of_link || c.sensor) continue;

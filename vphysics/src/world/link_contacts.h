@@ -63,6 +63,7 @@ class LinkContacts {
   std::vector<std::uint32_t> bodies_;  // on links: in contact with or joined to one
   std::vector<solve::ContactConstraint> contacts_;
   std::vector<Velocity> forced_;     // of links: change from a sub-step's forces
+  std::size_t reserved_ = 0;         // number of contacts
   std::vector<ColliderPair> pairs_;  // scratch
 };
 

@@ -25,12 +25,10 @@ void follow_velocities(const Articulation& art, Bodies& bodies) {
   follow_velocities(art, bodies, [](std::uint32_t, const se3&) {});
 }
 
-bool stop_if_out_of_range(const StepContext& s, Articulation& art) {
-  if (art.in_range()) return false;
+void stop_at_start(const StepContext& s, Articulation& art) {
   s.status.non_finite = true;
   art.return_to_start();
   follow(art, s.bodies, s.lists);
-  return true;
 }
 
 bool in_sub_steps(const std::vector<Articulation>& articulations, const Body& a, const Body& b) {

@@ -23,21 +23,21 @@ constexpr std::size_t kFewMovingBodies = 8;
 // states.
 constexpr double kRemoteSlide = 0.03, kClear = 0.01;
 
-}  // namespace
-
 // Valid until a body or a collider is added or removed.
-bool ImpactStage::can_be_remote(const Articulation& art) const {
+bool can_be_remote(const Articulation& art, const Bodies& bodies) {
   if (!art.keeps_twists() || !art.is_decoupled()) return false;
   for (const std::uint32_t b : art.bodies) {
-    if (s_.bodies[b].first_joint != kNone) return false;
-    if (s_.bodies[b].first_collider == kNone) continue;
-    for (const Body& other : s_.bodies) {
+    if (bodies[b].first_joint != kNone) return false;
+    if (bodies[b].first_collider == kNone) continue;
+    for (const Body& other : bodies) {
       const bool tested = !other.is_link && other.motion != Motion::fixed;  // as awake bodies
-      if (other.alive && !tested && may_overlap(s_.bodies[b], other)) return false;
+      if (other.alive && !tested && may_overlap(bodies[b], other)) return false;
     }
   }
   return true;
 }
+
+}  // namespace
 
 void ImpactStage::list_bodies() {
   swept_body_pairs_.invalidate();
@@ -48,7 +48,7 @@ void ImpactStage::list_bodies() {
   for (Articulation& art : s_.articulations) {
     if (!art.alive) continue;
     if (art.remote) follow(art, s_.bodies, s_.lists);
-    art.can_be_remote = few && can_be_remote(art);
+    art.can_be_remote = few && can_be_remote(art, s_.bodies);
   }
 }
 
@@ -60,10 +60,10 @@ bool ImpactStage::is_near_awake_body(const collide::Bounds& box) const {
 // Call it after the AABBs of the other articulations are updated. Articulations that an awake body
 // may collide with within h, or that have translated far, stop being remote.
 void ImpactStage::collide_remote(double h) {
+  const double slop = s_.desc.contact_slop;
   for (Articulation& art : s_.articulations) {
     if (!art.remote) continue;
-    if (art.slides_since_remote(h) + s_.desc.contact_slop < kRemoteSlide &&
-        !is_near_awake_body(art.remote_box))
+    if (art.slides_since_remote(h) + slop < kRemoteSlide && !is_near_awake_body(art.remote_box))
       continue;
     follow(art, s_.bodies, s_.lists);
     for (const std::uint32_t b : art.bodies) {

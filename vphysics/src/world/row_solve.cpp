@@ -100,9 +100,11 @@ class JointRows {
 
 void RowSolve::reserve() {
   std::size_t deepest = 0, dofs = 0;
+  most_dofs_ = 0;
   for (const Articulation& art : s_.articulations) {
     deepest = std::max(deepest, art.deepest());
     dofs += art.dofs.size();
+    most_dofs_ = std::max(most_dofs_, art.dofs.size());
   }
   constexpr std::size_t kRowsOfCoordinate = 3;  // of a joint in rows: drive and stops
   const std::size_t in_rows = static_cast<std::size_t>(std::count_if(
@@ -119,9 +121,7 @@ void RowSolve::reserve() {
 }
 
 void RowSolve::begin_step(std::size_t contacts) {
-  std::size_t dofs = 0;
-  for (const Articulation& art : s_.articulations) dofs = std::max(dofs, art.dofs.size());
-  instant_.reserve(contacts, rows_.capacity(), dofs);
+  instant_.reserve(contacts, rows_.capacity(), most_dofs_);
   bodies_.resize(s_.bodies.size());
   list_joints();
 }

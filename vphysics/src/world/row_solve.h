@@ -68,6 +68,7 @@ class RowSolve {
 
   const StepContext s_;
   std::vector<std::uint32_t> joints_;
+  std::size_t most_dofs_ = 0;    // of an articulation
   std::vector<SE3> next_poses_;  // of each body: next pose, of links in these joints
 
   // --- of the solve

@@ -123,7 +123,12 @@ void follow_velocities(const Articulation& articulation, Bodies& bodies, const F
 }
 void follow_velocities(const Articulation& articulation, Bodies& bodies);
 // An articulation out of the range of numbers stops where it was at the start of the step.
-bool stop_if_out_of_range(const StepContext& context, Articulation& articulation);
+void stop_at_start(const StepContext& context, Articulation& articulation);
+inline bool stop_if_out_of_range(const StepContext& context, Articulation& articulation) {
+  if (articulation.in_range()) return false;
+  stop_at_start(context, articulation);
+  return true;
+}
 // Whether a contact or joint of the two is solved in the sub-steps.
 bool in_sub_steps(const std::vector<Articulation>& articulations, const Body& a, const Body& b);
 
