@@ -1,4 +1,4 @@
-// Per-step work on bodies other than moving them: lists, solver rows, enlarged bounds.
+// Per-step work on bodies: poses, lists, solver rows, enlarged bounds.
 #include <algorithm>
 #include <cmath>
 
@@ -36,12 +36,37 @@ void prescribe_velocity(Body& body, double dt) {
   body.v = (1.0 / dt) * (end.position() - body.T.position());
 }
 
+// The angular velocity of a body after rotation to `next` at a constant twist. It conserves the
+// angular momentum. If that would increase the energy, it is constant in the body's frame instead.
+Vec3 mean_rate(const Body& body, const Mat3& next) {
+  const Mat3& R = body.T.rotation();
+  const Vec3 was = transposed_times(R, body.w), momentum = R * (body.central * was);
+  const Vec3 w = next * (body.inverse_central * transposed_times(next, momentum));
+  return dot(w, momentum) > dot(body.w, momentum) ? next * was : w;
+}
+
 }  // namespace
 
 void place(Body& body, const Vec3& reference, const Mat3& R) {
   const bool at_centre = body.motion == Motion::dynamic && !body.is_link;
   body.T = SE3(R, at_centre ? reference - R * body.centre : reference);
   body.moved();
+}
+
+void advance_body(Body& body, const collide::Motion& m, double h, bool freely, const Vec3& more_w) {
+  const bool tumbles = body.tumbles();
+  if (freely && tumbles && body.rotates_freely()) {
+    const Rotated free = rotated_freely(body, h, more_w);
+    body.w = free.w;
+    return place(body, m.x + h * m.v, free.R);
+  }
+  const Mat3& R = body.T.rotation();
+  const bool turns = m.w.x != 0.0 || m.w.y != 0.0 || m.w.z != 0.0;
+  const Mat3 next = turns ? rotated(R, h * m.w) : R;
+  if (tumbles && turns) {
+    body.w = body.rotates_freely() ? mean_rate(body, next) : rate_at(body, next);
+  }
+  place(body, m.x + h * m.v, next);
 }
 
 bool never_collide(const Body& a, const Body& b) {
@@ -102,6 +127,19 @@ void World::Impl::list_bodies() {
   regions.sort(bodies, lists.awake_bodies);
   impacts.list_bodies();
   row_solve.reserve();
+}
+
+bool stop_if_out_of_range(const StepContext& s, std::uint32_t index, const SE3& start) {
+  Body& body = s.bodies[index];
+  if (in_range(body.w) && in_range(body.v) && in_range(body.T.position())) return false;
+  s.status.non_finite = true;
+  body.w = body.v = {};
+  body.prescribed = {};
+  body.T = start;
+  body.moved();
+  restart_displacement(s, index);
+  forget_joints(s.bodies[index], s.joints);
+  return true;
 }
 
 void restart_displacement(const Stores& s, std::uint32_t index) {

@@ -3,12 +3,16 @@
 //   begin_step          pairs, warm starts for the length of the step
 //   integrate_forces    of the bodies that no sub-step moves
 //   note_sub_steps_of   the other bodies: how the sub-steps have moved them
-//   run                 contacts at the start of the step, then one impact after the other
-//                       (impacts.cpp); at the end all bodies are at the end of the step
+//   run                 repeat   solve the current contacts
+//                                advance everything at constant twists to the next impact of a
+//                                continuous body
+//                       until the end of the step; after max_impacts_per_step impacts, bodies that
+//                       would collide stop
 //
-// Reads colliders, loads and the contact store's filters. Writes poses and velocities of bodies and
-// articulations, the records of pairs, events, status and counters. Wakes bodies that a moving one
-// may meet.
+// Reads colliders, joints and loads. Writes poses and velocities of bodies and articulations, the
+// records of pairs, events, status and counters. Wakes bodies that a moving one may meet.
+//
+// See docs/decisions/0002-impacts-and-contacts.md.
 #pragma once
 
 #include <cstdint>

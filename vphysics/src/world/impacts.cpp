@@ -1,11 +1,10 @@
 // The impact stage: solves the contacts at the start of a step, then impacts in the order of time.
 //
 // An impact affects the bodies of its pair, the dynamic bodies that touch these, and so on
-// (concerned_). Only the contacts of affected bodies are solved; then their motions and
-// pairs are computed again. Every other body keeps its motion, and its pose keeps its own time
-// (times_); a body that may collide with an affected one is advanced to the impact.
-// Every impact affects the links whose motion has changed, and the bodies in contacts with links
-// and in row joints.
+// (concerned_). Only the contacts of affected bodies are solved; then their motions and pairs are
+// computed again. Every other body keeps its motion, and its pose keeps its own time (times_); a
+// body that may collide with an affected one is advanced to the impact. Every impact affects the
+// links whose motion has changed, and the bodies in contacts with links and in row joints.
 #include <algorithm>
 #include <iterator>
 #include <utility>
@@ -30,8 +29,7 @@ bool is_free(const Body& body) {
 
 // --- the queue -----------------------------------------------------------------------------------
 
-// Queues swept_pairs_. Precondition: all their bodies are at `now`, h before the end of the
-// step.
+// Queues swept_pairs_. Precondition: all their bodies are at `now`, h before the end of the step.
 void ImpactStage::queue_swept_pairs(double now, double h) {
   using Kind = ImpactQueue::Kind;
   const auto body_of = [&](std::uint32_t collider) { return s_.colliders[collider].body; };

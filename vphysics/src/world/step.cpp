@@ -1,17 +1,8 @@
-// One step: forces, then contacts and impacts in the order of time.
-//
-//   integrate forces over dt
-//   repeat   solve the current contacts
-//            advance everything at constant twists to the next impact of a continuous body
-//   until the end of the step; after max_impacts_per_step impacts, bodies that would collide stop
-//
-// See docs/decisions/0002-impacts-and-contacts.md.
+// The order of a step: prepare, find contacts, sub-steps, impact stage, finish.
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "vphysics/recording.h"
-#include "world/free_rotation.h"
 #include "world/impl.h"
 #include "world/invalid.h"
 #include "world/validate.h"
@@ -90,48 +81,6 @@ void World::Impl::divide_into_regions(double dt) {
   for (const std::uint32_t i : regions.changed()) contact_store.follow_region(bodies[i], body_set);
   contact_store.graph.set_regions(std::size_t{regions.state.count} + 1);
   regions.sort(bodies, lists.awake_bodies);
-}
-
-bool stop_if_out_of_range(const StepContext& s, std::uint32_t index, const SE3& start) {
-  Body& body = s.bodies[index];
-  if (in_range(body.w) && in_range(body.v) && in_range(body.T.position())) return false;
-  s.status.non_finite = true;
-  body.w = body.v = {};
-  body.prescribed = {};
-  body.T = start;
-  body.moved();
-  restart_displacement(s, index);
-  forget_joints(s.bodies[index], s.joints);
-  return true;
-}
-
-namespace {
-
-// The angular velocity of a body after rotation to `next` at a constant twist. It conserves the
-// angular momentum. If that would increase the energy, it is constant in the body's frame instead.
-Vec3 mean_rate(const Body& body, const Mat3& next) {
-  const Mat3& R = body.T.rotation();
-  const Vec3 was = transposed_times(R, body.w), momentum = R * (body.central * was);
-  const Vec3 w = next * (body.inverse_central * transposed_times(next, momentum));
-  return dot(w, momentum) > dot(body.w, momentum) ? next * was : w;
-}
-
-}  // namespace
-
-void advance_body(Body& body, const collide::Motion& m, double h, bool freely, const Vec3& more_w) {
-  const bool tumbles = body.tumbles();
-  if (freely && tumbles && body.rotates_freely()) {
-    const Rotated free = rotated_freely(body, h, more_w);
-    body.w = free.w;
-    return place(body, m.x + h * m.v, free.R);
-  }
-  const Mat3& R = body.T.rotation();
-  const bool turns = m.w.x != 0.0 || m.w.y != 0.0 || m.w.z != 0.0;
-  const Mat3 next = turns ? rotated(R, h * m.w) : R;
-  if (tumbles && turns) {
-    body.w = body.rotates_freely() ? mean_rate(body, next) : rate_at(body, next);
-  }
-  place(body, m.x + h * m.v, next);
 }
 
 // Without the impact stage: advances all bodies to the end of the step at once.

@@ -88,7 +88,7 @@ struct StepContext : Stores {
   InStage in(Stage stage) const { return {observer.get(), stage}; }
 };
 
-// --- bodies (bodies.cpp, sleep.cpp, step.cpp)
+// --- bodies (bodies.cpp, sleep.cpp)
 
 // Wakes the body and its island.
 void wake(const Stores& stores, std::uint32_t body);
