@@ -5,6 +5,7 @@
 #include <array>
 #include <functional>
 #include <limits>
+#include <memory>
 
 #include "collide/ray.h"
 #include "collide/shape_query.h"
@@ -482,6 +483,34 @@ void expect_refused(const Expected<T>& result, Errc code = Errc::invalid_argumen
   ASSERT_FALSE(result.has_value());
   EXPECT_EQ(result.error().code, code);
   EXPECT_GT(result.error().message.size(), 30u);
+}
+
+// An observer may ask during a step; what moves after that is found where it ends.
+TEST(Queries, AskedWithinAStepDoNotSpoilLaterOnes) {
+  struct Asks final : StageObserver {
+    explicit Asks(const World& of) : world(of) {}
+    void begin(Stage) override { (void)world.nearest(Vec3{}, 100.0); }
+    void end(Stage) override {}
+    const World& world;
+  };
+  for (const bool continuous : {false, true}) {
+    World world;
+    BodyDesc desc;
+    desc.motion = Motion::dynamic;
+    desc.continuous = continuous;
+    desc.velocity = {{}, {10, 0, 0}};
+    const BodyId ball = must(world.create_body(desc));
+    ColliderDesc sphere;
+    sphere.shape = Sphere{0.1};
+    must(world.add_collider(ball, sphere));
+    world.observe_stages(std::make_shared<Asks>(world));
+    must(world.step(0.1));
+    const Vec3 at = world.pose(ball).position();
+    EXPECT_NEAR(at.x, 1.0, 1e-9);
+    const auto hit = must(world.ray_cast(at - Vec3{0, 5, 0}, {0, 1, 0}, 10.0));
+    ASSERT_TRUE(hit) << continuous;
+    EXPECT_NEAR(hit->distance, 4.9, 1e-9);
+  }
 }
 
 TEST(Queries, RefuseWhatIsNoQuestion) {
