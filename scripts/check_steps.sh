@@ -135,7 +135,7 @@ count_cases() { # count_cases FOLDER
 }
 
 step_asan() {
-  sanitized_tests asan-ubsan numbers_tests numbers
+  sanitized_tests asan-ubsan engine_tests engine
   count_cases build/asan-ubsan/gtest
 }
 step_asan_all() {

@@ -95,7 +95,8 @@ TEST(SelfCollision, AChainFallsIntoAHeapOfItself) {
         StepStatus status;
         for (int i = 0; i < static_cast<int>(8.0 * rate); ++i) {
           status |= must(world.step(1.0 / rate));
-          deepest[collide] = std::max(deepest[collide], deepest_in_itself(world, rope));
+          if (i % 8 == 0)  // it takes longer than a step
+            deepest[collide] = std::max(deepest[collide], deepest_in_itself(world, rope));
         }
         EXPECT_FALSE(status.non_finite);
         at_end[collide] = deepest_in_itself(world, rope);
