@@ -22,8 +22,8 @@ struct StepStatus {
 };
 
 enum class Limit : std::uint8_t {
-  // A continuous body had more impacts than max_impacts_per_step. It and the bodies that it touches
-  // stopped for the rest of the step.
+  // The world had max_impacts_per_step impacts. Bodies that would have collided again, and those
+  // that would have run into them, stopped for the rest of the step.
   impacts,
   // A body or an articulation left the range of numbers, or a joint moved no inertia. It was
   // stopped in place.
