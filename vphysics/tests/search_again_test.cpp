@@ -144,14 +144,20 @@ TEST(SearchAgain, WakesWhatIsHit) {
   EXPECT_NEAR(world.velocity(balls.all[3]).v.x, 10.0, 1e-4);
 }
 
-// Fast bodies without CCD do not pass through a plate of 20 mm or a mesh:
-// contacts are searched for as far as a body moves in a step.
-TEST(FastBodies, WithoutRotationPassThroughNothing) {
-  const std::vector<Vec3> corners{{0, -2, -2}, {0, 2, -2}, {0, 2, 2}, {0, -2, 2}};
+// In the plane x = 0.
+TriangleMesh two_sided_square(double half) {
+  const std::vector<Vec3> corners{
+      {0, -half, -half}, {0, half, -half}, {0, half, half}, {0, -half, half}};
   const std::vector<TriangleMesh::Triangle> triangles{{0, 1, 2}, {0, 2, 3}};
   MeshOptions options;
   options.two_sided = true;
-  const TriangleMesh sheet = must(TriangleMesh::of(corners, triangles, options));
+  return must(TriangleMesh::of(corners, triangles, options));
+}
+
+// Fast bodies without CCD do not pass through a plate of 20 mm or a mesh:
+// contacts are searched for as far as a body moves in a step.
+TEST(FastBodies, WithoutRotationPassThroughNothing) {
+  const TriangleMesh sheet = two_sided_square(2);
   Random random(7);
   for (const Shape& shape : {Shape(Sphere{0.05}), Shape(Box{{0.05, 0.05, 0.05}}),
                              Shape(Capsule{0.02, 0.2}), Shape(Box{{0.3, 0.02, 0.02}})}) {
@@ -179,11 +185,7 @@ TEST(FastBodies, WithoutRotationPassThroughNothing) {
 
 // Neither do bodies that rotate up to 1.7 rad in the step in which they arrive.
 TEST(FastBodies, WithRotationPassThroughNothing) {
-  const std::vector<Vec3> corners{{0, -9, -9}, {0, 9, -9}, {0, 9, 9}, {0, -9, 9}};
-  const std::vector<TriangleMesh::Triangle> triangles{{0, 1, 2}, {0, 2, 3}};
-  MeshOptions options;
-  options.two_sided = true;
-  const TriangleMesh sheet = must(TriangleMesh::of(corners, triangles, options));
+  const TriangleMesh sheet = two_sided_square(9);
   Random random(7);
   int passed = 0;
   for (const Shape& shape :

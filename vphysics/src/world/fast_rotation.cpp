@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "solve/row_vector.h"
+#include "world/step_context.h"
 #include "world/validate.h"
 
 namespace vp {
@@ -27,7 +28,7 @@ struct Displacement {
 
 class FastRotation {
  public:
-  explicit FastRotation(const FastRotationContext& context) : on_(context) {}
+  explicit FastRotation(const Stores& stores) : on_(stores) {}
 
   bool rotates_fast(std::uint32_t index) const {
     const Displacement d = displacement_of(index);
@@ -41,7 +42,7 @@ class FastRotation {
   // The fraction of its displacement at which it meets another body; 1 if it does not.
   double fraction_of(std::uint32_t index) const {
     double fraction = 1.0;
-    on_.contacts.for_each_of(on_.bodies[index], [&](std::uint32_t, const Contact& c) {
+    on_.contact_store.for_each_of(on_.bodies[index], [&](std::uint32_t, const Contact& c) {
       if (c.sensor || c.of_link || c.parked || c.is_part()) return;
       if (c.slot.points == 0 && c.first_part == kNone) return;
       const bool is_a = on_.colliders[c.a].body == index;
@@ -58,7 +59,7 @@ class FastRotation {
   }
 
   void shorten(const ShortenedMotion& motion) const {
-    float* displacement = on_.rows[motion.body + 1].displacement;
+    float* displacement = on_.body_rows[motion.body + 1].displacement;
     const float* start = on_.start_displacements[motion.body].data();
     for (int i = 0; i < 6; ++i)
       displacement[i] = start[i] + motion.fraction * (displacement[i] - start[i]);
@@ -67,7 +68,7 @@ class FastRotation {
 
  private:
   Displacement displacement_of(std::uint32_t index) const {
-    const float* at = on_.rows[index + 1].displacement;
+    const float* at = on_.body_rows[index + 1].displacement;
     const float* start = on_.start_displacements[index].data();
     return {vector_of(at) - vector_of(start), vector_of(at + 3) - vector_of(start + 3)};
   }
@@ -112,7 +113,7 @@ class FastRotation {
                   collide::ClosestPoints& points) const {
     collide::NearestParts nearest;
     if (!nearest_parts(*pair.own.shape, pose_at(pair.own, fraction), *pair.other.shape,
-                       pose_at(pair.other, fraction), limit, on_.scratch, nearest))
+                       pose_at(pair.other, fraction), limit, on_.shapes.parts_scratch, nearest))
       return false;
     points = nearest.points;
     return true;
@@ -124,15 +125,16 @@ class FastRotation {
 
   double impact_of(const Pair& pair) const {
     // Stops within the slop, so that the next step has the contact.
-    const double target = 0.5 * on_.slop, tolerance = 0.25 * on_.slop;
+    const double target = 0.5 * on_.desc.contact_slop, tolerance = 0.25 * on_.desc.contact_slop;
     collide::ClosestPoints start, end;
     if (nearest_at(0.0, target + tolerance, pair, start))
       return end_of_shallow(pair, pair.shallow + std::max(0.0, -start.distance));
     collide::PartsImpact impact{};
-    if (!first_impact({pair.own, pair.other, 1.0, tolerance}, target, on_.scratch, impact))
+    if (!first_impact({pair.own, pair.other, 1.0, tolerance}, target, on_.shapes.parts_scratch,
+                      impact))
       return 1.0;
     // A shallow overlap on the same side is left to the contacts.
-    const bool left_to_contacts = nearest_at(1.0, on_.slop, pair, end) &&
+    const bool left_to_contacts = nearest_at(1.0, on_.desc.contact_slop, pair, end) &&
                                   end.distance >= -pair.shallow &&
                                   dot(end.normal, impact.points.normal) > 0.0;
     return left_to_contacts ? 1.0 : impact.time;
@@ -140,7 +142,8 @@ class FastRotation {
 
   // Of two that touch at the start: the fraction up to which they do not overlap deeply. Poses
   // along the motion are tested. If one overlaps deeply, the motion advances only as far as the
-  // overlap cannot become deep at the speed of the fastest point.
+  // overlap cannot become deep at the speed of the fastest point. shallow: the depth at the start
+  // and pair.shallow, so that a body that overlaps already is not stopped for good.
   double end_of_shallow(const Pair& pair, double shallow) const {
     const double rotation = norm(pair.own.motion.w),
                  shift = norm(pair.own.motion.v - pair.other.motion.v);
@@ -155,22 +158,22 @@ class FastRotation {
       collide::ClosestPoints points;
       const double distance =
           nearest_at(fraction, shallow, pair, points) ? points.distance : shallow;
-      if (distance <= -0.5 * shallow) break;
+      if (distance <= 0.5 * pair.shallow - shallow) break;
       fraction += (distance + shallow) / speed;
     }
     return std::min(fraction, static_cast<double>(k) / samples);
   }
 
-  const FastRotationContext& on_;
+  const Stores& on_;
 };
 
 }  // namespace
 
-void stop_fast_rotating_bodies(const FastRotationContext& context, FastRotationScratch& scratch) {
-  const FastRotation fast(context);
-  const std::span<const std::uint32_t> awake = context.awake_bodies;
+void stop_fast_rotating_bodies(const Stores& stores, FastRotationScratch& scratch) {
+  const FastRotation fast(stores);
+  const std::vector<std::uint32_t>& awake = stores.lists.awake_bodies;
   scratch.rotates_fast.resize(awake.size());
-  context.workers.in_parallel(awake.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
+  stores.workers.in_parallel(awake.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k)
       scratch.rotates_fast[k] = fast.rotates_fast(awake[k]) ? 1 : 0;
   });

@@ -9,29 +9,12 @@
 // that meet others that also move far need BodyDesc::continuous.
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <span>
 #include <vector>
-
-#include "collide/shape_query.h"
-#include "solve/body_row.h"
-#include "world/contact_store.h"
-#include "world/parallel.h"
 
 namespace vp {
 
-struct FastRotationContext {
-  Bodies& bodies;
-  Colliders& colliders;
-  ContactStore& contacts;
-  std::span<const std::uint32_t> awake_bodies;
-  std::span<solve::BodyRow> rows;                             // row i + 1 is of body i
-  std::span<const std::array<float, 6>> start_displacements;  // of each body
-  double slop;                                                // contacts within it rest [m]
-  const Workers& workers;
-  collide::PartsScratch& scratch;
-};
+struct Stores;
 
 struct ShortenedMotion {
   std::uint32_t body;
@@ -45,6 +28,6 @@ struct FastRotationScratch {
 
 // Precondition: the bodies have their poses at the start of the step, the rows their displacements
 // at its end. Shortens displacements, and sets Body::shortened.
-void stop_fast_rotating_bodies(const FastRotationContext& context, FastRotationScratch& scratch);
+void stop_fast_rotating_bodies(const Stores& stores, FastRotationScratch& scratch);
 
 }  // namespace vp

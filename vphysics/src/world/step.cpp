@@ -119,12 +119,7 @@ void World::Impl::run(double dt) {
   sub_step.awake_body_changed.resize(lists.awake_bodies.size());
   counters.awake = static_cast<std::uint32_t>(lists.awake_bodies.size());
   run_sub_steps(dt);
-  if (lists.some_sub_stepped) {
-    stop_fast_rotating_bodies(
-        {bodies, colliders, contact_store, lists.awake_bodies, body_rows,
-         sub_step.start_displacements, desc.contact_slop, workers, shapes.parts_scratch},
-        sub_step.fast_rotation);
-  }
+  if (lists.some_sub_stepped) stop_fast_rotating_bodies(context, sub_step.fast_rotation);
   if (!has_impact_stage()) {
     const auto stage = in(Stage::advance);
     advance_all(dt);
