@@ -41,7 +41,7 @@ Vec3 random_axis(vp::test::Random& random) {
 // Pairs of bodies, each joined in one lane of blocks of one form.
 template <class B>
 struct Pairs {
-  std::vector<BodyRow> rows{2 * kHanging + 1};
+  std::vector<BodyState> states{2 * kHanging + 1};
   std::vector<std::array<float, 6>> start{2 * kHanging};
   std::vector<std::uint32_t> bodies{std::vector<std::uint32_t>(2 * kHanging)};
   std::vector<Gone> gone{2 * kHanging + 1};
@@ -56,13 +56,13 @@ struct Pairs {
     std::iota(bodies.begin(), bodies.end(), 0u);
     for (Gone& one : gone) one = {{0, 0, 0, 1}, {}, 0};
     for (const std::uint32_t body : bodies) {
-      BodyRow& row = rows[body + 1];
-      for (int k = 0; k < 6; ++k) row.velocity[k] = number(-1, 1);
-      row.velocity[kInverseMass] = body % 9 == 0 ? 0.0f : number(0.5, 2.0);
-      for (int k = 0; k < 3; ++k) row.inertia[k] = body % 9 == 0 ? 0.0f : number(4.0, 8.0);
-      for (int k = 3; k < 6; ++k) row.inertia[k] = body % 9 == 0 ? 0.0f : number(-1.0, 1.0);
+      BodyState& state = states[body + 1];
+      for (int k = 0; k < 6; ++k) state.velocity[k] = number(-1, 1);
+      state.velocity[kInverseMass] = body % 9 == 0 ? 0.0f : number(0.5, 2.0);
+      for (int k = 0; k < 3; ++k) state.inertia[k] = body % 9 == 0 ? 0.0f : number(4.0, 8.0);
+      for (int k = 3; k < 6; ++k) state.inertia[k] = body % 9 == 0 ? 0.0f : number(-1.0, 1.0);
       for (int k = 0; k < 6; ++k) start[body][static_cast<std::size_t>(k)] = number(-0.1, 0.1);
-      for (int k = 0; k < 6; ++k) row.displacement[k] = number(-0.4, 0.4);
+      for (int k = 0; k < 6; ++k) state.displacement[k] = number(-0.4, 0.4);
     }
     for (std::uint32_t pair = 0; pair < kHanging; ++pair) fill(pair, random);
   }
@@ -136,9 +136,9 @@ struct Pairs {
     }
   }
   void sub_step(const AllJointPasses& all, const JointPasses<B>& passes) {
-    const typename JointPasses<B>::Run run{blocks.data(), blocks.size(), &form, rows.data(),
+    const typename JointPasses<B>::Run run{blocks.data(), blocks.size(), &form, states.data(),
                                            gone.data()};
-    all.find_gone(rows.data(), start.data(), bodies.data(), bodies.size(), gone.data());
+    all.find_gone(states.data(), start.data(), bodies.data(), bodies.size(), gone.data());
     passes.load_inertias(run);
     passes.prepare(run);
     passes.warm_start(run);
@@ -157,7 +157,7 @@ bool same_lanes(const std::vector<B>& some, const std::vector<B>& others) {
     const auto* const other = reinterpret_cast<const IndexField*>(&others[k]);
     for (std::size_t field = 0; field < sizeof(B) / sizeof(IndexField); ++field) {
       for (int lane = 0; lane < kLanes; ++lane) {
-        const bool used = some[k].b.lane[lane] != kWorldRow;
+        const bool used = some[k].b.lane[lane] != kWorldState;
         if (used && one[field].lane[lane] != other[field].lane[lane]) return false;
       }
     }
@@ -170,13 +170,14 @@ void expect_the_same_bits(const JointForm& form, JointPasses<B> AllJointPasses::
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     Pairs<B> first(form, seed);
     first.sub_step(kBaselineJoints, kBaselineJoints.*kind);
-    for (const float x : first.rows[5].velocity) ASSERT_TRUE(std::isfinite(x));
+    for (const float x : first.states[5].velocity) ASSERT_TRUE(std::isfinite(x));
     for (const JointTables& table : tables_of_this_machine()) {
       Pairs<B> other(form, seed);
       other.sub_step(*table.passes, table.passes->*kind);
       EXPECT_TRUE(same_lanes(first.blocks, other.blocks)) << table.name << ' ' << seed;
-      EXPECT_EQ(
-          std::memcmp(first.rows.data(), other.rows.data(), first.rows.size() * sizeof(BodyRow)), 0)
+      EXPECT_EQ(std::memcmp(first.states.data(), other.states.data(),
+                            first.states.size() * sizeof(BodyState)),
+                0)
           << table.name << ' ' << seed;
     }
   }

@@ -34,7 +34,7 @@ std::vector<Instructions> of_this_machine() {
 // A graph of bodies with contacts: some at rest, some separated, some that bounce, some that are
 // hit.
 struct Net {
-  std::vector<BodyRow> rows{kBodies + 1};
+  std::vector<BodyState> states{kBodies + 1};
   ContactGraph graph;
   std::vector<std::uint32_t> bodies;
   std::vector<VelocityChange> velocity_changes{kBodies};
@@ -47,26 +47,26 @@ struct Net {
     const auto number = [&](double low, double high) {
       return static_cast<float>(random.uniform(low, high));
     };
-    graph.resize(rows.size());
+    graph.resize(states.size());
     for (std::uint32_t i = 0; i < kBodies; ++i) {
-      BodyRow& row = rows[i + 1];
+      BodyState& state = states[i + 1];
       bodies.push_back(i);
       // Some move fast, most are slow.
       const double speed = random.word() % 8 == 0 ? 3.0 : 0.01;
-      for (int k = 0; k < 6; ++k) row.velocity[k] = number(-speed, speed);
-      row.velocity[kInverseMass] = number(0.5, 2.0);
-      row.velocity[kFalls] = 1.0f;
-      for (int k = 0; k < 3; ++k) row.inertia[k] = number(4.0, 8.0);
-      for (int k = 3; k < 6; ++k) row.inertia[k] = number(-1.0, 1.0);
-      row.inertia[kKeepLinear] = row.inertia[kKeepAngular] = 1.0f;
-      row.rate[2] = -9.81f;
+      for (int k = 0; k < 6; ++k) state.velocity[k] = number(-speed, speed);
+      state.velocity[kInverseMass] = number(0.5, 2.0);
+      state.velocity[kFalls] = 1.0f;
+      for (int k = 0; k < 3; ++k) state.inertia[k] = number(4.0, 8.0);
+      for (int k = 3; k < 6; ++k) state.inertia[k] = number(-1.0, 1.0);
+      state.inertia[kKeepLinear] = state.inertia[kKeepAngular] = 1.0f;
+      state.rate[2] = -9.81f;
     }
     std::uint32_t contact = 0;
     for (std::uint32_t i = 0; i < kBodies; ++i) {
       for (const std::uint32_t step : {0u, 1u, 7u}) {  // 0: with a fixed body
         if (random.word() % 4 == 0) continue;
         const std::uint32_t j = (i + step) % kBodies;
-        const ContactGraph::End a{step == 0 ? kWorldRow : i + 1, step != 0, kSharedRegion};
+        const ContactGraph::End a{step == 0 ? kWorldState : i + 1, step != 0, kSharedRegion};
         const ContactGraph::End b{j + 1, true, kSharedRegion};
         const bool ball = random.word() % 5 == 0;
         const ContactSlot slot = graph.add(contact++, a, b, ball ? 1 : 4);
@@ -96,7 +96,7 @@ struct Net {
     c.restitution = random.word() % 6 == 0 ? 0.5 : 0.0;
     c.rolling = P == 1 ? 0.01 : 0.0;
     c.slid_limit = 0.01;
-    write_slot(block, ContactGraph::lane(slot), c, rows[a.row], rows[b.row]);
+    write_slot(block, ContactGraph::lane(slot), c, states[a.state], states[b.state]);
   }
 
   // f(passes of the kind, run).
@@ -106,7 +106,7 @@ struct Net {
       const auto one = [&](const auto& of_kind, auto& colour) {
         using Run = typename std::remove_cvref_t<decltype(of_kind)>::Run;
         if (colour.lanes > 0) {
-          f(of_kind, Run{colour.blocks.data(), colour.lanes, kLanes, rows.data()});
+          f(of_kind, Run{colour.blocks.data(), colour.lanes, kLanes, states.data()});
         }
       };
       one(passes.one, graph.of<1>(kSharedRegion, c));
@@ -119,14 +119,14 @@ struct Net {
     const std::size_t n = bodies.size();
     if (first) for_runs(passes, [&](const auto& p, const auto& run) { p.load_inertias(run); });
     if (!first)
-      passes.find_velocity_changes(rows.data(), velocity_changes.data(), bodies.data(), n);
-    passes.accelerate(rows.data(), bodies.data(), n, kH);
+      passes.find_velocity_changes(states.data(), velocity_changes.data(), bodies.data(), n);
+    passes.accelerate(states.data(), bodies.data(), n, kH);
     for (int round = 0; round < 4; ++round) {
       for_runs(passes, [&](const auto& p, const auto& run) {
         bounces += p.apply_restitution(run, kH, 0.05f);
       });
     }
-    (first ? passes.keep : passes.repeat)(rows.data(), velocity_changes.data(), bodies.data(), n);
+    (first ? passes.keep : passes.repeat)(states.data(), velocity_changes.data(), bodies.data(), n);
     if (first) for_runs(passes, [&](const auto& p, const auto& run) { p.warm_start(run); });
     for_runs(passes, [&](const auto& p, const auto& run) { p.solve_first(run, soft); });
     acted.clear();
@@ -137,7 +137,7 @@ struct Net {
           acted.push_back(run.blocks[l / kLanes].active.lane[l % kLanes]);
       });
     }
-    passes.move(rows.data(), bodies.data(), n, kH);
+    passes.move(states.data(), bodies.data(), n, kH);
     for_runs(passes, [&](const auto& p, const auto& run) { p.relax(run, soft); });
     return bounces;
   }
@@ -145,10 +145,10 @@ struct Net {
   // Everything that the passes read and write, except unused lanes.
   std::vector<float> state() {
     std::vector<float> all = acted;
-    const auto add = [&all](const float(&row)[8]) { all.insert(all.end(), row, row + 8); };
-    for (const BodyRow& row : rows) {
-      add(row.velocity);
-      add(row.displacement);
+    const auto add = [&all](const float(&state)[8]) { all.insert(all.end(), state, state + 8); };
+    for (const BodyState& state : states) {
+      add(state.velocity);
+      add(state.displacement);
     }
     for_runs(passes(), [&](const auto&, const auto& run) {
       for (std::uint32_t l = 0; l < run.lanes; ++l) {
@@ -172,17 +172,17 @@ TEST(Passes, PushEveryPointAsItsEquationSays) {
     int pushing = 0, free = 0, open = 0;
     for (std::uint64_t seed = 1; seed <= 30; ++seed) {
       vp::test::Random random(seed);
-      std::vector<BodyRow> rows(2 * kLanes + 1);
+      std::vector<BodyState> states(2 * kLanes + 1);
       std::vector<NewContact> contacts(kLanes);
       std::vector<ContactBlock<4>> blocks(1);
       for (int lane = 0; lane < kLanes; ++lane) {
         NewContact& c = contacts[lane];
         for (int side = 0; side < 2; ++side) {
-          BodyRow& row = rows[1 + 2 * lane + side];
-          for (int k = 0; k < 6; ++k) row.velocity[k] = static_cast<float>(random.uniform(-1, 1));
-          row.velocity[kInverseMass] = static_cast<float>(random.uniform(0.5, 2.0));
-          for (int k = 0; k < 3; ++k) row.inertia[k] = static_cast<float>(random.uniform(4, 8));
-          for (int k = 3; k < 6; ++k) row.inertia[k] = static_cast<float>(random.uniform(-1, 1));
+          BodyState& state = states[1 + 2 * lane + side];
+          for (int k = 0; k < 6; ++k) state.velocity[k] = static_cast<float>(random.uniform(-1, 1));
+          state.velocity[kInverseMass] = static_cast<float>(random.uniform(0.5, 2.0));
+          for (int k = 0; k < 3; ++k) state.inertia[k] = static_cast<float>(random.uniform(4, 8));
+          for (int k = 3; k < 6; ++k) state.inertia[k] = static_cast<float>(random.uniform(-1, 1));
           (side == 0 ? blocks[0].a : blocks[0].b).lane[lane] =
               static_cast<unsigned>(1 + 2 * lane + side);
         }
@@ -192,9 +192,9 @@ TEST(Passes, PushEveryPointAsItsEquationSays) {
         const Vec3 first = random.in_cube(0.4);
         for (auto& point : c.points)
           point = {first + random.in_cube(0.1), random.uniform(-2e-3, 1e-3), 0.0f};
-        write_slot(blocks[0], lane, c, rows[1 + 2 * lane], rows[2 + 2 * lane]);
+        write_slot(blocks[0], lane, c, states[1 + 2 * lane], states[2 + 2 * lane]);
       }
-      const ContactPasses<4>::Run run{blocks.data(), kLanes, kLanes, rows.data()};
+      const ContactPasses<4>::Run run{blocks.data(), kLanes, kLanes, states.data()};
       of.passes->four.load_inertias(run);
       for (int k = 0; k < kRounds; ++k) {
         if (k % 4 == 0) {
@@ -207,17 +207,17 @@ TEST(Passes, PushEveryPointAsItsEquationSays) {
 
       for (int lane = 0; lane < kLanes; ++lane) {
         const NewContact& c = contacts[lane];
-        const auto velocity_at = [&](const BodyRow& row, const Vec3& arm) {
-          const float* v = row.velocity;
+        const auto velocity_at = [&](const BodyState& state, const Vec3& arm) {
+          const float* v = state.velocity;
           return Vec3{v[0], v[1], v[2]} + cross(Vec3{v[3], v[4], v[5]}, arm);
         };
-        const BodyRow &a = rows[1 + 2 * lane], &b = rows[2 + 2 * lane];
-        const auto answer = [&](const BodyRow& row, const Vec3& arm) {
+        const BodyState &a = states[1 + 2 * lane], &b = states[2 + 2 * lane];
+        const auto answer = [&](const BodyState& state, const Vec3& arm) {
           const Vec3 j = cross(arm, c.normal);
-          const float* i = row.inertia;
+          const float* i = state.inertia;
           const Vec3 w{i[0] * j.x + i[3] * j.y + i[5] * j.z, i[3] * j.x + i[1] * j.y + i[4] * j.z,
                        i[5] * j.x + i[4] * j.y + i[2] * j.z};
-          return row.velocity[kInverseMass] + dot(j, w);
+          return state.velocity[kInverseMass] + dot(j, w);
         };
         double load = 0.0;
         for (const Field& p : blocks[0].impulse) load += p.lane[lane];
@@ -249,12 +249,12 @@ TEST(Passes, LeaveAloneWhatNoBlowReaches) {
   const Soft soft{0.1f / kH, 0.93f, 3.0f, 1.0f / kH, 0.0f};
   for (const Instructions& of : of_this_machine()) {
     for (const double speed : {0.0, -0.5, 2.0}) {  // separation velocity
-      std::vector<BodyRow> rows(2 * kLanes + 1);
+      std::vector<BodyState> states(2 * kLanes + 1);
       std::vector<ContactBlock<4>> blocks(1);
       for (int lane = 0; lane < kLanes; ++lane) {
         const auto a = static_cast<std::uint32_t>(1 + 2 * lane), b = a + 1;
-        for (const std::uint32_t row : {a, b}) rows[row].velocity[kInverseMass] = 1.0f;
-        rows[b].velocity[2] = static_cast<float>(speed);
+        for (const std::uint32_t state : {a, b}) states[state].velocity[kInverseMass] = 1.0f;
+        states[b].velocity[2] = static_cast<float>(speed);
         blocks[0].a.lane[lane] = a;
         blocks[0].b.lane[lane] = b;
         NewContact c{};
@@ -264,9 +264,9 @@ TEST(Passes, LeaveAloneWhatNoBlowReaches) {
         const double blow = 0.05 + 0.1 * lane;
         c.points[0] = {{0.1, 0, 0}, kH * (blow - speed), 0.0f};
         c.points[1] = {{-0.1, 0, 0}, kH * (5.0 - speed), 0.0f};
-        write_slot(blocks[0], lane, c, rows[a], rows[b]);
+        write_slot(blocks[0], lane, c, states[a], states[b]);
       }
-      const ContactPasses<4>::Run run{blocks.data(), kLanes, kLanes, rows.data()};
+      const ContactPasses<4>::Run run{blocks.data(), kLanes, kLanes, states.data()};
       of.passes->four.load_inertias(run);
       of.passes->four.solve_first(run, soft);
       for (int lane = 0; lane < kLanes; ++lane) {

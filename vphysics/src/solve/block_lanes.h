@@ -1,14 +1,14 @@
-// Shared by all passes over blocks: gathers body rows into SIMD lanes and scatters them back.
+// Shared by all passes over blocks: gathers body states into SIMD lanes and scatters them back.
 #pragma once
 
-#include "solve/body_row.h"
+#include "solve/body_state.h"
 #include "solve/field.h"
 #include "solve/lanes.h"
 
 namespace vp::solve {
 
 // W slots of a block from index `at` on, with the velocities of their bodies. A block stores the
-// row indices of its bodies, a and b, and copies of their inverse inertias, inertia_a and
+// indices of its bodies' states, a and b, and copies of their inverse inertias, inertia_a and
 // inertia_b.
 template <int W, class BLOCK>
 class BlockLanes {
@@ -18,7 +18,7 @@ class BlockLanes {
   using S = Sym3T<F>;
   using Block = BLOCK;
 
-  BlockLanes(Block& block, int at, BodyRow* rows) : block_(block), at_(at), rows_(rows) {}
+  BlockLanes(Block& block, int at, BodyState* states) : block_(block), at_(at), states_(states) {}
 
   F get(const Field& f) const { return F(lanes::load<W>(f.lane + at_)); }
   V get(const Field3& f) const { return {get(f.x), get(f.y), get(f.z)}; }
@@ -34,22 +34,22 @@ class BlockLanes {
   Block& block() const { return block_; }
 
   void load_inertias() const {
-    load_inertias([this](int i) { return row_a(i).inertia; }, block_.inertia_a);
-    load_inertias([this](int i) { return row_b(i).inertia; }, block_.inertia_b);
+    load_inertias([this](int i) { return state_a(i).inertia; }, block_.inertia_a);
+    load_inertias([this](int i) { return state_b(i).inertia; }, block_.inertia_b);
   }
   void gather_velocities() {
     F r[8];
-    lanes::gather8<W>([this](int i) { return row_a(i).velocity; }, r);
+    lanes::gather8<W>([this](int i) { return state_a(i).velocity; }, r);
     take_velocity(r, v_a, w_a, mass_a_, falls_a);
-    lanes::gather8<W>([this](int i) { return row_b(i).velocity; }, r);
+    lanes::gather8<W>([this](int i) { return state_b(i).velocity; }, r);
     take_velocity(r, v_b, w_b, mass_b_, falls_b);
   }
   void gather_velocities_and_displacements() {
     F r[16];
-    lanes::gather16<W>([this](int i) { return first_line(row_a(i)); }, r);
+    lanes::gather16<W>([this](int i) { return first_line(state_a(i)); }, r);
     take_velocity(r, v_a, w_a, mass_a_, falls_a);
     read_displacement(r + 8, x_a, rotation_a, carried_a_, fraction_minus_one_a_);
-    lanes::gather16<W>([this](int i) { return first_line(row_b(i)); }, r);
+    lanes::gather16<W>([this](int i) { return first_line(state_b(i)); }, r);
     take_velocity(r, v_b, w_b, mass_b_, falls_b);
     read_displacement(r + 8, x_b, rotation_b, carried_b_, fraction_minus_one_b_);
   }
@@ -58,23 +58,23 @@ class BlockLanes {
   void scatter_velocities(const LaneMask<W>& of) const {
     const F a[8] = {v_a.x, v_a.y, v_a.z, w_a.x, w_a.y, w_a.z, mass_a_, falls_a};
     const F b[8] = {v_b.x, v_b.y, v_b.z, w_b.x, w_b.y, w_b.z, mass_b_, falls_b};
-    scatter([this](int i) { return row_a(i).velocity; }, a, both(is_movable_a(), of));
-    scatter([this](int i) { return row_b(i).velocity; }, b, both(is_movable_b(), of));
+    scatter([this](int i) { return state_a(i).velocity; }, a, both(is_movable_a(), of));
+    scatter([this](int i) { return state_b(i).velocity; }, b, both(is_movable_b(), of));
   }
   void scatter_displacements() const {
     const F a[8] = {x_a.x,        x_a.y,        x_a.z,      rotation_a.x,
                     rotation_a.y, rotation_a.z, carried_a_, fraction_minus_one_a_};
     const F b[8] = {x_b.x,        x_b.y,        x_b.z,      rotation_b.x,
                     rotation_b.y, rotation_b.z, carried_b_, fraction_minus_one_b_};
-    scatter([this](int i) { return row_a(i).displacement; }, a, is_movable_a());
-    scatter([this](int i) { return row_b(i).displacement; }, b, is_movable_b());
+    scatter([this](int i) { return state_a(i).displacement; }, a, is_movable_a());
+    scatter([this](int i) { return state_b(i).displacement; }, b, is_movable_b());
   }
   // Linear accelerations by forces. Only the restitution pass reads them.
   void gather_accelerations(V& a, V& b) const {
     F r[8];
-    lanes::gather8<W>([this](int i) { return row_a(i).rate; }, r);
+    lanes::gather8<W>([this](int i) { return state_a(i).rate; }, r);
     a = {r[0], r[1], r[2]};
-    lanes::gather8<W>([this](int i) { return row_b(i).rate; }, r);
+    lanes::gather8<W>([this](int i) { return state_b(i).rate; }, r);
     b = {r[0], r[1], r[2]};
   }
 
@@ -112,10 +112,10 @@ class BlockLanes {
   LaneMask<W> is_movable_b() const { return mass_b_ > F(0.0f); }
 
   // Marks both bodies as supported. Skips bodies that no impulse moves: several slots may share
-  // their row.
+  // their state.
   void mark_carried(int i) const {
-    for (BodyRow* row : {&row_a(i), &row_b(i)}) {
-      if (row->velocity[kInverseMass] > 0.0f) row->displacement[kCarried] = 1.0f;
+    for (BodyState* state : {&state_a(i), &state_b(i)}) {
+      if (state->velocity[kInverseMass] > 0.0f) state->displacement[kCarried] = 1.0f;
     }
   }
 
@@ -123,8 +123,8 @@ class BlockLanes {
   F falls_a, falls_b;
 
  private:
-  BodyRow& row_a(int i) const { return rows_[block_.a.lane[at_ + i]]; }
-  BodyRow& row_b(int i) const { return rows_[block_.b.lane[at_ + i]]; }
+  BodyState& state_a(int i) const { return states_[block_.a.lane[at_ + i]]; }
+  BodyState& state_b(int i) const { return states_[block_.b.lane[at_ + i]]; }
   template <class ContactSlot>
   void load_inertias(const ContactSlot& slot, FieldSym3& inertia) const {
     F r[8];
@@ -133,8 +133,8 @@ class BlockLanes {
                           &inertia.xy, &inertia.yz, &inertia.zx};
     for (int f = 0; f < 6; ++f) put(*to[f], r[f]);
   }
-  // Does not write rows that no impulse moves: several slots, and workers, may read them. Empty
-  // slots refer to the world's row.
+  // Does not write states that no impulse moves: several slots, and workers, may read them. Empty
+  // slots refer to kWorldState.
   template <class ContactSlot>
   static void scatter(const ContactSlot& slot, const F* values, const LaneMask<W>& pushed) {
     const unsigned bits = lanes::bits_of(pushed);
@@ -144,8 +144,8 @@ class BlockLanes {
       lanes::scatter8<W>(slot, values, [bits](int i) { return (bits >> i & 1u) != 0; });
     }
   }
-  static const float* first_line(const BodyRow& row) {
-    return reinterpret_cast<const float*>(&row);
+  static const float* first_line(const BodyState& state) {
+    return reinterpret_cast<const float*>(&state);
   }
   static void take_velocity(const F* r, V& v, V& w, F& mass, F& falls) {
     v = {r[0], r[1], r[2]};
@@ -162,7 +162,7 @@ class BlockLanes {
 
   Block& block_;
   int at_;
-  BodyRow* rows_;
+  BodyState* states_;
   F mass_a_, mass_b_, carried_a_, carried_b_, fraction_minus_one_a_, fraction_minus_one_b_;
 };
 

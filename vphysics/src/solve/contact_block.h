@@ -1,12 +1,12 @@
 // Sixteen contacts in structure-of-arrays layout.
 //
-// Entry l of every field belongs to one contact, between the bodies of rows a[l] and b[l]. No body
-// except the fixed world is in two slots of a block. A block lives as long as its contacts: between
-// steps only the fields that a pass writes change. With rA, rB the arms of a point from the centres
-// of mass of a and b, d = x_a - x_b (so that rB = rA + d), n the normal from a to b:
+// Entry l of every field belongs to one contact, between the bodies of states a[l] and b[l]. No
+// body except the fixed world is in two slots of a block. A block lives as long as its contacts:
+// between steps only the fields that a pass writes change. With rA, rB the arms of a point from the
+// centres of mass of a and b, d = x_a - x_b (so that rB = rA + d), n the normal from a to b:
 //
 //   u_i = n . (v_b - v_a) + (d x n) . w_b + (rA_i x n) . (w_b - w_a)        separation speed
-//   s_i = base_i + the same of the rows' displacement and rotation          separation
+//   s_i = base_i + the same of the states' displacement and rotation          separation
 //   K_ij = du_i / dp_j = 1/m_a + 1/m_b + jA_i . I_a^-1 jA_j + jB_i . I_b^-1 jB_j
 //
 // with jA_i = rA_i x n, jB_i = jA_i + d x n. Friction acts at the centre of the points: along two
@@ -34,12 +34,12 @@ template <int kPoints>
 struct ContactBlock {
   static constexpr int kPairs = kPoints * (kPoints - 1) / 2;
 
-  IndexField a, b;     // rows of the bodies; the world's row in an empty slot
+  IndexField a, b;     // indices of the bodies' states; kWorldState in an empty slot
   IndexField contact;  // index in the world's contacts; kNoContact in an empty slot
   IndexField touches;  // 1: the contact is reported as touching
   Field active;        // 1: the next iteration or restitution pass must process it; else 0
   Field given;         // normal impulse, summed over this step's sub-steps so far [N s]
-  FieldSym3 inertia_a, inertia_b;  // inverse; copied from the rows before the sub-steps
+  FieldSym3 inertia_a, inertia_b;  // inverse; copied from the states before the sub-steps
   Field bias[kPoints];             // from the sub-step's first iteration (find_bias) [m/s]
 
   Field3 normal, tangent, d;

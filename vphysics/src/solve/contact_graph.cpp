@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solve/body_row.h"
+#include "solve/body_state.h"
 #include "solve/slot_copy.h"
 
 namespace vp::solve {
@@ -12,8 +12,8 @@ namespace {
 // A body that no impulse moves may still move, with the others of its region. So its region counts,
 // unless it is the world itself.
 std::uint16_t region_of(const ContactGraph::End& a, const ContactGraph::End& b) {
-  if (a.row == kWorldRow) return b.region;
-  return b.row == kWorldRow || a.region == b.region ? a.region : kSharedRegion;
+  if (a.state == kWorldState) return b.region;
+  return b.state == kWorldState || a.region == b.region ? a.region : kSharedRegion;
 }
 
 template <int P>
@@ -80,8 +80,8 @@ void ContactGraph::clear() {
 
 int ContactGraph::free_colour(const End& a, const End& b) const {
   ColourSet taken;
-  if (a.moves) taken.insert(taken_[a.row]);
-  if (b.moves) taken.insert(taken_[b.row]);
+  if (a.moves) taken.insert(taken_[a.state]);
+  if (b.moves) taken.insert(taken_[b.state]);
   return taken.lowest_free(!a.moves || !b.moves);
 }
 
@@ -95,11 +95,11 @@ bool ContactGraph::append(std::uint32_t contact, const End& a, const End& b, int
                           ContactSlot& slot) {
   if ((!a.moves || !b.moves) && colour < kFirstFixedColour) return false;
   if (colour < kLastColour) {
-    if ((a.moves && taken_[a.row].has(colour)) || (b.moves && taken_[b.row].has(colour))) {
+    if ((a.moves && taken_[a.state].has(colour)) || (b.moves && taken_[b.state].has(colour))) {
       return false;
     }
-    if (a.moves) taken_[a.row].insert(colour);
-    if (b.moves) taken_[b.row].insert(colour);
+    if (a.moves) taken_[a.state].insert(colour);
+    if (b.moves) taken_[b.state].insert(colour);
   }
   slot.points = static_cast<std::uint8_t>(points);
   slot.colour = static_cast<std::uint8_t>(colour);
@@ -110,8 +110,8 @@ bool ContactGraph::append(std::uint32_t contact, const End& a, const End& b, int
 
 std::uint32_t ContactGraph::remove(const ContactSlot& slot, const End& a, const End& b) {
   if (slot.colour < kLastColour) {
-    if (a.moves) taken_[a.row].erase(slot.colour);
-    if (b.moves) taken_[b.row].erase(slot.colour);
+    if (a.moves) taken_[a.state].erase(slot.colour);
+    if (b.moves) taken_[b.state].erase(slot.colour);
   }
   return slot.points == 1 ? remove_slot<1>(slot) : remove_slot<4>(slot);
 }
@@ -143,8 +143,8 @@ void ContactGraph::add_slot(std::uint32_t contact, const End& a, const End& b, C
     clear_slot(colour.blocks[block], lane);  // passes also write into empty slots
   }
   ContactBlock<P>& to = colour.blocks[block];
-  to.a.lane[lane] = a.row;
-  to.b.lane[lane] = b.row;
+  to.a.lane[lane] = a.state;
+  to.b.lane[lane] = b.state;
   to.contact.lane[lane] = contact;
 }
 

@@ -100,11 +100,12 @@ class ContactGraph {
  public:
   // moves: whether an impulse can move the body.
   struct End {
-    std::uint32_t row;
+    std::uint32_t state;
     bool moves;
     std::uint16_t region;
   };
-  // Allocates a slot for the contact. All its fields are zero except the rows and the contact.
+  // Allocates a slot for the contact. All its fields are zero except the indices of the states and
+  // of the contact.
   ContactSlot add(std::uint32_t contact, const End& a, const End& b, int points);
   // Allocates a slot at the end of a given colour, as for restoring a state. Returns false if the
   // contact may not use that colour.
@@ -160,9 +161,9 @@ class ContactGraph {
   }
   // Removes all slots and all regions except kSharedRegion; keeps the memory.
   void clear();
-  // resize: capacity for the rows. reserve: capacity for the first contacts of this many bodies, so
-  // that a busy step need not allocate.
-  void resize(std::size_t rows) { taken_.resize(rows); }
+  // resize: capacity for the states. reserve: capacity for the first contacts of this many bodies,
+  // so that a busy step need not allocate.
+  void resize(std::size_t states) { taken_.resize(states); }
   void reserve(std::size_t bodies);
 
  private:
@@ -184,7 +185,7 @@ class ContactGraph {
   std::vector<Region> regions_{1};
   std::size_t regions_in_use_ = 1;
   std::size_t reserved_bodies_ = 0, reserved_regions_ = 0;  // set by reserve()
-  std::vector<ColourSet> taken_;                            // by row: the colours of its contacts
+  std::vector<ColourSet> taken_;  // of each state: the colours of its contacts
 };
 
 }  // namespace vp::solve

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solve/row_vector.h"
+#include "solve/state_vector.h"
 #include "vphysics/lie/inertia.h"
 
 namespace vp::solve {
@@ -15,12 +15,12 @@ struct Side {
   Sym3 inertia;
   Vec3 displacement, rotation;
 
-  explicit Side(const BodyRow& row)
-      : mass(static_cast<double>(row.velocity[kInverseMass])),
-        inertia{at(row.inertia, 0), at(row.inertia, 1), at(row.inertia, 2),
-                at(row.inertia, 3), at(row.inertia, 4), at(row.inertia, 5)},
-        displacement(vector_of(row.displacement)),
-        rotation(vector_of(row.displacement + 3)) {}
+  explicit Side(const BodyState& state)
+      : mass(static_cast<double>(state.velocity[kInverseMass])),
+        inertia{at(state.inertia, 0), at(state.inertia, 1), at(state.inertia, 2),
+                at(state.inertia, 3), at(state.inertia, 4), at(state.inertia, 5)},
+        displacement(vector_of(state.displacement)),
+        rotation(vector_of(state.displacement + 3)) {}
 
  private:
   static double at(const float* f, int i) { return static_cast<double>(f[i]); }
@@ -132,9 +132,9 @@ void write_friction(ContactBlock<P>& block, int lane, const NewContact& c, const
 }  // namespace
 
 template <int P>
-void write_slot(ContactBlock<P>& block, int lane, const NewContact& c, const BodyRow& row_a,
-                const BodyRow& row_b) {
-  const Side a(row_a), b(row_b);
+void write_slot(ContactBlock<P>& block, int lane, const NewContact& c, const BodyState& state_a,
+                const BodyState& state_b) {
+  const Side a(state_a), b(state_b);
   put(block.active, lane, 1.0);
   put(block.normal, lane, c.normal);
   put(block.d, lane, c.x_a - c.x_b);
@@ -147,10 +147,10 @@ void write_slot(ContactBlock<P>& block, int lane, const NewContact& c, const Bod
   put(block.slid_limit, lane, c.slid_limit);
 }
 
-template void write_slot<1>(ContactBlock<1>&, int, const NewContact&, const BodyRow&,
-                            const BodyRow&);
-template void write_slot<4>(ContactBlock<4>&, int, const NewContact&, const BodyRow&,
-                            const BodyRow&);
+template void write_slot<1>(ContactBlock<1>&, int, const NewContact&, const BodyState&,
+                            const BodyState&);
+template void write_slot<4>(ContactBlock<4>&, int, const NewContact&, const BodyState&,
+                            const BodyState&);
 
 template <int P>
 void rescale_impulses(ContactBlock<P>& block, float factor) {

@@ -1,7 +1,7 @@
 // Fills a contact slot from the narrow phase's result.
 #pragma once
 
-#include "solve/body_row.h"
+#include "solve/body_state.h"
 #include "solve/contact_graph.h"
 #include "vphysics/lie/vec3.h"
 
@@ -27,8 +27,8 @@ struct NewContact {
 };
 
 template <int P>
-void write_slot(ContactBlock<P>& block, int lane, const NewContact& contact, const BodyRow& a,
-                const BodyRow& b);
+void write_slot(ContactBlock<P>& block, int lane, const NewContact& contact, const BodyState& a,
+                const BodyState& b);
 
 // Multiplies all accumulated impulses of a block by a factor.
 template <int P>

@@ -91,7 +91,7 @@ struct JointBlock {
   static constexpr int kPointRows = kPoint, kOtherRows = kOthers, kAll = kPoint + kOthers;
   static constexpr bool kAxes = kOfAxes;
 
-  IndexField a, b;   // rows of the bodies; the world's row in an empty slot
+  IndexField a, b;   // indices of the bodies' states; kWorldState in an empty slot
   IndexField joint;  // index in the world's joints
   FieldSym3 inertia_a, inertia_b;
   Field active;          // 0: the last iteration has hardly changed its impulses

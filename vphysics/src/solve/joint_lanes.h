@@ -25,8 +25,8 @@ class JointLanes : public BlockLanes<W, BLOCK> {
   using V = Vec3T<F>;
   static constexpr int kPoint = BLOCK::kPointRows, kOthers = BLOCK::kOtherRows, kAll = BLOCK::kAll;
 
-  JointLanes(BLOCK& joints, int at, BodyRow* rows, const JointForm& form)
-      : Base(joints, at, rows), form_(form) {}
+  JointLanes(BLOCK& joints, int at, BodyState* states, const JointForm& form)
+      : Base(joints, at, states), form_(form) {}
   using Base::block;
   using Base::get;
   using Base::put;

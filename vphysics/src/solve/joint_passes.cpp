@@ -12,8 +12,8 @@ namespace {
 
 constexpr int kWidth = VP_LANES;
 
-void find_gone(const BodyRow* rows, const std::array<float, 6>* start, const std::uint32_t* bodies,
-               std::size_t count, Gone* gone) {
+void find_gone(const BodyState* states, const std::array<float, 6>* start,
+               const std::uint32_t* bodies, std::size_t count, Gone* gone) {
   using F = Lanes<kWidth>;
   for (std::size_t first = 0; first < count; first += kWidth) {
     const int some = static_cast<int>(std::min<std::size_t>(kWidth, count - first));
@@ -21,7 +21,7 @@ void find_gone(const BodyRow* rows, const std::array<float, 6>* start, const std
     F w;
     for (int i = 0; i < some; ++i) {
       const std::uint32_t body = bodies[first + static_cast<std::size_t>(i)];
-      const float* to = rows[body + 1].displacement;
+      const float* to = states[body + 1].displacement;
       const auto& from = start[body];
       displacement.x.set(i, to[0] - from[0]);
       displacement.y.set(i, to[1] - from[1]);
@@ -45,8 +45,8 @@ template <int kRows, int kLocked, class B, class F>
 void for_lanes_of(const typename JointPasses<B>::Run& run, const F& f) {
   for (std::size_t i = 0; i < run.count; ++i) {
     for (int at = 0; at < kLanes; at += kWidth) {
-      if (run.blocks[i].a.lane[at] + run.blocks[i].b.lane[at] == 2 * kWorldRow) break;  // empty
-      JointLanes<kWidth, B, kRows, kLocked> lanes(run.blocks[i], at, run.rows, *run.form);
+      if (run.blocks[i].a.lane[at] + run.blocks[i].b.lane[at] == 2 * kWorldState) break;  // empty
+      JointLanes<kWidth, B, kRows, kLocked> lanes(run.blocks[i], at, run.states, *run.form);
       f(lanes, at);
     }
   }

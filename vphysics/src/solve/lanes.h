@@ -1,9 +1,9 @@
-// Gathers rows of bodies into SIMD lanes and scatters them back, so that W contacts of W disjoint
-// pairs of bodies are solved in parallel.
+// Gathers the states of bodies into SIMD lanes and scatters them back, so that W contacts of W
+// disjoint pairs of bodies are solved in parallel.
 //
-// A body's numbers are a row of memory; a lane of a pack is a body. Gathering W bodies is a
-// transposition of W rows. Lanes do not interact, and no operations are contracted: every W gives
-// the same bits.
+// A body's numbers are contiguous: a row of a matrix. A lane of a pack is a body. Gathering W
+// bodies is a transposition of W rows. Lanes do not interact, and no operations are contracted:
+// every W gives the same bits.
 #pragma once
 
 #include <cstdint>

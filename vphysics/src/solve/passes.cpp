@@ -13,56 +13,56 @@ namespace {
 
 constexpr int W = VP_LANES;
 
-// PaddedSix floats of velocity, displacement or acceleration, in the memory layout of a row.
+// PaddedSix floats of velocity, displacement or acceleration, in the memory layout of a state.
 using Row8 = lanes::RawT<8>;
 
-void accelerate(BodyRow* rows, const std::uint32_t* bodies, std::size_t count, float h) {
+void accelerate(BodyState* states, const std::uint32_t* bodies, std::size_t count, float h) {
   const Row8 one = {1, 1, 1, 1, 1, 1, 1, 1};
   for (std::size_t i = 0; i < count; ++i) {
-    BodyRow& row = rows[bodies[i] + 1];
-    const Row8 tail = lanes::load<8>(row.inertia);
+    BodyState& state = states[bodies[i] + 1];
+    const Row8 tail = lanes::load<8>(state.inertia);
     const Row8 keep = __builtin_shufflevector(tail, one, 6, 6, 6, 7, 7, 7, 8, 8);
-    lanes::store<8>(row.velocity,
-                    (lanes::load<8>(row.velocity) + h * lanes::load<8>(row.rate)) * keep);
+    lanes::store<8>(state.velocity,
+                    (lanes::load<8>(state.velocity) + h * lanes::load<8>(state.rate)) * keep);
   }
 }
 
-void keep(BodyRow* rows, VelocityChange* velocity_changes, const std::uint32_t* bodies,
+void keep(BodyState* states, VelocityChange* velocity_changes, const std::uint32_t* bodies,
           std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
     lanes::store<8>(velocity_changes[bodies[i]].velocity,
-                    lanes::load<8>(rows[bodies[i] + 1].velocity));
+                    lanes::load<8>(states[bodies[i] + 1].velocity));
   }
 }
-void find_velocity_changes(BodyRow* rows, VelocityChange* velocity_changes,
+void find_velocity_changes(BodyState* states, VelocityChange* velocity_changes,
                            const std::uint32_t* bodies, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
     VelocityChange& gain = velocity_changes[bodies[i]];
     lanes::store<8>(gain.velocity,
-                    lanes::load<8>(rows[bodies[i] + 1].velocity) - lanes::load<8>(gain.velocity));
+                    lanes::load<8>(states[bodies[i] + 1].velocity) - lanes::load<8>(gain.velocity));
   }
 }
-void repeat(BodyRow* rows, VelocityChange* velocity_changes, const std::uint32_t* bodies,
+void repeat(BodyState* states, VelocityChange* velocity_changes, const std::uint32_t* bodies,
             std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
-    BodyRow& row = rows[bodies[i] + 1];
+    BodyState& state = states[bodies[i] + 1];
     VelocityChange& gain = velocity_changes[bodies[i]];
-    const Row8 before = lanes::load<8>(row.velocity);
-    lanes::store<8>(row.velocity, before + lanes::load<8>(gain.velocity));
+    const Row8 before = lanes::load<8>(state.velocity);
+    lanes::store<8>(state.velocity, before + lanes::load<8>(gain.velocity));
     lanes::store<8>(gain.velocity, before);
   }
 }
 
-void move(BodyRow* rows, const std::uint32_t* bodies, std::size_t count, float h) {
+void move(BodyState* states, const std::uint32_t* bodies, std::size_t count, float h) {
   const Row8 step = {h, h, h, h, h, h, 0, 0};
   for (std::size_t i = 0; i < count; ++i) {
-    BodyRow& row = rows[bodies[i] + 1];
-    lanes::store<8>(row.displacement,
-                    lanes::load<8>(row.displacement) + step * lanes::load<8>(row.velocity));
+    BodyState& state = states[bodies[i] + 1];
+    lanes::store<8>(state.displacement,
+                    lanes::load<8>(state.displacement) + step * lanes::load<8>(state.velocity));
   }
 }
 
-bool find_deviating(const BodyRow* rows, const SearchedMotion* searched,
+bool find_deviating(const BodyState* states, const SearchedMotion* searched,
                     const std::uint32_t* bodies, std::size_t count, float left,
                     std::uint8_t* flags) {
   using F = Lanes<8>;
@@ -73,7 +73,7 @@ bool find_deviating(const BodyRow* rows, const SearchedMotion* searched,
   for (std::size_t i = 0; i < count; ++i) {
     const Row8 motion = lanes::load<8>(searched[bodies[i]].velocity);
     const Row8 limit = __builtin_shufflevector(motion, max, 6, 6, 6, 7, 7, 7, 8, 8);
-    const F change(lanes::load<8>(rows[bodies[i] + 1].velocity) - motion);
+    const F change(lanes::load<8>(states[bodies[i] + 1].velocity) - motion);
     const bool deviates = !none(F(used) * abs(change) > F(limit));
     flags[i] = deviates ? 1 : 0;
     some |= deviates;
@@ -88,7 +88,7 @@ void for_lanes(const typename ContactPasses<P>::Run& run, const F& f) {
   for (std::uint32_t first = 0; first < run.lanes; first += run.stride, ++block) {
     const int end = static_cast<int>(std::min(run.stride, run.lanes - first));
     for (int at = 0; at < end; at += W) {
-      LanesOf<W, P> lanes(*block, at, run.rows);
+      LanesOf<W, P> lanes(*block, at, run.states);
       f(lanes, static_cast<std::size_t>(block - run.blocks), at);
     }
   }
@@ -145,12 +145,12 @@ template <int P>
     bits[block] = (at == 0 ? 0u : bits[block]) | (found & (lanes | lanes << kLanes));
   });
 }
-[[gnu::flatten]] void find_closer(SpeculativeBlock* blocks, std::size_t count, BodyRow* rows,
+[[gnu::flatten]] void find_closer(SpeculativeBlock* blocks, std::size_t count, BodyState* states,
                                   float dt, std::uint32_t* bits) {
   for (std::size_t b = 0; b < count; ++b) {
     std::uint32_t found = 0;
     for (int at = 0; at < kLanes; at += W) {
-      found |= find_closer_pairs<W>(blocks[b].pairs + at, rows, dt) << at;
+      found |= find_closer_pairs<W>(blocks[b].pairs + at, states, dt) << at;
     }
     bits[b] = found;
   }

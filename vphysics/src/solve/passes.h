@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "solve/body_row.h"
+#include "solve/body_state.h"
 #include "solve/contact_block.h"
 #include "solve/joint_block.h"
 #include "solve/speculative_list.h"
@@ -45,7 +45,7 @@ struct ContactPasses {
   struct Run {
     Blocks blocks;
     std::uint32_t lanes, stride;
-    BodyRow* rows;
+    BodyState* states;
   };
   // Before the sub-steps of a step.
   void (*load_inertias)(const Run& run);
@@ -58,18 +58,18 @@ struct ContactPasses {
   // All find functions: a bit per slot, a word per block.
   void (*find_moved)(const Run& run, float dt, float rotation, std::uint32_t* bits);
   // Slots with something to report: a contact that begins or ends, or a hit. The upper half of the
-  // word has the slots with a load. Marks the rows that are supported.
+  // word has the slots with a load. Marks the bodies that are supported.
   void (*find_changes)(const Run& run, std::uint32_t* bits);
 };
 
-// The change of a body's velocity by the contacts of a sub-step, in the layout of its row. During
+// The change of a body's velocity by the contacts of a sub-step, in the layout of its state. During
 // the sub-step it stores the velocity before the contacts.
 struct alignas(32) VelocityChange {
   float velocity[8];
 };
 
 // The velocity by which the last search for contacts extrapolated a body's motion, in the layout of
-// its row, and how far the body may deviate from that motion before the search is repeated: the
+// its state, and how far the body may deviate from that motion before the search is repeated: the
 // distance [m] for each component of v, the angle [rad] for each of w.
 struct alignas(32) SearchedMotion {
   float velocity[6];
@@ -77,26 +77,26 @@ struct alignas(32) SearchedMotion {
 };
 
 struct Passes {
-  // Over bodies. The row of body i is i + 1.
-  void (*accelerate)(BodyRow* rows, const std::uint32_t* bodies, std::size_t count, float h);
+  // Over bodies. The state of body i is i + 1.
+  void (*accelerate)(BodyState* states, const std::uint32_t* bodies, std::size_t count, float h);
   // keep: stores the velocities, before the contacts of a sub-step. find_velocity_changes: stores
   // the velocity changes, after them. repeat: before the contacts of the next sub-step, stores the
   // velocities and applies the changes once more. This equals warm_start as long as the Jacobians
   // are unchanged and only contacts have acted.
-  void (*keep)(BodyRow* rows, VelocityChange* velocity_changes, const std::uint32_t* bodies,
+  void (*keep)(BodyState* states, VelocityChange* velocity_changes, const std::uint32_t* bodies,
                std::size_t count);
-  void (*find_velocity_changes)(BodyRow* rows, VelocityChange* velocity_changes,
+  void (*find_velocity_changes)(BodyState* states, VelocityChange* velocity_changes,
                                 const std::uint32_t* bodies, std::size_t count);
-  void (*repeat)(BodyRow* rows, VelocityChange* velocity_changes, const std::uint32_t* bodies,
+  void (*repeat)(BodyState* states, VelocityChange* velocity_changes, const std::uint32_t* bodies,
                  std::size_t count);
-  void (*move)(BodyRow* rows, const std::uint32_t* bodies, std::size_t count, float h);
+  void (*move)(BodyState* states, const std::uint32_t* bodies, std::size_t count, float h);
   // Sets the flag of each body that deviates by more than its limit, over the time `left`, from the
   // motion of the last search; clears those of the others. Returns whether it has set any.
-  bool (*find_deviating)(const BodyRow* rows, const SearchedMotion* searched,
+  bool (*find_deviating)(const BodyState* states, const SearchedMotion* searched,
                          const std::uint32_t* bodies, std::size_t count, float left,
                          std::uint8_t* flags);
   // A bit for each speculative pair that may use up its clearance by the end of a step dt.
-  void (*find_closer)(SpeculativeBlock* blocks, std::size_t count, BodyRow* rows, float dt,
+  void (*find_closer)(SpeculativeBlock* blocks, std::size_t count, BodyState* states, float dt,
                       std::uint32_t* bits);
   ContactPasses<1> one;
   ContactPasses<4> four;
@@ -109,8 +109,8 @@ struct JointPasses {
     BLOCK* blocks;
     std::size_t count;  // of blocks
     const JointForm* form;
-    BodyRow* rows;
-    const Gone* gone;                // by row
+    BodyState* states;
+    const Gone* gone;                // by index of the state
     float max_bias_velocity = 3.0f;  // for errors of hard rows [m/s]
     bool some_far = true;            // false: prepare has returned false for all
   };
@@ -124,8 +124,8 @@ struct JointPasses {
   void (*relax)(const Run& run, float h);
 };
 struct AllJointPasses {
-  // Over bodies: their motion since the rows' displacements were `start`.
-  void (*find_gone)(const BodyRow* rows, const std::array<float, 6>* start,
+  // Over bodies: their motion since the states' displacements were `start`.
+  void (*find_gone)(const BodyState* states, const std::array<float, 6>* start,
                     const std::uint32_t* bodies, std::size_t count, Gone* gone);
   JointPasses<BallBlock> ball;
   JointPasses<AxesBlock> axes;

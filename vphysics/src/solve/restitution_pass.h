@@ -187,7 +187,7 @@ std::uint32_t find_changed_slots(const LanesOf<W, P>& c, int at) {
 
 // Bits of speculative pairs that may use up their clearance by the end of a step of dt.
 template <int W>
-std::uint32_t find_closer_pairs(const SpeculativePair* pairs, BodyRow* rows, float dt) {
+std::uint32_t find_closer_pairs(const SpeculativePair* pairs, BodyState* states, float dt) {
   using F = Lanes<W>;
   using V = Vec3T<F>;
   F of_pair[24];
@@ -196,10 +196,10 @@ std::uint32_t find_closer_pairs(const SpeculativePair* pairs, BodyRow* rows, flo
                       of_pair + c);
   }
   const auto get3 = [&](int f) { return V{of_pair[f], of_pair[f + 1], of_pair[f + 2]}; };
-  const auto gather = [&](std::uint32_t SpeculativePair::*row, V& x, V& rotation) {
+  const auto gather = [&](std::uint32_t SpeculativePair::*state, V& x, V& rotation) {
     F velocity[8], displacement[8];
-    lanes::gather8<W>([&](int i) { return rows[pairs[i].*row].velocity; }, velocity);
-    lanes::gather8<W>([&](int i) { return rows[pairs[i].*row].displacement; }, displacement);
+    lanes::gather8<W>([&](int i) { return states[pairs[i].*state].velocity; }, velocity);
+    lanes::gather8<W>([&](int i) { return states[pairs[i].*state].displacement; }, displacement);
     const F step(dt);
     x = V{displacement[0], displacement[1], displacement[2]} +
         step * V{velocity[0], velocity[1], velocity[2]};

@@ -18,13 +18,13 @@ SpeculativeBlock empty_speculative_block() {
 
 }  // namespace
 
-std::uint32_t SpeculativeList::add(std::uint32_t contact, std::uint32_t row_a,
-                                   std::uint32_t row_b) {
+std::uint32_t SpeculativeList::add(std::uint32_t contact, std::uint32_t state_a,
+                                   std::uint32_t state_b) {
   const std::uint32_t index = size_++;
   if (index / kLanes == blocks_.size()) blocks_.push_back(empty_speculative_block());
   SpeculativePair& to = pair(index);
-  to.a = row_a;
-  to.b = row_b;
+  to.a = state_a;
+  to.b = state_b;
   to.contact = contact;
   to.clearance = 0.0f;
   return index;

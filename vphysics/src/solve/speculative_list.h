@@ -22,7 +22,7 @@ struct alignas(32) SpeculativePair {
   float arm_a[3], arm_b[3];
   float radius;
   float clearance;
-  std::uint32_t a, b;     // rows of the bodies; the world's row in an empty slot
+  std::uint32_t a, b;     // indices of the bodies' states; kWorldState in an empty slot
   std::uint32_t contact;  // kNoContact in an empty slot
   std::uint32_t unused;
 };
@@ -51,7 +51,7 @@ inline void set_near_float(SpeculativePair& pair, std::size_t f, float x) {
 class SpeculativeList {
  public:
   // Returns the index of the new slot. All its other fields are zero.
-  std::uint32_t add(std::uint32_t contact, std::uint32_t row_a, std::uint32_t row_b);
+  std::uint32_t add(std::uint32_t contact, std::uint32_t state_a, std::uint32_t state_b);
   // The same for a copy of a slot of another list.
   std::uint32_t add(const SpeculativeList& from, std::uint32_t index);
   // Returns the contact whose slot has moved to this index, or kNoContact.

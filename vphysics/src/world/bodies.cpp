@@ -1,8 +1,8 @@
-// Per-step work on bodies: poses, lists, solver rows, enlarged bounds.
+// Per-step work on bodies: poses, lists, solver states, enlarged bounds.
 #include <algorithm>
 #include <cmath>
 
-#include "solve/row_vector.h"
+#include "solve/state_vector.h"
 #include "world/impl.h"
 #include "world/validate.h"
 
@@ -14,8 +14,8 @@ namespace {
 constexpr double kMargin = 0.1;
 // Whether the body stays within all its enlarged bounds: within half a margin of its smallest
 // collider (update_bounds). Sums of components are upper bounds of the lengths.
-bool stays_within_bounds(const Body& body, const solve::BodyRow& row, float dt) {
-  const float *at = body.bounded_at, *displacement = row.displacement, *velocity = row.velocity;
+bool stays_within_bounds(const Body& body, const solve::BodyState& state, float dt) {
+  const float *at = body.bounded_at, *displacement = state.displacement, *velocity = state.velocity;
   const auto gone = [&](int i) {
     return std::fabs(displacement[i] - at[i]) + dt * std::fabs(velocity[i]);
   };
@@ -84,7 +84,7 @@ bool may_overlap(const Body& a, const Body& b) {
 
 solve::ContactGraph::End end_of(const Bodies& bodies, std::uint32_t body) {
   const Body& b = bodies[body];
-  if (b.motion == Motion::fixed) return {solve::kWorldRow, false, solve::kSharedRegion};
+  if (b.motion == Motion::fixed) return {solve::kWorldState, false, solve::kSharedRegion};
   return {body + 1, b.motion == Motion::dynamic, b.region};
 }
 
@@ -150,7 +150,7 @@ void restart_displacement(const Stores& s, std::uint32_t index) {
   };
   for_speculative(
       [&](std::uint32_t, const Contact& c) { s.contact_store.use_clearance(c, s.body_set); });
-  std::fill_n(s.body_rows[index + 1].displacement, 6, 0.0f);
+  std::fill_n(s.body_states[index + 1].displacement, 6, 0.0f);
   std::fill_n(s.start_displacements[index].begin(), 6, 0.0f);
   std::fill_n(s.bodies[index].bounded_at, 6, 1e9f);
   for_speculative([&](std::uint32_t contact, const Contact& c) {
@@ -164,10 +164,10 @@ void restart_displacement(const Stores& s, std::uint32_t index) {
   });
 }
 
-void World::Impl::load_rows(double dt) {
+void World::Impl::load_states(double dt) {
   constexpr std::uint8_t kFar = 1, kLeaves = 2, kPulled = 4;
   sub_step.awake_body_changed.resize(lists.awake_bodies.size());
-  const BodyRows step = context.rows_in(dt);
+  const BodyStates step = context.states_in(dt);
   const Approach approach = context.approach_in(dt);
   workers.in_parallel(
       lists.awake_bodies.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
@@ -177,7 +177,7 @@ void World::Impl::load_rows(double dt) {
           if (body.motion == Motion::kinematic) prescribe_velocity(body, dt);
           const bool far = step.load(body, i);
           const bool stays = joins_sub_steps(body) &&
-                             stays_within_bounds(body, body_rows[i + 1], static_cast<float>(dt));
+                             stays_within_bounds(body, body_states[i + 1], static_cast<float>(dt));
           const bool pulled = !(approach.pull_of(body) == Velocity{});
           sub_step.awake_body_changed[k] = static_cast<std::uint8_t>(
               (far ? kFar : 0) | (pulled ? kPulled : 0) | (far || !stays ? kLeaves : 0));
@@ -215,12 +215,12 @@ void update_bounds(const Stores& s, std::uint32_t index, double h, bool is_solve
     s.finder.set_bounds(collider.proxy, bounds_along(start, displacement, more + half), half,
                         2.0 * (displacement + pulled));
   }
-  if (is_solver_driven) std::copy_n(s.body_rows[index + 1].displacement, 6, body.bounded_at);
+  if (is_solver_driven) std::copy_n(s.body_states[index + 1].displacement, 6, body.bounded_at);
 }
 
-Velocity World::Impl::settle(const BodyRows& rows, std::uint32_t index) {
+Velocity World::Impl::settle(const BodyStates& states, std::uint32_t index) {
   Velocity more;
-  if (!rows.settle(bodies[index], index, more)) {
+  if (!states.settle(bodies[index], index, more)) {
     status.non_finite = true;
     lost_bodies.push_back(index);
   }
@@ -231,7 +231,7 @@ Velocity World::Impl::settle(const BodyRows& rows, std::uint32_t index) {
 // displacement enters a remaining contact.
 void World::Impl::forget_lost_bodies() {
   for (const std::uint32_t i : lost_bodies) {
-    std::fill_n(body_rows[i + 1].displacement, 6, 0.0f);
+    std::fill_n(body_states[i + 1].displacement, 6, 0.0f);
     std::fill_n(bodies[i].bounded_at, 6, 1e9f);
   }
   for (const std::uint32_t i : lost_bodies) {

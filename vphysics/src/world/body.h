@@ -35,14 +35,14 @@ struct alignas(64) Body {
   Motion motion = Motion::fixed;
   bool rested = false;  // something supported it in the last step
   bool on_link =
-      false;  // in this step: close to a link, its solver row moves it (link_contacts.cpp)
+      false;  // in this step: close to a link, its solver state moves it (link_contacts.cpp)
   // posed and bounded are updated from the pose on demand. A link's T, w and v are refreshed only
   // if is_followed(); otherwise its articulation has them.
   bool asleep = false;
   bool pose_pending = false;  // its colliders' poses are queued for computation
   bool posed = false;         // the colliders' poses and bounds match T
   bool bounded = false;       // `bounds` matches T
-  bool untouched = false;  // nothing changed its row's rotation in this step: it has rotated freely
+  bool untouched = false;     // nothing changed its rotation in this step: it has rotated freely
   bool advanced = false;   // within a step: has its pose of the present sub-step (find_again.cpp)
   bool shortened = false;  // its motion in this step ended at an impact (fast_rotation.h)
   bool allow_sleep = true;
@@ -53,7 +53,7 @@ struct alignas(64) Body {
   std::uint32_t lanes = 0;                      // number of its contact slots in the solver
   std::uint32_t first_joint = kNone, first_collider = kNone;
   std::uint32_t load = kNone;  // index into the world's loads; kNone for links
-  float bounded_at[6] = {};    // displacement of its row when its proxies' bounds were last set
+  float bounded_at[6] = {};    // displacement of its state when its proxies' bounds were last set
   // bounding_radius: from the reference point to the farthest point of its bounded colliders [m].
   // min_size: half of the smallest extent of one of them [m].
   double bounding_radius = 0.0, min_size = 1e9;
@@ -92,7 +92,7 @@ struct alignas(64) Body {
 
   // Of a link: T, w and v are kept up to date.
   bool is_followed() const { return first_collider != kNone || first_joint != kNone; }
-  // Its solver row moves it; otherwise it falls freely.
+  // Its solver state moves it; otherwise it falls freely.
   bool is_solver_driven() const { return lanes > 0 || first_joint != kNone || on_link; }
   bool tumbles() const { return motion == Motion::dynamic && !is_link && !isotropic; }
   bool rotates_freely() const { return !is_solver_driven() || untouched; }

@@ -175,7 +175,7 @@ void World::Impl::change_motion(std::uint32_t index, Motion motion,
   }
   body.bounding_radius = bounding_radius_of(body);
   body.moved();
-  if (index + 1 < body_rows.size()) body_rows[index + 1] = {};
+  if (index + 1 < body_states.size()) body_states[index + 1] = {};
   std::fill_n(body.bounded_at, 6, 1e9f);
   for (std::uint32_t c = body.first_collider; c != kNone; c = colliders[c].next) add_proxy(c);
   lists.invalidate();

@@ -7,7 +7,7 @@
 //                bodies' displacements (contact_block.h)
 //   find_again   before a sub-step: the same for bodies whose velocity has changed since
 //
-// Reads the bodies, their colliders and solver rows. Writes the contact store, and reports the
+// Reads the bodies, their colliders and solver states. Writes the contact store, and reports the
 // events of contacts that end and of sensors. Wakes bodies that a manifold connects.
 #pragma once
 

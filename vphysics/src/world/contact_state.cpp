@@ -186,8 +186,8 @@ void ContactState::read_speculative(Reader& in, solve::SpeculativeList& speculat
     seen_[index] = static_cast<std::uint8_t>(seen_[index] | 4u);
     c.parked = parked;
     c.speculative_index =
-        speculative.add(index, vp::end_of(world_.bodies, world_.colliders[c.a].body).row,
-                        vp::end_of(world_.bodies, world_.colliders[c.b].body).row);
+        speculative.add(index, vp::end_of(world_.bodies, world_.colliders[c.a].body).state,
+                        vp::end_of(world_.bodies, world_.colliders[c.b].body).state);
     solve::SpeculativePair& pair = speculative.pair(c.speculative_index);
     for (std::size_t f = 0; f < solve::kSpeculativeFloats; f += 2) {
       const Reader::TwoFloats both = in.two_floats();
@@ -251,7 +251,7 @@ void ContactState::read_slots(Reader& in, std::size_t region, int colour) {
 
 void ContactState::adopt() {
   world_.finder.adopt();
-  world_.body_rows.resize(bodies_.size() + 1);
+  world_.body_states.resize(bodies_.size() + 1);
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     Body& body = world_.bodies[i];
     const OfBody& from = bodies_[i];
@@ -259,11 +259,11 @@ void ContactState::adopt() {
     if (body.asleep != from.asleep || body.region != from.region) world_.lists.invalidate();
     body.asleep = from.asleep;
     body.rest_time = from.rest_time;
-    if (body.asleep) std::fill_n(world_.body_rows[i + 1].velocity, 6, 0.0f);
+    if (body.asleep) std::fill_n(world_.body_states[i + 1].velocity, 6, 0.0f);
     body.first_edge = from.first_edge;
     body.lanes = from.lanes;
     body.region = from.region;
-    std::copy_n(from.displacement, 6, world_.body_rows[i + 1].displacement);
+    std::copy_n(from.displacement, 6, world_.body_states[i + 1].displacement);
     std::copy_n(from.bounded_at, 6, body.bounded_at);
   }
   for (std::uint32_t i = 0; i < contacts_.pool.size(); ++i) {

@@ -1,7 +1,7 @@
 // The complete contact state of a world between steps, as 64-bit words.
 //
 // broad phase     pair_finder.h
-// bodies          of each: flags (rested, asleep); how long at rest; displacement of its row and
+// bodies          of each: flags (rested, asleep); how long at rest; displacement of its state and
 //                 displacement at its last bounds
 // pool            of each entry its flags, and if it is alive the contact, with the chain of its
 //                 parts
@@ -13,7 +13,8 @@
 // contact slots   of each region and colour, then of the parked ones, and each kind: how many,
 //                 and of each its contact and all its fields
 //
-// Derived data are not written: list neighbours, rows of the contact slots, colours in use.
+// Derived data are not written: list neighbours, state indices of the contact slots, colours in
+// use.
 #pragma once
 
 #include <vector>
@@ -32,7 +33,7 @@ namespace vp {
 struct ContactData {
   Bodies& bodies;
   Colliders& colliders;
-  solve::LargeVector<solve::BodyRow>& body_rows;
+  solve::LargeVector<solve::BodyState>& body_states;
   collide::PairFinder& finder;
   ContactStore& contacts;
   Regions::State& regions;
@@ -86,13 +87,14 @@ inline constexpr std::uint32_t kAlive = 1, kSensor = 2, kTouching = 4, kDirty = 
 template <class Sink>
 void write_contacts(Sink& sink, const ContactData& world) {
   world.finder.write(sink);
-  static const solve::BodyRow kNoRow{};
+  static const solve::BodyState kNoState{};
   for (std::uint32_t i = 0; i < world.bodies.size(); ++i) {
     const Body& body = world.bodies[i];
-    const solve::BodyRow& row = i + 1 < world.body_rows.size() ? world.body_rows[i + 1] : kNoRow;
+    const solve::BodyState& state =
+        i + 1 < world.body_states.size() ? world.body_states[i + 1] : kNoState;
     sink.u64((body.rested ? 1u : 0u) | (body.asleep ? 2u : 0u));
     put(sink, body.rest_time);
-    for (int k = 0; k < 6; ++k) put_two(sink, row.displacement[k], body.bounded_at[k]);
+    for (int k = 0; k < 6; ++k) put_two(sink, state.displacement[k], body.bounded_at[k]);
   }
   sink.u64(world.contacts.pool.size());
   for (const Contact& c : world.contacts.pool) {

@@ -4,7 +4,7 @@
 #include <bit>
 #include <utility>
 
-#include "solve/row_vector.h"
+#include "solve/state_vector.h"
 
 namespace vp {
 namespace {
@@ -17,11 +17,11 @@ struct PairMotion {
 };
 
 // How much nearer the two of a pair may have come since its clearance was set, and will have come
-// after a further `time` [s] at the rows' present velocities. The same bound as find_closer.
+// after a further `time` [s] at the states' present velocities. The same bound as find_closer.
 double max_approach(const solve::SpeculativePair& pair, const BodySet& on, double time) {
-  const auto motion = [&](std::uint32_t row, const float* x, const float* rotation,
+  const auto motion = [&](std::uint32_t state, const float* x, const float* rotation,
                           const float* arm) {
-    const solve::BodyRow& now = on.rows[row];
+    const solve::BodyState& now = on.states[state];
     Vec3 moved = vector_of(now.displacement) - vector_of(x);
     Vec3 by = vector_of(now.displacement + 3) - vector_of(rotation);
     if (time > 0.0) {
@@ -149,7 +149,8 @@ void ContactStore::follow_region(const Body& body, const BodySet& on) {
 void ContactStore::set_speculative(std::uint32_t index, double clearance, const BodySet& on) {
   Contact& c = pool[index];
   const std::uint32_t a = on.colliders[c.a].body, b = on.colliders[c.b].body;
-  c.speculative_index = speculative.add(index, end_of(on.bodies, a).row, end_of(on.bodies, b).row);
+  c.speculative_index =
+      speculative.add(index, end_of(on.bodies, a).state, end_of(on.bodies, b).state);
   set_clearance(c, clearance, on);
 }
 
@@ -157,12 +158,12 @@ void ContactStore::set_clearance(const Contact& c, double clearance, const BodyS
   solve::SpeculativePair& pair = speculative.pair(c.speculative_index);
   const Collider &a = on.colliders[c.a], &b = on.colliders[c.b];
   const Vicinity at = vicinity_of(on.bodies, a, b);
-  const auto put_end = [&](std::uint32_t row, const Body& body, float* x, float* rotation,
+  const auto put_end = [&](std::uint32_t state, const Body& body, float* x, float* rotation,
                            float* arm) {
-    const float* displacement = on.rows[row].displacement;
+    const float* displacement = on.states[state].displacement;
     std::copy_n(displacement, 3, x);
     std::copy_n(displacement + 3, 3, rotation);
-    put(arm, row == solve::kWorldRow ? Vec3{} : at.centre - reference_point(body));
+    put(arm, state == solve::kWorldState ? Vec3{} : at.centre - reference_point(body));
   };
   put_end(pair.a, on.bodies[a.body], pair.x_a, pair.rotation_a, pair.arm_a);
   put_end(pair.b, on.bodies[b.body], pair.x_b, pair.rotation_b, pair.arm_b);

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "solve/body_row.h"
+#include "solve/body_state.h"
 #include "solve/contact_graph.h"
 #include "solve/large_pages.h"
 #include "solve/speculative_list.h"
@@ -15,11 +15,11 @@
 
 namespace vp {
 
-// The objects that contacts refer to. Row 0 is the world, row i + 1 is of body i.
+// The objects that contacts refer to. State 0 is the world, state i + 1 is of body i.
 struct BodySet {
   Bodies& bodies;
   Colliders& colliders;
-  solve::LargeVector<solve::BodyRow>& rows;
+  solve::LargeVector<solve::BodyState>& states;
 };
 
 class ContactStore {
@@ -76,7 +76,7 @@ class ContactStore {
   // set.
   void use_clearance(const Contact& contact, const BodySet& on);
 
-  // Whether the two may touch within this time from now [s], at the rows' present velocities.
+  // Whether the two may touch within this time from now [s], at the states' present velocities.
   bool may_touch_within(const Contact& contact, double time, const BodySet& on) const;
 
   // --- sleep

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-#include "solve/row_vector.h"
+#include "solve/state_vector.h"
 #include "world/impl.h"
 #include "world/invalid.h"
 #include "world/lane_fields.h"
@@ -182,7 +182,7 @@ class World::Impl::Drawing {
     const bool with_b = world_.bodies[body_a].motion == Motion::fixed;
     const std::uint32_t body = with_b ? body_b : body_a;
     const Vec3 centre = reference_point(world_.bodies[body]);
-    const Vec3 rotation = vector_of(world_.body_rows[body + 1].displacement + 3) -
+    const Vec3 rotation = vector_of(world_.body_states[body + 1].displacement + 3) -
                           get(with_b ? block.rotated_b : block.rotated_a, lane);
     const Mat3 R = rotated(Mat3::identity(), rotation);
     Vec3 mean;

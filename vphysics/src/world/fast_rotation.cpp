@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solve/row_vector.h"
+#include "solve/state_vector.h"
 #include "world/step_context.h"
 #include "world/validate.h"
 
@@ -59,7 +59,7 @@ class FastRotation {
   }
 
   void shorten(const ShortenedMotion& motion) const {
-    float* displacement = on_.body_rows[motion.body + 1].displacement;
+    float* displacement = on_.body_states[motion.body + 1].displacement;
     const float* start = on_.start_displacements[motion.body].data();
     for (int i = 0; i < 6; ++i)
       displacement[i] = start[i] + motion.fraction * (displacement[i] - start[i]);
@@ -68,7 +68,7 @@ class FastRotation {
 
  private:
   Displacement displacement_of(std::uint32_t index) const {
-    const float* at = on_.body_rows[index + 1].displacement;
+    const float* at = on_.body_states[index + 1].displacement;
     const float* start = on_.start_displacements[index].data();
     return {vector_of(at) - vector_of(start), vector_of(at + 3) - vector_of(start + 3)};
   }

@@ -26,8 +26,8 @@ struct FastRotationScratch {
   std::vector<ShortenedMotion> shortened;
 };
 
-// Precondition: the bodies have their poses at the start of the step, the rows their displacements
-// at its end. Shortens displacements, and sets Body::shortened.
+// Precondition: the bodies have their poses at the start of the step, the states their
+// displacements at its end. Shortens displacements, and sets Body::shortened.
 void stop_fast_rotating_bodies(const Stores& stores, FastRotationScratch& scratch);
 
 }  // namespace vp

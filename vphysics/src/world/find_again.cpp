@@ -10,16 +10,16 @@
 #include <atomic>
 #include <span>
 
-#include "solve/row_vector.h"
+#include "solve/state_vector.h"
 #include "world/contact_search.h"
 #include "world/validate.h"
 
 namespace vp {
 namespace {
-// A row that has left the range of numbers stops its body at the end of the step.
-bool is_in_range(const solve::BodyRow& row) {
-  return in_range(vector_of(row.velocity)) && in_range(vector_of(row.velocity + 3)) &&
-         in_range(vector_of(row.displacement)) && in_range(vector_of(row.displacement + 3));
+// A state that has left the range of numbers stops its body at the end of the step.
+bool is_in_range(const solve::BodyState& state) {
+  return in_range(vector_of(state.velocity)) && in_range(vector_of(state.velocity + 3)) &&
+         in_range(vector_of(state.displacement)) && in_range(vector_of(state.displacement + 3));
 }
 
 // Whether the geometry of a contact slot will be useless before the step ends: the two will have
@@ -27,7 +27,7 @@ bool is_in_range(const solve::BodyRow& row) {
 bool outruns_its_slot(const Contact& c, double left, const BodySet& on) {
   const Collider &a = on.colliders[c.a], &b = on.colliders[c.b];
   const auto v = [&](const Collider& x, int first) {
-    return vector_of(on.rows[end_of(on.bodies, x.body).row].velocity + first);
+    return vector_of(on.states[end_of(on.bodies, x.body).state].velocity + first);
   };
   const double speed =
       norm(v(b, 0) - v(a, 0)) + vicinity_of(on.bodies, a, b).radius * norm(v(b, 3) - v(a, 3));
@@ -37,9 +37,9 @@ bool outruns_its_slot(const Contact& c, double left, const BodySet& on) {
 // Copies the bodies' inverse inertias into a slot, as load_inertias does for all at the start.
 template <int P>
 void load_inertias_of(solve::ContactBlock<P>& block, int lane,
-                      std::span<const solve::BodyRow> rows) {
-  const auto load = [&](solve::FieldSym3& to, std::uint32_t row) {
-    const float* from = rows[row].inertia;
+                      std::span<const solve::BodyState> states) {
+  const auto load = [&](solve::FieldSym3& to, std::uint32_t state) {
+    const float* from = states[state].inertia;
     solve::Field* fields[] = {&to.xx, &to.yy, &to.zz, &to.xy, &to.yz, &to.zx};
     for (int i = 0; i < 6; ++i) fields[i]->lane[lane] = from[i];
   };
@@ -53,8 +53,9 @@ void ContactSearch::load_inertias_of(const Contact& c) {
   if (c.slot.points == 0) return;
   solve::ContactGraph& graph = s_.contact_store.graph;
   const int lane = solve::ContactGraph::lane(c.slot);
-  c.slot.points == 1 ? vp::load_inertias_of(graph.block<1>(c.slot), lane, std::span(s_.body_rows))
-                     : vp::load_inertias_of(graph.block<4>(c.slot), lane, std::span(s_.body_rows));
+  c.slot.points == 1
+      ? vp::load_inertias_of(graph.block<1>(c.slot), lane, std::span(s_.body_states))
+      : vp::load_inertias_of(graph.block<4>(c.slot), lane, std::span(s_.body_states));
 }
 
 bool ContactSearch::list_deviating_bodies(double left) {
@@ -63,7 +64,7 @@ bool ContactSearch::list_deviating_bodies(double left) {
   flags.resize(awake.size());
   std::atomic<bool> some = false;
   s_.workers.in_parallel(awake.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
-    if (solve::passes().find_deviating(s_.body_rows.data(), s_.searched.data(),
+    if (solve::passes().find_deviating(s_.body_states.data(), s_.searched.data(),
                                        awake.data() + begin, end - begin, static_cast<float>(left),
                                        flags.data() + begin))
       some.store(true, std::memory_order_relaxed);
@@ -72,7 +73,7 @@ bool ContactSearch::list_deviating_bodies(double left) {
   if (!some) return false;
   for (std::size_t k = 0; k < awake.size(); ++k) {
     const std::uint32_t i = awake[k];
-    if (flags[k] != 0 && joins_sub_steps(s_.bodies[i]) && is_in_range(s_.body_rows[i + 1]))
+    if (flags[k] != 0 && joins_sub_steps(s_.bodies[i]) && is_in_range(s_.body_states[i + 1]))
       deviating_.push_back(i);
   }
   return !deviating_.empty();
@@ -84,7 +85,7 @@ void ContactSearch::advance_within_step(std::uint32_t index) {
   if (body.advanced || body.asleep || !joins_sub_steps(body)) return;
   body.advanced = true;
   advanced_.push_back({index, body.T, body.w, body.v});
-  s_.rows_in(s_.dt).copy_to_body(body, index);
+  s_.states_in(s_.dt).copy_to_body(body, index);
 }
 
 // Lists in dirty_ the contacts to test.
@@ -92,7 +93,7 @@ void ContactSearch::list_contacts_of_deviating(double left) {
   for (const std::uint32_t i : deviating_) {
     advance_within_step(i);
     update_bounds(s_, i, left, true);
-    s_.rows_in(s_.dt).note_searched(i);
+    s_.states_in(s_.dt).note_searched(i);
   }
   find_new_contacts();
   for (const std::uint32_t i : deviating_) {
@@ -111,7 +112,7 @@ void ContactSearch::list_contacts_of_deviating(double left) {
     // The joints of a woken island would not be solved in this step.
     const bool wakes_joints = (s_.bodies[a].asleep || s_.bodies[b].asleep) && !s_.joints.empty();
     const bool must_wait =
-        wakes_joints || !is_in_range(s_.body_rows[a + 1]) || !is_in_range(s_.body_rows[b + 1]);
+        wakes_joints || !is_in_range(s_.body_states[a + 1]) || !is_in_range(s_.body_states[b + 1]);
     if (c.sensor || must_wait) dirty_next_step_.push_back(index);
     if (c.sensor || c.of_link || must_wait) return true;
     for (const std::uint32_t body : {a, b}) {

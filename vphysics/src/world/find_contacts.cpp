@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "solve/contact_slot.h"
-#include "solve/row_vector.h"
+#include "solve/state_vector.h"
 #include "world/contact_search.h"
 #include "world/lane_fields.h"
 
@@ -187,7 +187,7 @@ void ContactSearch::find_dirty_contacts(double dt, const ContactRuns& runs) {
   found.resize(std::max(found.size(), blocks.size()));
   s_.workers.in_parallel(
       blocks.size(), kBodyGrain / solve::kLanes, [&](std::size_t begin, std::size_t end) {
-        solve::passes().find_closer(blocks.data() + begin, end - begin, s_.body_rows.data(), step,
+        solve::passes().find_closer(blocks.data() + begin, end - begin, s_.body_states.data(), step,
                                     found.data() + begin);
       });
   for (std::size_t b = 0; b < blocks.size(); ++b)
@@ -313,11 +313,11 @@ void ContactSearch::assign_slot(std::uint32_t index, const collide::Manifold& m)
   }
   solve::NewContact n{};
   n.normal = m.normal;
-  // The world row has no centre of its own: the other body's centre makes the arms short.
+  // The world has no centre of its own: the other body's centre makes the arms short.
   n.x_a = reference_point(s_.bodies[a.body]);
   n.x_b = reference_point(s_.bodies[b.body]);
-  if (end_a.row == solve::kWorldRow) n.x_a = n.x_b;
-  if (end_b.row == solve::kWorldRow) n.x_b = n.x_a;
+  if (end_a.state == solve::kWorldState) n.x_a = n.x_b;
+  if (end_b.state == solve::kWorldState) n.x_b = n.x_a;
   n.count = std::min<int>(m.count, c.slot.points);
   const double slide_limit = kSlide * smaller_size(a, b);
   for (int i = 0; i < n.count; ++i) {
@@ -338,12 +338,13 @@ void ContactSearch::assign_slot(std::uint32_t index, const collide::Manifold& m)
     c.feature[i] = m.points[i].feature;
     c.position[i] = m.points[i].position;
   }
-  const solve::BodyRow &row_a = s_.body_rows[end_a.row], &row_b = s_.body_rows[end_b.row];
+  const solve::BodyState &state_a = s_.body_states[end_a.state],
+                         &state_b = s_.body_states[end_b.state];
   if (c.slot.points == 1) {
-    write_slot(graph.block<1>(c.slot), solve::ContactGraph::lane(c.slot), n, row_a, row_b);
+    write_slot(graph.block<1>(c.slot), solve::ContactGraph::lane(c.slot), n, state_a, state_b);
     graph.block<1>(c.slot).touches.lane[solve::ContactGraph::lane(c.slot)] = c.touching ? 1 : 0;
   } else {
-    write_slot(graph.block<4>(c.slot), solve::ContactGraph::lane(c.slot), n, row_a, row_b);
+    write_slot(graph.block<4>(c.slot), solve::ContactGraph::lane(c.slot), n, state_a, state_b);
     graph.block<4>(c.slot).touches.lane[solve::ContactGraph::lane(c.slot)] = c.touching ? 1 : 0;
   }
 }

@@ -56,8 +56,8 @@ struct World::Impl {
   std::vector<Articulation> articulations;
   std::vector<std::uint32_t> free_articulations;
   Joints joints;
-  solve::LargeVector<solve::BodyRow> body_rows;  // 0: the world; i + 1: body i
-  const BodySet body_set{bodies, colliders, body_rows};
+  solve::LargeVector<solve::BodyState> body_states;  // 0: the world; i + 1: body i
+  const BodySet body_set{bodies, colliders, body_states};
   ContactStore contact_store;
   std::uint32_t next_serial = 1;    // of colliders
   std::uint64_t topology_hash = 0;  // digest of all creations and destructions (topology_hash.h)
@@ -90,7 +90,7 @@ struct World::Impl {
   std::vector<std::uint32_t> lost_bodies;  // bodies that left the range of numbers in the sub-steps
 
   const StepContext context{
-      {desc, speed_unit, dt_now, workers, bodies, colliders, articulations, joints, body_rows,
+      {desc, speed_unit, dt_now, workers, bodies, colliders, articulations, joints, body_states,
        body_set, sub_step.start_displacements, sub_step.searched, contact_store, finder, loads,
        lists, sleep_islands, shapes},
       observer,
@@ -171,8 +171,8 @@ struct World::Impl {
 
   // bodies.cpp
   void list_bodies();
-  void load_rows(double dt);
-  Velocity settle(const BodyRows& rows, std::uint32_t body);
+  void load_states(double dt);
+  Velocity settle(const BodyStates& states, std::uint32_t body);
   void add_proxy(std::uint32_t collider);
   void forget_lost_bodies();
   void forget_contacts(std::uint32_t body);
@@ -190,7 +190,7 @@ struct World::Impl {
   void run_sub_steps(double dt);
   void take_sub_steps(double dt, int count);
   ContactRuns contact_runs() {
-    return {contact_store.graph, body_rows.data(), workers, sub_step.blocks};
+    return {contact_store.graph, body_states.data(), workers, sub_step.blocks};
   }
 
   // touches.cpp

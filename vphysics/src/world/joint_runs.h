@@ -37,13 +37,13 @@ class JointRuns {
     int at;
   };
 
-  // Removes all joints. rows: number of body rows.
-  void clear(std::size_t rows);
-  // Returns an empty lane for a joint of two body rows. A row that moves is in no other lane of the
-  // block. Precondition: at least one of the two moves.
+  // Removes all joints. states: the number of body states.
+  void clear(std::size_t states);
+  // Returns an empty lane for a joint of two body states. A state that moves is in no other lane of
+  // the block. Precondition: at least one of the two moves.
   template <class BLOCK>
-  Lane<BLOCK> add(const solve::JointForm& form, std::uint32_t joint, std::uint32_t row_a,
-                  bool moves_a, std::uint32_t row_b, bool moves_b);
+  Lane<BLOCK> add(const solve::JointForm& form, std::uint32_t joint, std::uint32_t state_a,
+                  bool moves_a, std::uint32_t state_b, bool moves_b);
   // Calls f(run) for all runs, in the order of solving.
   template <class F>
   void for_each(const F& f) {
@@ -62,13 +62,13 @@ class JointRuns {
     std::uint8_t kind;
     std::uint32_t index;
   };
-  int colour_for(std::uint32_t row_a, bool moves_a, std::uint32_t row_b, bool moves_b);
+  int colour_for(std::uint32_t state_a, bool moves_a, std::uint32_t state_b, bool moves_b);
 
   std::tuple<JointRunsOf<solve::BallBlock>, JointRunsOf<solve::AxesBlock>,
              JointRunsOf<solve::FrameBlock>, JointRunsOf<solve::RowsBlock>>
       kinds_;
   std::array<std::vector<Ref>, kColours> by_colour_;
-  std::vector<std::uint64_t> taken_;  // of each row: the colours of its joints, as bits
+  std::vector<std::uint64_t> taken_;  // of each state: the colours of its joints, as bits
 };
 
 }  // namespace vp

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "solve/passes.h"
-#include "solve/row_vector.h"
+#include "solve/state_vector.h"
 #include "world/lane_fields.h"
 #include "world/solver_limits.h"
 #include "world/validate.h"
@@ -136,7 +136,7 @@ void JointSteps::for_runs(const F& f) {
     const auto part = [&](std::size_t begin, std::size_t end) {
       using Run = typename std::remove_cvref_t<decltype(passes)>::Run;
       f(passes,
-        Run{run.blocks.data() + begin, end - begin, &run.form, context_.rows.data(),
+        Run{run.blocks.data() + begin, end - begin, &run.form, context_.states.data(),
             scratch_.displacements.data(),
             static_cast<float>(kMaxJointCorrectionSpeed * context_.speed_unit), some_are_far_});
     };
@@ -153,7 +153,7 @@ void JointSteps::fill(std::uint32_t index) {
   const solve::JointForm form = form_of(joint);
   const auto a = end_of(context_.bodies, joint.a), b = end_of(context_.bodies, joint.b);
   const auto add = [&]<class BLOCK>() {
-    return scratch_.runs.add<BLOCK>(form, index, a.row, a.moves, b.row, b.moves);
+    return scratch_.runs.add<BLOCK>(form, index, a.state, a.moves, b.state, b.moves);
   };
   if (joint.spec.form != JointSpec::Form::axes) {
     const auto [block, lane] = add.operator()<solve::RowsBlock>();
@@ -187,7 +187,7 @@ JointSteps::JointSteps(const JointContext& context, JointScratch& scratch, doubl
   scratch_.active.clear();
   scratch_.joined_bodies.clear();
   if (joints.empty()) return;
-  scratch_.runs.clear(context_.rows.size());
+  scratch_.runs.clear(context_.states.size());
   for (std::uint32_t i = 0; i < joints.size(); ++i) {
     BodyJoint& joint = joints[i];
     if (!is_active(joint)) continue;
@@ -197,7 +197,7 @@ JointSteps::JointSteps(const JointContext& context, JointScratch& scratch, doubl
     fill(i);
   }
   if (empty()) return;
-  scratch_.displacements.resize(context_.rows.size(),
+  scratch_.displacements.resize(context_.states.size(),
                                 solve::Gone{{0.0f, 0.0f, 0.0f, 1.0f}, {}, 0.0f});
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
     if (bodies[i].first_joint != kNone && joins_sub_steps(bodies[i]))
@@ -207,10 +207,10 @@ JointSteps::JointSteps(const JointContext& context, JointScratch& scratch, doubl
   prepare();
 }
 
-BodyPose pose_within_step(const Body& body, const solve::BodyRow& row,
+BodyPose pose_within_step(const Body& body, const solve::BodyState& state,
                           const std::array<float, 6>& start_displacement) {
   if (body.motion == Motion::fixed) return pose_of(body);
-  const float *displacement = row.displacement, *start = start_displacement.data();
+  const float *displacement = state.displacement, *start = start_displacement.data();
   const auto since = [&](int i) { return vector_of(displacement + i) - vector_of(start + i); };
   const Vec3 centre = reference_point(body) + since(0);
   const Mat3 R = rotated(body.T.rotation(), since(3));
@@ -218,7 +218,7 @@ BodyPose pose_within_step(const Body& body, const solve::BodyRow& row,
   return {SE3(R, at_centre ? centre - R * body.centre : centre), centre};
 }
 BodyPose JointSteps::pose_within_step(std::uint32_t body) const {
-  return vp::pose_within_step(context_.bodies[body], context_.rows[body + 1],
+  return vp::pose_within_step(context_.bodies[body], context_.states[body + 1],
                               context_.start_displacements[body]);
 }
 
@@ -226,7 +226,7 @@ BodyPose JointSteps::pose_within_step(std::uint32_t body) const {
 void JointSteps::evaluate_rows(solve::RowsBlock& block) {
   JointEvaluation found;
   for (int lane = 0; lane < kLanes; ++lane) {
-    if (block.a.lane[lane] + block.b.lane[lane] == 2 * solve::kWorldRow) return;  // empty
+    if (block.a.lane[lane] + block.b.lane[lane] == 2 * solve::kWorldState) return;  // empty
     BodyJoint& joint = context_.joints[block.joint.lane[lane]];
     const BodyPose b = pose_within_step(joint.b);
     evaluate(joint, pose_within_step(joint.a), b, found);
@@ -247,7 +247,7 @@ void JointSteps::prepare() {
   if (empty()) return;
   context_.workers.in_parallel(
       scratch_.joined_bodies.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
-        solve::joint_passes().find_gone(context_.rows.data(), context_.start_displacements.data(),
+        solve::joint_passes().find_gone(context_.states.data(), context_.start_displacements.data(),
                                         scratch_.joined_bodies.data() + begin, end - begin,
                                         scratch_.displacements.data());
       });

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "solve/body_row.h"
+#include "solve/body_state.h"
 #include "solve/large_pages.h"
 #include "world/body.h"
 #include "world/fast_rotation.h"
@@ -21,7 +21,7 @@ namespace vp {
 struct JointContext {
   const Bodies& bodies;
   Joints& joints;
-  std::span<solve::BodyRow> rows;
+  std::span<solve::BodyState> states;
   std::span<const std::array<float, 6>> start_displacements;  // of each body
   const Workers& workers;
   double speed_unit;
@@ -31,7 +31,7 @@ struct JointContext {
 struct JointScratch {
   JointRuns runs;
   std::vector<std::uint32_t> active, joined_bodies;
-  solve::LargeVector<solve::Gone> displacements;  // by row, for bodies with joints
+  solve::LargeVector<solve::Gone> displacements;  // by index of the state, for bodies with joints
 };
 
 // Data of the sub-steps of a step. Keeps its capacity between steps.
@@ -40,16 +40,16 @@ struct SubStepScratch {
   solve::LargeVector<solve::VelocityChange>
       velocity_changes;  // of each body, by the contacts of a sub-step
   std::vector<std::array<float, 6>>
-      start_displacements;  // of each body: displacement of its row at the start of the step
+      start_displacements;  // of each body: displacement of its state at the start of the step
   solve::LargeVector<solve::SearchedMotion> searched;  // of each body
   FastRotationScratch fast_rotation;
-  // Of each awake body; 1: its row alone does not advance it.
+  // Of each awake body; 1: its state alone does not advance it.
   std::vector<std::uint8_t> awake_body_changed;
   JointScratch joints;
 };
 
-// The body's pose, advanced by its row's displacement since the start of the step.
-BodyPose pose_within_step(const Body& body, const solve::BodyRow& row,
+// The body's pose, advanced by its state's displacement since the start of the step.
+BodyPose pose_within_step(const Body& body, const solve::BodyState& state,
                           const std::array<float, 6>& start_displacement);
 
 class JointSteps {

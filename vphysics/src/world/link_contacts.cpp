@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "solve/row_vector.h"
+#include "solve/state_vector.h"
 #include "world/joint_steps.h"
 #include "world/validate.h"
 
@@ -129,14 +129,14 @@ RowJointStep LinkContacts::row_joint_step(double h) const {
 // Loads the velocities that the contact blocks and joints have computed.
 void LinkContacts::load_bodies() {
   for (const std::uint32_t i : bodies_) {
-    rows_.body(i).v = vector_of(s_.body_rows[i + 1].velocity);
-    rows_.body(i).w = vector_of(s_.body_rows[i + 1].velocity + 3);
+    rows_.body(i).v = vector_of(s_.body_states[i + 1].velocity);
+    rows_.body(i).w = vector_of(s_.body_states[i + 1].velocity + 3);
   }
 }
 void LinkContacts::store_bodies() {
   for (const std::uint32_t i : bodies_) {
-    put(s_.body_rows[i + 1].velocity, rows_.body(i).v);
-    put(s_.body_rows[i + 1].velocity + 3, rows_.body(i).w);
+    put(s_.body_states[i + 1].velocity, rows_.body(i).v);
+    put(s_.body_states[i + 1].velocity + 3, rows_.body(i).w);
   }
 }
 
@@ -187,7 +187,7 @@ void LinkContacts::load_body(std::uint32_t index, double h) {
   const Vec3 at =
       stands
           ? reference_point(body)
-          : pose_within_step(body, s_.body_rows[index + 1], s_.start_displacements[index]).centre;
+          : pose_within_step(body, s_.body_states[index + 1], s_.start_displacements[index]).centre;
   solve::SolverBody& s = rows_.load_body(index, at, body.is_link ? forced_[index] : Velocity{});
   if (body.is_link) {
     s.articulation = static_cast<int>(body.articulation);
@@ -224,7 +224,7 @@ void LinkContacts::relax(double h) {
   for (const solve::ContactConstraint& c : contacts_) {
     if (c.points[0].normal_impulse <= 0.0) continue;
     for (const std::uint32_t i : {c.a, c.b})
-      s_.body_rows[i + 1].displacement[solve::kCarried] = 1.0f;
+      s_.body_states[i + 1].displacement[solve::kCarried] = 1.0f;
   }
   for (const solve::JointRow& row : rows_.rows()) {
     if (row.remember) *row.remember = s_.dt / h * row.impulse;  // of a whole step

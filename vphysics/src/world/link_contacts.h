@@ -15,8 +15,8 @@
 //   begin_sub_step, iterate, move, relax   in each sub-step
 //   end_sub_steps     events, warm starts; the articulations return to their start
 //
-// Reads the contact store and the joints in rows. Writes the bodies' solver rows, the articulations
-// and their links. Wakes bodies near links.
+// Reads the contact store and the joints in rows. Writes the bodies' solver states, the
+// articulations and their links. Wakes bodies near links.
 #pragma once
 
 #include <cstdint>

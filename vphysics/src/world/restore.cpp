@@ -17,7 +17,7 @@ namespace vp {
 namespace {
 
 // The state of a body.
-struct BodyState {
+struct SavedBody {
   SE3 T;
   Vec3 w, v;
   se3 prescribed;
@@ -43,7 +43,7 @@ SE3 read_pose(Reader& in) {
   return T;
 }
 
-void read(Reader& in, BodyState& state) {
+void read(Reader& in, SavedBody& state) {
   state.T = read_pose(in);
   state.w = in.nearly_bounded_vector();
   state.v = in.nearly_bounded_vector();
@@ -177,7 +177,7 @@ struct World::Impl::Incoming {
   Impl& world;
   SubStepState sub_steps;
   double impact_step = 0.0;
-  std::vector<BodyState> bodies;  // without links
+  std::vector<SavedBody> bodies;  // without links
   std::vector<double> q;          // of all articulations, concatenated, as dofs
   std::vector<DofState> dofs;
   std::vector<PairRecord> records;

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "solve/row_vector.h"
+#include "solve/state_vector.h"
 #include "world/joint_steps.h"
 
 namespace vp {
@@ -255,9 +255,9 @@ void RowSolve::find_next_poses(double h) {
 RowEnd RowSolve::row_end(std::uint32_t index, const RowJointStep& step) const {
   const Body& body = s_.bodies[index];
   if (step.of == RowsOf::sub_step && joins_sub_steps(body)) {
-    const solve::BodyRow& row = s_.body_rows[index + 1];
-    const BodyPose now = pose_within_step(body, row, s_.start_displacements[index]);
-    return {now, {vector_of(row.velocity + 3), vector_of(row.velocity)}, now};
+    const solve::BodyState& state = s_.body_states[index + 1];
+    const BodyPose now = pose_within_step(body, state, s_.start_displacements[index]);
+    return {now, {vector_of(state.velocity + 3), vector_of(state.velocity)}, now};
   }
   RowEnd end{pose_of(body), {body.w, body.v}, pose_of(body)};
   if (step.of != RowsOf::first_instant || body.motion == Motion::fixed) return end;

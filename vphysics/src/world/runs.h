@@ -22,7 +22,7 @@ struct BlockBits {
 
 struct ContactRuns {
   solve::ContactGraph& graph;
-  solve::BodyRow* rows;
+  solve::BodyState* states;
   const Workers& workers;
   BlockBits& block_bits;
 
@@ -37,7 +37,7 @@ struct ContactRuns {
       using Run = typename std::remove_cvref_t<decltype(passes)>::Run;
       const bool last = index == solve::kLastColour;
       f(passes,
-        Run{colour.blocks.data(), colour.lanes, last ? 1u : std::uint32_t{solve::kLanes}, rows},
+        Run{colour.blocks.data(), colour.lanes, last ? 1u : std::uint32_t{solve::kLanes}, states},
         colour.blocks);
     };
     graph.colours_in_use(region).for_each([&](int c) {

@@ -96,7 +96,7 @@ void World::Impl::send_to_sleep() {
           Body& body = bodies[i];
           body.asleep = true;
           body.v = body.w = {};
-          std::fill_n(body_rows[i + 1].velocity, 6, 0.0f);
+          std::fill_n(body_states[i + 1].velocity, 6, 0.0f);
         }
         for (const std::uint32_t i : island) {
           contact_store.for_each_of(bodies[i], [&](std::uint32_t contact, Contact&) {
@@ -110,9 +110,9 @@ void World::Impl::send_to_sleep() {
 void wake(const Stores& s, std::uint32_t seed) {
   s.bodies[seed].rest_time = 0.0;
   if (!s.bodies[seed].asleep) return;
-  const BodyRows rows = s.rows_in(s.dt);
+  const BodyStates states = s.states_in(s.dt);
   for (const std::uint32_t i : s.sleep_islands.wake(s.island_graph(), seed)) {
-    if (s.dt > 0.0 && rows.load(s.bodies[i], i)) restart_displacement(s, i);
+    if (s.dt > 0.0 && states.load(s.bodies[i], i)) restart_displacement(s, i);
     s.contact_store.for_each_of(s.bodies[i], [&](std::uint32_t contact, Contact&) {
       s.contact_store.unpark(contact, s.body_set);
     });

@@ -111,7 +111,7 @@ void put(Sink& sink, const BodyJoint& joint) {
 }  // namespace
 
 ContactData World::Impl::contact_data() {
-  return {bodies, colliders, body_rows, finder, contact_store, regions.state, lists};
+  return {bodies, colliders, body_states, finder, contact_store, regions.state, lists};
 }
 
 template <class Sink>

@@ -48,7 +48,7 @@ void World::Impl::begin_step(double dt) {
   link_contacts.begin_step(capacity);
   for (Articulation& art : articulations) art.forget_step();
   list_bodies();
-  body_rows.resize(n + 1);
+  body_states.resize(n + 1);
   contact_store.graph.resize(n + 1);
   divide_into_regions(dt);
   sub_step.blocks.words.reserve(capacity / solve::kLanes +
@@ -67,7 +67,7 @@ void World::Impl::begin_step(double dt) {
   sub_step.joints.active.reserve(joints.size());
   events.report_destroyed(colliders);
   finds_contacts = contact_search.is_needed();
-  if (lists.some_sub_stepped) load_rows(dt);
+  if (lists.some_sub_stepped) load_states(dt);
   if (finds_contacts) {
     for (const std::uint32_t i : lists.links) update_bounds(context, i, dt, false);
   }
@@ -85,13 +85,14 @@ void World::Impl::divide_into_regions(double dt) {
 
 // Without the impact stage: advances all bodies to the end of the step at once.
 void World::Impl::advance_all(double dt) {
-  const BodyRows rows = context.rows_in(dt);
+  const BodyStates states = context.states_in(dt);
   workers.in_parallel(
       lists.awake_bodies.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
           Body& body = bodies[lists.awake_bodies[k]];
           const bool led = body.motion == Motion::dynamic && body.is_solver_driven();
-          sub_step.awake_body_changed[k] = led && rows.advance(body, lists.awake_bodies[k]) ? 0 : 1;
+          sub_step.awake_body_changed[k] =
+              led && states.advance(body, lists.awake_bodies[k]) ? 0 : 1;
         }
       });
   for (std::size_t k = 0; k < lists.awake_bodies.size(); ++k) {
@@ -99,7 +100,7 @@ void World::Impl::advance_all(double dt) {
     const std::uint32_t i = lists.awake_bodies[k];
     Body& body = bodies[i];
     const SE3 start = body.T;
-    const Velocity more = body.motion == Motion::dynamic ? settle(rows, i) : Velocity{};
+    const Velocity more = body.motion == Motion::dynamic ? settle(states, i) : Velocity{};
     advance_body(body, {reference_point(body), body.v + more.v, body.w + more.w}, dt, true, more.w);
     (void)stop_if_out_of_range(context, i, start);
   }
@@ -155,10 +156,10 @@ SearchedAgain World::Impl::find_contacts_within_step(double left) {
 void World::Impl::feel_forces(double dt) {
   const auto stage = in(Stage::forces);
   impacts.integrate_forces(dt);
-  const BodyRows rows = context.rows_in(dt);
+  const BodyStates states = context.states_in(dt);
   for (const std::uint32_t i : lists.awake_bodies) {
     if (joins_sub_steps(bodies[i]) && bodies[i].motion == Motion::dynamic)
-      impacts.note_sub_steps_of(i, settle(rows, i));
+      impacts.note_sub_steps_of(i, settle(states, i));
   }
   forget_lost_bodies();
 }

@@ -13,7 +13,7 @@
 #include "solve/passes.h"
 #include "world/approach.h"
 #include "world/articulation.h"
-#include "world/body_rows.h"
+#include "world/body_states.h"
 #include "world/contact_store.h"
 #include "world/events.h"
 #include "world/observed_stage.h"
@@ -48,9 +48,9 @@ struct Stores {
   Colliders& colliders;
   std::vector<Articulation>& articulations;
   Joints& joints;
-  solve::LargeVector<solve::BodyRow>& body_rows;  // 0: the world; i + 1: body i
+  solve::LargeVector<solve::BodyState>& body_states;  // 0: the world; i + 1: body i
   const BodySet& body_set;
-  // Of each body: displacement of its row when the step began; its motion in the last search.
+  // Of each body: displacement of its state when the step began; its motion in the last search.
   std::vector<std::array<float, 6>>& start_displacements;
   solve::LargeVector<solve::SearchedMotion>& searched;
   ContactStore& contact_store;
@@ -64,8 +64,8 @@ struct Stores {
     return loads.acceleration(body, desc.gravity);
   }
   Approach approach_in(double h) const { return {bodies, loads, desc, speed_unit, h}; }
-  BodyRows rows_in(double h) const {
-    return {body_rows,
+  BodyStates states_in(double h) const {
+    return {body_states,
             start_displacements,
             searched,
             loads,

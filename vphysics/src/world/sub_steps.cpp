@@ -55,7 +55,7 @@ struct SubStepContext {
   ContactRuns contacts;
   const Regions& regions;
   const Workers& workers;
-  std::span<solve::BodyRow> rows;
+  std::span<solve::BodyState> states;
   std::span<solve::VelocityChange> velocity_changes;  // of each body, by the contacts of a sub-step
   float restitution_threshold;
 };
@@ -75,8 +75,8 @@ class SubSteps {
   void accelerate(std::size_t region, bool find_velocity_changes) const {
     for_moving_bodies(region, [&](const std::uint32_t* some, std::size_t count) {
       if (find_velocity_changes)
-        pass_.find_velocity_changes(rows(), context_.velocity_changes.data(), some, count);
-      pass_.accelerate(rows(), some, count, h_);
+        pass_.find_velocity_changes(states(), context_.velocity_changes.data(), some, count);
+      pass_.accelerate(states(), some, count, h_);
     });
   }
   // Repeats until nothing bounces. Returns the number of passes in which something did:
@@ -92,12 +92,12 @@ class SubSteps {
   }
   void keep_velocities(std::size_t region) const {
     for_moving_bodies(region, [&](const std::uint32_t* some, std::size_t count) {
-      pass_.keep(rows(), context_.velocity_changes.data(), some, count);
+      pass_.keep(states(), context_.velocity_changes.data(), some, count);
     });
   }
   void repeat_velocity_changes(std::size_t region) const {
     for_moving_bodies(region, [&](const std::uint32_t* some, std::size_t count) {
-      pass_.repeat(rows(), context_.velocity_changes.data(), some, count);
+      pass_.repeat(states(), context_.velocity_changes.data(), some, count);
     });
   }
   void warm_start(std::size_t region) const {
@@ -111,7 +111,7 @@ class SubSteps {
   }
   void move(std::size_t region) const {
     for_moving_bodies(region, [&](const std::uint32_t* some, std::size_t count) {
-      pass_.move(rows(), some, count, h_);
+      pass_.move(states(), some, count, h_);
     });
   }
   // last: the last sub-step of the step. Contact changes are found before the relaxation: an
@@ -146,7 +146,7 @@ class SubSteps {
           p.apply_restitution(part, h_, context_.restitution_threshold) ? 1u : 0u;
     });
   }
-  solve::BodyRow* rows() const { return context_.rows.data(); }
+  solve::BodyState* states() const { return context_.states.data(); }
   template <class F>
   void for_moving_bodies(std::size_t region, const F& f) const {
     const std::span<const std::uint32_t> some = context_.regions.awake_bodies_of(region);
@@ -197,7 +197,7 @@ void World::Impl::take_sub_steps(double dt, int n) {
       std::clamp(kUseBias / state.last_step_length * kSmallDepth * desc.length_unit,
                  kMaxBiasVelocity * speed_unit, kMaxCorrectionSpeed * speed_unit);
   const ContactRuns runs = contact_runs();
-  SubSteps steps({runs, regions, workers, body_rows, sub_step.velocity_changes,
+  SubSteps steps({runs, regions, workers, body_states, sub_step.velocity_changes,
                   static_cast<float>(desc.restitution_threshold)},
                  h,
                  {.rate = static_cast<float>(kUseBias / state.last_step_length),
@@ -209,7 +209,7 @@ void World::Impl::take_sub_steps(double dt, int n) {
                   .h = h,
                   .idle_speed = static_cast<float>(speed_unit)});
   JointSteps joint_steps(
-      {bodies, joints, body_rows, sub_step.start_displacements, workers, speed_unit},
+      {bodies, joints, body_states, sub_step.start_displacements, workers, speed_unit},
       sub_step.joints, h);
   const bool links = !link_contacts.empty();
   if (links) link_contacts.begin_sub_steps(dt, n);

@@ -21,7 +21,7 @@ World::World(const WorldDesc& desc) : impl_(std::make_unique<Impl>()) {
   impl_->speed_unit = std::sqrt(desc.length_unit);
   impl_->desc.restitution_threshold *= impl_->speed_unit;
   impl_->desc.sleep_speed *= impl_->speed_unit;
-  impl_->body_rows.resize(1);
+  impl_->body_states.resize(1);
   TopologyHash(impl_->topology_hash).add(desc);
 }
 Expected<World> World::create(const WorldDesc& desc) {
@@ -63,7 +63,7 @@ Expected<BodyId> World::create_body(const BodyDesc& desc) {
   body.mass_from_colliders = has_no_inertia(desc) || problem_with(desc.inertia).has_value();
   if (!body.mass_from_colliders) set_mass(body, desc.inertia);
   impl_->update_mass(index);
-  if (index + 1 < impl_->body_rows.size()) impl_->body_rows[index + 1] = {};
+  if (index + 1 < impl_->body_states.size()) impl_->body_states[index + 1] = {};
   TopologyHash(impl_->topology_hash).add(0x100u + index, desc);
   const BodyId id = impl_->bodies.id(index);
   impl_->lists.invalidate();
@@ -109,7 +109,7 @@ Expected<void> World::destroy_body(BodyId id) {
   impl_->loads.remove(impl_->bodies, id.index - 1);
   body->w = body->v = {};
   body->prescribed = {};
-  if (id.index < impl_->body_rows.size()) impl_->body_rows[id.index] = {};
+  if (id.index < impl_->body_states.size()) impl_->body_states[id.index] = {};
   body->first_collider = kNone;
   impl_->lists.invalidate();
   impl_->bodies.release(id.index - 1);

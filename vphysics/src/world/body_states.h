@@ -1,37 +1,37 @@
-// Transfers bodies to their rows of the sub-stepped solver and back, in one step.
+// Copies bodies to their states in the sub-stepped solver and back, in one step.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <span>
 
-#include "solve/body_row.h"
+#include "solve/body_state.h"
 #include "solve/passes.h"
 #include "world/body.h"
 #include "world/loads.h"
 
 namespace vp {
 
-struct BodyRows {
-  std::span<solve::BodyRow> rows;  // row i + 1 is of body i
+struct BodyStates {
+  std::span<solve::BodyState> states;  // state i + 1 is of body i
   std::span<std::array<float, 6>>
-      start_displacements;  // of each body: displacement of its row when the step began
+      start_displacements;  // of each body: displacement of its state when the step began
   std::span<solve::SearchedMotion> searched;  // of each body
   const BodyLoads& loads;
   const WorldDesc& desc;
   double dt;
   int sub_steps;
 
-  // Before the sub-steps. True if the row's displacement is so long that it must restart at zero.
+  // Before the sub-steps. True if the state's displacement is so long that it must restart at zero.
   bool load(Body& body, std::uint32_t index) const;
   // After the sub-steps: sets a dynamic body's velocities to those at the end of the step. more:
   // mean velocities over the step less these. False if they are out of range: the body stops.
   bool settle(Body& body, std::uint32_t index, Velocity& more) const;
-  // The same and the pose, for a dynamic body moved by its row; false if it leaves the range.
+  // The same and the pose, for a dynamic body moved by its state; false if it leaves the range.
   bool advance(Body& body, std::uint32_t index) const;
-  // Between two sub-steps: sets pose and velocities to those of the row.
+  // Between two sub-steps: sets pose and velocities to those of the state.
   void copy_to_body(Body& body, std::uint32_t index) const;
-  // The contacts of the body have been searched for at its row's present velocity.
+  // The contacts of the body have been searched for at its state's present velocity.
   void note_searched(std::uint32_t index) const;
 
  private:

@@ -1,23 +1,23 @@
-// A body's solver state: a row of two cache lines.
+// The state of a body in the sub-stepped solver: two cache lines.
 //
 // Warm starts and iterations read only the first line. Sub-steps and the restitution pass start
-// from the second. World axes, about the centre of mass. The world writes a row before a step
-// (load), the passes write it during the step, and the world reads it back afterwards. Row 0 is the
-// world itself: nothing moves it, and everything fixed shares it.
+// from the second. World axes, about the centre of mass. The world writes a state before a step
+// (load), the passes write it during the step, and the world reads it back afterwards. State 0 is
+// the world itself: nothing moves it, and everything fixed shares it.
 #pragma once
 
 #include <cstdint>
 
 namespace vphysics_solver {
 
-struct alignas(64) BodyRow {
+struct alignas(64) BodyState {
   // v of the centre of mass [m/s], w [rad/s]; the inverse mass; 1 if nothing supported the body in
   // the last step, else 0 (for the restitution pass).
   float velocity[8];
-  // Displacement of the centre of mass since the row was last rebased [m]; rotation since then, the
-  // sum of small rotation vectors [rad]; 1 if something supported the body in this step, else 0;
-  // the fraction of the maximum bias velocity that each of its contacts may use, minus 1: 0 unless
-  // the body has many contacts.
+  // Displacement of the centre of mass since the state was last rebased [m]; rotation since then,
+  // the sum of small rotation vectors [rad]; 1 if something supported the body in this step, else
+  // 0; the fraction of the maximum bias velocity that each of its contacts may use, minus 1: 0
+  // unless the body has many contacts.
   float displacement[8];
   // Inverse rotational inertia xx yy zz xy yz zx; the fractions of v and of w that damping leaves
   // per sub-step.
@@ -28,9 +28,9 @@ struct alignas(64) BodyRow {
 inline constexpr int kInverseMass = 6, kFalls = 7;         // in velocity
 inline constexpr int kKeepLinear = 6, kKeepAngular = 7;    // in inertia
 inline constexpr int kCarried = 6, kFractionMinusOne = 7;  // in displacement
-static_assert(sizeof(BodyRow) == 128);
+static_assert(sizeof(BodyState) == 128);
 
-inline constexpr std::uint32_t kWorldRow = 0;
+inline constexpr std::uint32_t kWorldState = 0;
 
 }  // namespace vphysics_solver
 

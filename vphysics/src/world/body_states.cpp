@@ -1,15 +1,15 @@
-// Transfers bodies to the rows of the sub-stepped solver and back.
+// Copies bodies to their states in the sub-stepped solver and back.
 //
 // A body without contact slots falls freely and is integrated here, in double precision. Its
 // displacement equals that of n sub-steps h = dt / n of semi-implicit Euler:
 //   dt v + a dt^2 (n + 1) / (2 n)
-#include "world/body_rows.h"
+#include "world/body_states.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "solve/row_vector.h"
+#include "solve/state_vector.h"
 #include "world/free_rotation.h"
 #include "world/solver_limits.h"
 #include "world/validate.h"
@@ -17,8 +17,8 @@
 namespace vp {
 namespace {
 
-// A row's displacement restarts at zero beyond kMaxDisplacement [length units] plus kFarSteps more
-// steps of motion, so that single precision resolves small steps. It also restarts beyond
+// A state's displacement restarts at zero beyond kMaxDisplacement [length units] plus kFarSteps
+// more steps of motion, so that single precision resolves small steps. It also restarts beyond
 // kMaxRotation [rad], since rotations are added as vectors.
 constexpr float kMaxDisplacement = 0.0625f, kFarSteps = 8.0f, kMaxRotation = 0.25f;
 
@@ -95,43 +95,43 @@ Mat3 rotated(const Mat3& R, const Vec3& t) {
   return orthonormalized_by_newton(rotated_approximately(R, t));
 }
 
-bool BodyRows::load(Body& body, std::uint32_t index) const {
+bool BodyStates::load(Body& body, std::uint32_t index) const {
   body.untouched = body.shortened = false;
-  solve::BodyRow& row = rows[index + 1];
+  solve::BodyState& state = states[index + 1];
   const bool pushed = body.motion == Motion::dynamic;
-  put(row.velocity, body.v);
-  put(row.velocity + 3, body.w);
-  row.velocity[solve::kInverseMass] = pushed ? static_cast<float>(body.inverse_mass) : 0.0f;
-  row.velocity[solve::kFalls] = pushed && !body.rested && body.first_joint == kNone ? 1.0f : 0.0f;
-  row.inertia[solve::kKeepLinear] = row.inertia[solve::kKeepAngular] = 1.0f;
+  put(state.velocity, body.v);
+  put(state.velocity + 3, body.w);
+  state.velocity[solve::kInverseMass] = pushed ? static_cast<float>(body.inverse_mass) : 0.0f;
+  state.velocity[solve::kFalls] = pushed && !body.rested && body.first_joint == kNone ? 1.0f : 0.0f;
+  state.inertia[solve::kKeepLinear] = state.inertia[solve::kKeepAngular] = 1.0f;
   if (pushed && (body.linear_damping > 0.0 || body.angular_damping > 0.0)) {
     const double h = dt / sub_steps;
-    row.inertia[solve::kKeepLinear] = static_cast<float>(1.0 / (1.0 + h * body.linear_damping));
-    row.inertia[solve::kKeepAngular] = static_cast<float>(1.0 / (1.0 + h * body.angular_damping));
+    state.inertia[solve::kKeepLinear] = static_cast<float>(1.0 / (1.0 + h * body.linear_damping));
+    state.inertia[solve::kKeepAngular] = static_cast<float>(1.0 / (1.0 + h * body.angular_damping));
   }
-  row.displacement[solve::kCarried] = 0.0f;
-  row.displacement[solve::kFractionMinusOne] = 0.0f;
+  state.displacement[solve::kCarried] = 0.0f;
+  state.displacement[solve::kFractionMinusOne] = 0.0f;
   if (pushed && body.lanes > kMaxUnscaledContacts)
-    row.displacement[solve::kFractionMinusOne] =
+    state.displacement[solve::kFractionMinusOne] =
         static_cast<float>(kMaxUnscaledContacts / static_cast<double>(body.lanes) - 1.0);
-  const float* displacement = row.displacement;
+  const float* displacement = state.displacement;
   if (!pushed) {
-    std::fill(std::begin(row.rate), std::end(row.rate), 0.0f);
-    std::fill_n(row.inertia, 6, 0.0f);
+    std::fill(std::begin(state.rate), std::end(state.rate), 0.0f);
+    std::fill_n(state.inertia, 6, 0.0f);
   } else {
     const Sym3 I =
         body.isotropic ? body.inverse_central : rotated(body.T.rotation(), body.inverse_central);
     const double inertia[6] = {I.xx, I.yy, I.zz, I.xy, I.yz, I.zx};
-    for (int i = 0; i < 6; ++i) row.inertia[i] = static_cast<float>(inertia[i]);
+    for (int i = 0; i < 6; ++i) state.inertia[i] = static_cast<float>(inertia[i]);
     const Velocity a = loads.acceleration(body, desc.gravity);
-    put(row.rate, a.v);
+    put(state.rate, a.v);
     const Vec3 gyroscopic = gyroscopic_acceleration(body, dt);
-    put(row.rate + 3, loads.is_torqued(body) ? gyroscopic + a.w : gyroscopic);
+    put(state.rate + 3, loads.is_torqued(body) ? gyroscopic + a.w : gyroscopic);
   }
   std::copy_n(displacement, 6, start_displacements[index].begin());
   note_searched(index);
   set_search_limits(body, index);
-  const float* v = row.velocity;
+  const float* v = state.velocity;
   const float speed = std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])});
   const float far = kMaxDisplacement * static_cast<float>(desc.length_unit) +
                     kFarSteps * static_cast<float>(dt) * speed;
@@ -143,11 +143,11 @@ bool BodyRows::load(Body& body, std::uint32_t index) const {
 }
 
 // What acceleration by forces moves it, it may deviate in addition: the margins allow for that.
-void BodyRows::set_search_limits(const Body& body, std::uint32_t index) const {
+void BodyStates::set_search_limits(const Body& body, std::uint32_t index) const {
   solve::SearchedMotion& motion = searched[index];
   motion.distance = motion.angle = std::numeric_limits<float>::max();
   if (body.motion != Motion::dynamic || body.first_collider == kNone) return;
-  const float* rate = rows[index + 1].rate;
+  const float* rate = states[index + 1].rate;
   const auto by_forces = [&](int first) {
     const float largest =
         std::max({std::fabs(rate[first]), std::fabs(rate[first + 1]), std::fabs(rate[first + 2])});
@@ -160,24 +160,24 @@ void BodyRows::set_search_limits(const Body& body, std::uint32_t index) const {
       static_cast<float>(kDeviation * body.min_size / body.bounding_radius) + by_forces(3);
 }
 
-void BodyRows::note_searched(std::uint32_t index) const {
-  std::copy_n(rows[index + 1].velocity, 6, searched[index].velocity);
+void BodyStates::note_searched(std::uint32_t index) const {
+  std::copy_n(states[index + 1].velocity, 6, searched[index].velocity);
 }
 
-void BodyRows::copy_to_body(Body& body, std::uint32_t index) const {
-  const solve::BodyRow& row = rows[index + 1];
+void BodyStates::copy_to_body(Body& body, std::uint32_t index) const {
+  const solve::BodyState& state = states[index + 1];
   const float* start = start_displacements[index].data();
-  const Vec3 x = reference_point(body) + vector_of(row.displacement) - vector_of(start);
-  const Vec3 rotation = vector_of(row.displacement + 3) - vector_of(start + 3);
-  body.v = vector_of(row.velocity);
-  body.w = vector_of(row.velocity + 3);
+  const Vec3 x = reference_point(body) + vector_of(state.displacement) - vector_of(start);
+  const Vec3 rotation = vector_of(state.displacement + 3) - vector_of(start + 3);
+  body.v = vector_of(state.velocity);
+  body.w = vector_of(state.velocity + 3);
   place(body, x, rotated(body.T.rotation(), rotation));
 }
 
 // Whether contacts and joints left its rotation unchanged, though it has contact slots. If so, it
-// rotates freely, in double precision, and the row's rotation is set to that.
-bool BodyRows::leave_untouched(Body& body, std::uint32_t index) const {
-  solve::BodyRow& row = rows[index + 1];
+// rotates freely, in double precision, and the state's rotation is set to that.
+bool BodyStates::leave_untouched(Body& body, std::uint32_t index) const {
+  solve::BodyState& state = states[index + 1];
   if (!body.tumbles() || body.first_joint != kNone || body.on_link || body.shortened) return false;
   if (loads.is_torqued(body)) return false;
   if (hardly_rotates(body.w, dt)) return false;
@@ -185,20 +185,20 @@ bool BodyRows::leave_untouched(Body& body, std::uint32_t index) const {
   float w[3];
   put(w, body.w);
   for (int i = 0; i < 3; ++i) {
-    for (int k = 0; k < sub_steps; ++k) w[i] += h * row.rate[3 + i];
-    if (w[i] != row.velocity[3 + i]) return false;
+    for (int k = 0; k < sub_steps; ++k) w[i] += h * state.rate[3 + i];
+    if (w[i] != state.velocity[3 + i]) return false;
   }
   const Mat3& R = body.T.rotation();
   const FreeRotation rotation =
       free_rotation(body.central, body.inverse_central, transposed_times(R, body.w), dt);
-  put(row.displacement + 3,
+  put(state.displacement + 3,
       vector_of(start_displacements[index].data() + 3) + R * mean_rotation(rotation));
   return body.untouched = true;
 }
 
-bool BodyRows::settle(Body& body, std::uint32_t index, Velocity& more) const {
-  solve::BodyRow& row = rows[index + 1];
-  body.rested = row.displacement[solve::kCarried] > 0.0f;
+bool BodyStates::settle(Body& body, std::uint32_t index, Velocity& more) const {
+  solve::BodyState& state = states[index + 1];
+  body.rested = state.displacement[solve::kCarried] > 0.0f;
   more = {};
   if (!body.is_solver_driven()) {
     const double half = 0.5 * dt * (1.0 + 1.0 / sub_steps);
@@ -213,12 +213,12 @@ bool BodyRows::settle(Body& body, std::uint32_t index, Velocity& more) const {
     return true;
   }
   const float* start = start_displacements[index].data();
-  body.v = vector_of(row.velocity);
+  body.v = vector_of(state.velocity);
   const double per_step = 1.0 / dt;
-  more.v = per_step * (vector_of(row.displacement) - vector_of(start)) - body.v;
+  more.v = per_step * (vector_of(state.displacement) - vector_of(start)) - body.v;
   if (!leave_untouched(body, index)) {
-    body.w = vector_of(row.velocity + 3);
-    more.w = per_step * (vector_of(row.displacement + 3) - vector_of(start + 3)) - body.w;
+    body.w = vector_of(state.velocity + 3);
+    more.w = per_step * (vector_of(state.displacement + 3) - vector_of(start + 3)) - body.w;
   }
   if (in_range(body.v) && in_range(body.w) && in_range(more.v) && in_range(more.w)) return true;
   body.v = body.w = {};
@@ -226,15 +226,15 @@ bool BodyRows::settle(Body& body, std::uint32_t index, Velocity& more) const {
   return false;
 }
 
-bool BodyRows::advance(Body& body, std::uint32_t index) const {
-  const solve::BodyRow& row = rows[index + 1];
+bool BodyStates::advance(Body& body, std::uint32_t index) const {
+  const solve::BodyState& state = states[index + 1];
   const float* start = start_displacements[index].data();
-  const Vec3 v = vector_of(row.velocity), w = vector_of(row.velocity + 3);
-  const Vec3 gone = vector_of(row.displacement) - vector_of(start),
-             rotation = vector_of(row.displacement + 3) - vector_of(start + 3);
+  const Vec3 v = vector_of(state.velocity), w = vector_of(state.velocity + 3);
+  const Vec3 gone = vector_of(state.displacement) - vector_of(start),
+             rotation = vector_of(state.displacement + 3) - vector_of(start + 3);
   const Vec3 x = body.T * body.centre + gone;
   if (!in_range(v) || !in_range(w) || !in_range(x) || !in_range(rotation)) return false;
-  body.rested = row.displacement[solve::kCarried] > 0.0f;
+  body.rested = state.displacement[solve::kCarried] > 0.0f;
   body.v = v;
   Mat3 R;
   if (leave_untouched(body, index)) {

@@ -1,4 +1,4 @@
-// Three floats of a body's row (body_row.h) as a vector, and back.
+// Three floats of a body's state (body_state.h) as a vector, and back.
 #pragma once
 
 #include "vphysics/lie.h"
