@@ -44,7 +44,7 @@ struct Pairs {
   std::vector<BodyState> states{2 * kHanging + 1};
   std::vector<std::array<float, 6>> start{2 * kHanging};
   std::vector<std::uint32_t> bodies{std::vector<std::uint32_t>(2 * kHanging)};
-  std::vector<Gone> gone{2 * kHanging + 1};
+  std::vector<StepMotion> motions{2 * kHanging + 1};
   std::vector<B> blocks{3};
   JointForm form;
 
@@ -54,7 +54,7 @@ struct Pairs {
       return static_cast<float>(random.uniform(low, high));
     };
     std::iota(bodies.begin(), bodies.end(), 0u);
-    for (Gone& one : gone) one = {{0, 0, 0, 1}, {}, 0};
+    for (StepMotion& motion : motions) motion = {{0, 0, 0, 1}, {}, 0};
     for (const std::uint32_t body : bodies) {
       BodyState& state = states[body + 1];
       for (int k = 0; k < 6; ++k) state.velocity[k] = number(-1, 1);
@@ -137,8 +137,9 @@ struct Pairs {
   }
   void sub_step(const AllJointPasses& all, const JointPasses<B>& passes) {
     const typename JointPasses<B>::Run run{blocks.data(), blocks.size(), &form, states.data(),
-                                           gone.data()};
-    all.find_gone(states.data(), start.data(), bodies.data(), bodies.size(), gone.data());
+                                           motions.data()};
+    all.find_step_motions(states.data(), start.data(), bodies.data(), bodies.size(),
+                          motions.data());
     passes.load_inertias(run);
     passes.prepare(run);
     passes.warm_start(run);

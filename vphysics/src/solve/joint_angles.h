@@ -68,13 +68,13 @@ void quaternion_of(const Vec3T<Lanes<W>>& theta, Vec3T<Lanes<W>>& q, Lanes<W>& w
 }
 
 template <int W>
-struct GoneLanes {
+struct StepMotionLanes {
   using F = Lanes<W>;
   using V = Vec3T<F>;
   V q, displacement;
   F w;
   template <class Row>
-  static GoneLanes of(const Row& row) {
+  static StepMotionLanes of(const Row& row) {
     F r[8];
     lanes::gather8<W>(row, r);
     return {{r[0], r[1], r[2]}, {r[4], r[5], r[6]}, r[3]};
@@ -91,7 +91,7 @@ struct Frames {
   V ax, ay, az, bx, by, bz;
 
   template <class C>
-  Frames(const C& c, const AxesPart& axes, const GoneLanes<W>& a, const GoneLanes<W>& b)
+  Frames(const C& c, const AxesPart& axes, const StepMotionLanes<W>& a, const StepMotionLanes<W>& b)
       : ax(a.rotated(c.get(axes.a_x))),
         ay(a.rotated(c.get(axes.a_y))),
         az(cross(ax, ay)),

@@ -112,7 +112,7 @@ using FrameBlock = JointBlock<0, kJointRows, true>;  // any of the six coordinat
 using RowsBlock = JointBlock<0, kJointRows, false>;
 
 // Motion of a body since the start of the step: a unit quaternion x y z w, a displacement [m].
-struct alignas(32) Gone {
+struct alignas(32) StepMotion {
   float rotation[4];
   float displacement[3];
   float unused;

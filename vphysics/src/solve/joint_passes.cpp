@@ -12,8 +12,8 @@ namespace {
 
 constexpr int kWidth = VP_LANES;
 
-void find_gone(const BodyState* states, const std::array<float, 6>* start,
-               const std::uint32_t* bodies, std::size_t count, Gone* gone) {
+void find_step_motions(const BodyState* states, const std::array<float, 6>* start,
+                       const std::uint32_t* bodies, std::size_t count, StepMotion* motions) {
   using F = Lanes<kWidth>;
   for (std::size_t first = 0; first < count; first += kWidth) {
     const int some = static_cast<int>(std::min<std::size_t>(kWidth, count - first));
@@ -32,7 +32,7 @@ void find_gone(const BodyState* states, const std::array<float, 6>* start,
     }
     quaternion_of<kWidth>(theta, q, w);
     for (int i = 0; i < some; ++i) {
-      gone[bodies[first + static_cast<std::size_t>(i)] + 1] = {
+      motions[bodies[first + static_cast<std::size_t>(i)] + 1] = {
           {q.x[i], q.y[i], q.z[i], w[i]},
           {displacement.x[i], displacement.y[i], displacement.z[i]},
           0.0f};
@@ -71,7 +71,7 @@ template <class B>
 [[gnu::flatten]] bool prepare_joints(const typename JointPasses<B>::Run& run) {
   bool some_far = false;
   for_joints<B>(run, [&](auto& c, int at) {
-    some_far = prepare_lanes(c, run.gone, at, run.max_bias_velocity) || some_far;
+    some_far = prepare_lanes(c, run.motions, at, run.max_bias_velocity) || some_far;
   });
   return some_far;
 }
@@ -104,7 +104,7 @@ constexpr JointPasses<B> passes_of() {
 }  // namespace vp::solve
 
 const vphysics_solver::AllJointPasses vphysics_solver::VP_JOINT_PASSES = {
-    vp::solve::find_gone, vp::solve::passes_of<vphysics_solver::BallBlock>(),
+    vp::solve::find_step_motions, vp::solve::passes_of<vphysics_solver::BallBlock>(),
     vp::solve::passes_of<vphysics_solver::AxesBlock>(),
     vp::solve::passes_of<vphysics_solver::FrameBlock>(),
     vp::solve::passes_of<vphysics_solver::RowsBlock>()};

@@ -36,12 +36,14 @@ inline constexpr float kJointConverged =
 // Computes arms and separation of the point, and axes and coordinates of the rows, at the current
 // poses. `separation` is the residual of the point's rows.
 template <int W, class B, int kRows, int kLocked>
-void evaluate_lanes(JointLanes<W, B, kRows, kLocked>& c, const Gone* gone, int at,
+void evaluate_lanes(JointLanes<W, B, kRows, kLocked>& c, const StepMotion* motions, int at,
                     float max_bias_velocity, Vec3T<Lanes<W>>& separation) {
   using F = Lanes<W>;
   using V = Vec3T<F>;
-  const auto a = GoneLanes<W>::of([&](int i) { return gone[c.block().a.lane[at + i]].rotation; });
-  const auto b = GoneLanes<W>::of([&](int i) { return gone[c.block().b.lane[at + i]].rotation; });
+  const auto a =
+      StepMotionLanes<W>::of([&](int i) { return motions[c.block().a.lane[at + i]].rotation; });
+  const auto b =
+      StepMotionLanes<W>::of([&](int i) { return motions[c.block().b.lane[at + i]].rotation; });
   if constexpr (B::kAxes) {
     PointPart& point = c.block().point;
     const V start_a = c.get(point.start_arm_a), start_b = c.get(point.start_arm_b);
@@ -207,13 +209,13 @@ Lanes<W> fastest_of(const JointLanes<W, B, kRows, kLocked>& c, int i, float bias
 
 // Returns true if the error of a hard row is too large to be corrected at its full rate.
 template <int W, class B, int kRows, int kLocked>
-bool prepare_lanes(JointLanes<W, B, kRows, kLocked>& c, const Gone* gone, int at,
+bool prepare_lanes(JointLanes<W, B, kRows, kLocked>& c, const StepMotion* motions, int at,
                    float max_bias_velocity) {
   using F = Lanes<W>;
   constexpr int kAll = B::kAll;
   c.gather_velocities();
   Vec3T<F> separation;
-  evaluate_lanes(c, gone, at, max_bias_velocity, separation);
+  evaluate_lanes(c, motions, at, max_bias_velocity, separation);
   F K[kAll][kAll];
   find_response(c, K);
   B& block = c.block();

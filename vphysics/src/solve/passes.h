@@ -110,7 +110,7 @@ struct JointPasses {
     std::size_t count;  // of blocks
     const JointForm* form;
     BodyState* states;
-    const Gone* gone;                // by index of the state
+    const StepMotion* motions;       // by index of the state
     float max_bias_velocity = 3.0f;  // for errors of hard rows [m/s]
     bool some_far = true;            // false: prepare has returned false for all
   };
@@ -125,8 +125,8 @@ struct JointPasses {
 };
 struct AllJointPasses {
   // Over bodies: their motion since the states' displacements were `start`.
-  void (*find_gone)(const BodyState* states, const std::array<float, 6>* start,
-                    const std::uint32_t* bodies, std::size_t count, Gone* gone);
+  void (*find_step_motions)(const BodyState* states, const std::array<float, 6>* start,
+                            const std::uint32_t* bodies, std::size_t count, StepMotion* motions);
   JointPasses<BallBlock> ball;
   JointPasses<AxesBlock> axes;
   JointPasses<FrameBlock> frames;

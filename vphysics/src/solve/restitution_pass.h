@@ -219,9 +219,9 @@ std::uint32_t find_closer_pairs(const SpeculativePair* pairs, BodyState* states,
   const auto arc_error = [&](const V& rotation, const V& arm) {
     return F(0.5f) * dot(rotation, rotation) * size(arm);
   };
-  const F gone = size(by_b - by_a) + of_pair[18] * size(rotation_b - rotation_a) +
-                 arc_error(rotation_a, arm_a) + arc_error(rotation_b, arm_b);
-  const auto stays = gone <= of_pair[19];
+  const F moved = size(by_b - by_a) + of_pair[18] * size(rotation_b - rotation_a) +
+                  arc_error(rotation_a, arm_a) + arc_error(rotation_b, arm_b);
+  const auto stays = moved <= of_pair[19];
   return lanes::bits_of(!stays);
 }
 

@@ -16,10 +16,10 @@ constexpr double kMargin = 0.1;
 // collider (update_bounds). Sums of components are upper bounds of the lengths.
 bool stays_within_bounds(const Body& body, const solve::BodyState& state, float dt) {
   const float *at = body.bounded_at, *displacement = state.displacement, *velocity = state.velocity;
-  const auto gone = [&](int i) {
+  const auto moved = [&](int i) {
     return std::fabs(displacement[i] - at[i]) + dt * std::fabs(velocity[i]);
   };
-  const float linear = gone(0) + gone(1) + gone(2), rotated = gone(3) + gone(4) + gone(5);
+  const float linear = moved(0) + moved(1) + moved(2), rotated = moved(3) + moved(4) + moved(5);
   return static_cast<double>(linear) + body.bounding_radius * static_cast<double>(rotated) <
          0.5 * kMargin * body.min_size;
 }

@@ -230,9 +230,9 @@ bool BodyStates::advance(Body& body, std::uint32_t index) const {
   const solve::BodyState& state = states[index + 1];
   const float* start = start_displacements[index].data();
   const Vec3 v = vector_of(state.velocity), w = vector_of(state.velocity + 3);
-  const Vec3 gone = vector_of(state.displacement) - vector_of(start),
+  const Vec3 displacement = vector_of(state.displacement) - vector_of(start),
              rotation = vector_of(state.displacement + 3) - vector_of(start + 3);
-  const Vec3 x = body.T * body.centre + gone;
+  const Vec3 x = body.T * body.centre + displacement;
   if (!in_range(v) || !in_range(w) || !in_range(x) || !in_range(rotation)) return false;
   body.rested = state.displacement[solve::kCarried] > 0.0f;
   body.v = v;

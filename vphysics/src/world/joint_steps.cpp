@@ -137,7 +137,7 @@ void JointSteps::for_runs(const F& f) {
       using Run = typename std::remove_cvref_t<decltype(passes)>::Run;
       f(passes,
         Run{run.blocks.data() + begin, end - begin, &run.form, context_.states.data(),
-            scratch_.displacements.data(),
+            scratch_.motions.data(),
             static_cast<float>(kMaxJointCorrectionSpeed * context_.speed_unit), some_are_far_});
     };
     if (run.alone) {
@@ -197,8 +197,8 @@ JointSteps::JointSteps(const JointContext& context, JointScratch& scratch, doubl
     fill(i);
   }
   if (empty()) return;
-  scratch_.displacements.resize(context_.states.size(),
-                                solve::Gone{{0.0f, 0.0f, 0.0f, 1.0f}, {}, 0.0f});
+  scratch_.motions.resize(context_.states.size(),
+                          solve::StepMotion{{0.0f, 0.0f, 0.0f, 1.0f}, {}, 0.0f});
   for (std::uint32_t i = 0; i < bodies.size(); ++i) {
     if (bodies[i].first_joint != kNone && joins_sub_steps(bodies[i]))
       scratch_.joined_bodies.push_back(i);
@@ -247,9 +247,9 @@ void JointSteps::prepare() {
   if (empty()) return;
   context_.workers.in_parallel(
       scratch_.joined_bodies.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
-        solve::joint_passes().find_gone(context_.states.data(), context_.start_displacements.data(),
-                                        scratch_.joined_bodies.data() + begin, end - begin,
-                                        scratch_.displacements.data());
+        solve::joint_passes().find_step_motions(
+            context_.states.data(), context_.start_displacements.data(),
+            scratch_.joined_bodies.data() + begin, end - begin, scratch_.motions.data());
       });
   std::atomic<bool> far = false;
   for_runs([&](const auto& passes, const auto& run) {

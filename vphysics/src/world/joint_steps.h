@@ -31,7 +31,7 @@ struct JointContext {
 struct JointScratch {
   JointRuns runs;
   std::vector<std::uint32_t> active, joined_bodies;
-  solve::LargeVector<solve::Gone> displacements;  // by index of the state, for bodies with joints
+  solve::LargeVector<solve::StepMotion> motions;  // by index of the state, for bodies with joints
 };
 
 // Data of the sub-steps of a step. Keeps its capacity between steps.
