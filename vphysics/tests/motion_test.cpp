@@ -288,7 +288,7 @@ TEST(Contact, CylinderConeAndHullStandOnEveryFlatTop) {
   }
 }
 
-TEST(Contact, BoxOnRoundIsCarriedToo) {
+TEST(Contact, BoxOnRoundIsSupportedToo) {
   for (const Shape& ground : {Shape{Sphere{0.5}}, Shape{Capsule{0.5, 0.5}}}) {
     World world;
     add_fixed(world, ground, {0.9, 0, 0}, SE3(Exp(Vec3{kPi / 2, 0, 0}), {}));

@@ -195,14 +195,16 @@ inline bool PairFinder::fits(const FloatBounds& enlarged, const Bounds& b, doubl
 template <class F>
 void PairFinder::cast(const Sweep& sweep, double limit, CastScratch& scratch, const F& hit) const {
   const BoxSweep lanes(sweep);
-  const auto carried = [&](std::uint32_t proxy, float entry) { return limit = hit(proxy, entry); };
+  const auto update_limit = [&](std::uint32_t proxy, float entry) {
+    return limit = hit(proxy, entry);
+  };
   for (const std::uint32_t proxy : unbounded_) {
     float entry = 0.0f;
     if (!lanes.overlaps(bounds_[proxy], limit, entry)) continue;
-    if (carried(proxy, entry) < 0.0) return;
+    if (update_limit(proxy, entry) < 0.0) return;
   }
   for (const BoundingTree& tree : trees_) {
-    tree.cast(sweep, limit, scratch, carried);
+    tree.cast(sweep, limit, scratch, update_limit);
     if (limit < 0.0) return;
   }
 }
@@ -211,15 +213,15 @@ template <class F>
 void PairFinder::nearest(const Bounds& box, double limit, CastScratch& scratch,
                          const F& near) const {
   const Vec3 scale{1.0, 1.0, 1.0};
-  const auto carried = [&](std::uint32_t proxy, float distance) {
+  const auto update_limit = [&](std::uint32_t proxy, float distance) {
     return limit = near(proxy, distance);
   };
   for (const std::uint32_t proxy : unbounded_) {
     const float distance = distance_between(box, bounds_[proxy], scale);
-    if (static_cast<double>(distance) <= limit && carried(proxy, distance) < 0.0) return;
+    if (static_cast<double>(distance) <= limit && update_limit(proxy, distance) < 0.0) return;
   }
   for (const BoundingTree& tree : trees_) {
-    tree.nearest(box, scale, limit, scratch, carried);
+    tree.nearest(box, scale, limit, scratch, update_limit);
     if (limit < 0.0) return;
   }
 }

@@ -48,10 +48,10 @@ class BlockLanes {
     F r[16];
     lanes::gather16<W>([this](int i) { return first_line(state_a(i)); }, r);
     take_velocity(r, v_a, w_a, mass_a_, falls_a);
-    read_displacement(r + 8, x_a, rotation_a, carried_a_, fraction_minus_one_a_);
+    read_displacement(r + 8, x_a, rotation_a, supported_a_, fraction_minus_one_a_);
     lanes::gather16<W>([this](int i) { return first_line(state_b(i)); }, r);
     take_velocity(r, v_b, w_b, mass_b_, falls_b);
-    read_displacement(r + 8, x_b, rotation_b, carried_b_, fraction_minus_one_b_);
+    read_displacement(r + 8, x_b, rotation_b, supported_b_, fraction_minus_one_b_);
   }
   void scatter_velocities() const { scatter_velocities(F(0.0f) < F(1.0f)); }
   // Writes only the lanes in `of`.
@@ -62,10 +62,10 @@ class BlockLanes {
     scatter([this](int i) { return state_b(i).velocity; }, b, both(is_movable_b(), of));
   }
   void scatter_displacements() const {
-    const F a[8] = {x_a.x,        x_a.y,        x_a.z,      rotation_a.x,
-                    rotation_a.y, rotation_a.z, carried_a_, fraction_minus_one_a_};
-    const F b[8] = {x_b.x,        x_b.y,        x_b.z,      rotation_b.x,
-                    rotation_b.y, rotation_b.z, carried_b_, fraction_minus_one_b_};
+    const F a[8] = {x_a.x,        x_a.y,        x_a.z,        rotation_a.x,
+                    rotation_a.y, rotation_a.z, supported_a_, fraction_minus_one_a_};
+    const F b[8] = {x_b.x,        x_b.y,        x_b.z,        rotation_b.x,
+                    rotation_b.y, rotation_b.z, supported_b_, fraction_minus_one_b_};
     scatter([this](int i) { return state_a(i).displacement; }, a, is_movable_a());
     scatter([this](int i) { return state_b(i).displacement; }, b, is_movable_b());
   }
@@ -113,9 +113,9 @@ class BlockLanes {
 
   // Marks both bodies as supported. Skips bodies that no impulse moves: several slots may share
   // their state.
-  void mark_carried(int i) const {
+  void mark_supported(int i) const {
     for (BodyState* state : {&state_a(i), &state_b(i)}) {
-      if (state->velocity[kInverseMass] > 0.0f) state->displacement[kCarried] = 1.0f;
+      if (state->velocity[kInverseMass] > 0.0f) state->displacement[kSupported] = 1.0f;
     }
   }
 
@@ -153,17 +153,18 @@ class BlockLanes {
     mass = r[kInverseMass];
     falls = r[kFalls];
   }
-  static void read_displacement(const F* r, V& x, V& rotation, F& carried, F& fraction_minus_one) {
+  static void read_displacement(const F* r, V& x, V& rotation, F& supported,
+                                F& fraction_minus_one) {
     x = {r[0], r[1], r[2]};
     rotation = {r[3], r[4], r[5]};
-    carried = r[kCarried];
+    supported = r[kSupported];
     fraction_minus_one = r[kFractionMinusOne];
   }
 
   Block& block_;
   int at_;
   BodyState* states_;
-  F mass_a_, mass_b_, carried_a_, carried_b_, fraction_minus_one_a_, fraction_minus_one_b_;
+  F mass_a_, mass_b_, supported_a_, supported_b_, fraction_minus_one_a_, fraction_minus_one_b_;
 };
 
 }  // namespace vp::solve

@@ -25,9 +25,9 @@ struct alignas(64) BodyState {
   // Contribution of the forces: acceleration [m/s^2], angular acceleration [rad/s^2]; then 0, 0.
   float rate[8];
 };
-inline constexpr int kInverseMass = 6, kFalls = 7;         // in velocity
-inline constexpr int kKeepLinear = 6, kKeepAngular = 7;    // in inertia
-inline constexpr int kCarried = 6, kFractionMinusOne = 7;  // in displacement
+inline constexpr int kInverseMass = 6, kFalls = 7;           // in velocity
+inline constexpr int kKeepLinear = 6, kKeepAngular = 7;      // in inertia
+inline constexpr int kSupported = 6, kFractionMinusOne = 7;  // in displacement
 static_assert(sizeof(BodyState) == 128);
 
 inline constexpr std::uint32_t kWorldState = 0;

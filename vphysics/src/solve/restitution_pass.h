@@ -178,7 +178,7 @@ std::uint32_t find_changed_slots(const LanesOf<W, P>& c, int at) {
   std::uint32_t bits = 0;
   for (int i = 0; i < W; ++i) {
     const bool pushes = loaded.lanes[i] != 0;
-    if (pushes) c.mark_carried(i);
+    if (pushes) c.mark_supported(i);
     const bool changed = hits.lanes[i] != 0 || pushes != (c.block().touches.lane[at + i] != 0);
     bits |= (changed ? 1u : 0u) << i | (pushes ? 1u << kLanes : 0u) << i;
   }

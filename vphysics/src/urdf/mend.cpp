@@ -84,10 +84,10 @@ Sym3 without_negative(const Sym3& moments) {
 std::vector<int> add_armatures(std::vector<LinkSpec>& links) {
   std::vector<int> given;
   const Scale scale = scale_of(links);
-  std::vector<AInertia> carried(links.size());  // of each link's descendants
+  std::vector<AInertia> child_inertias(links.size());  // of each link, by its descendants
   for (std::size_t i = links.size(); i-- > 0;) {
     LinkSpec& link = links[i];
-    const AInertia J = carried[i] + link.inertia;
+    const AInertia J = child_inertias[i] + link.inertia;
     const std::vector<se3> columns = columns_of(link.joint);
     AInertia beyond = J;
     if (!eliminate_joint(beyond, columns, link.armature)) {
@@ -98,7 +98,7 @@ std::vector<int> add_armatures(std::vector<LinkSpec>& links) {
       eliminate_joint(beyond, columns, link.armature);
     }
     if (link.parent == kWorld) continue;
-    AInertia& below = carried[static_cast<std::size_t>(link.parent)];
+    AInertia& below = child_inertias[static_cast<std::size_t>(link.parent)];
     below = below + beyond.Xform(Inv(link.T_parent_joint));
   }
   std::reverse(given.begin(), given.end());

@@ -33,7 +33,7 @@ struct alignas(64) Body {
   bool continuous = false;
   bool isotropic = false;  // rotational inertia the same about every axis: no gyroscopic term
   Motion motion = Motion::fixed;
-  bool rested = false;  // something supported it in the last step
+  bool supported = false;  // something supported it in the last step
   bool on_link =
       false;  // in this step: close to a link, its solver state moves it (link_contacts.cpp)
   // posed and bounded are updated from the pose on demand. A link's T, w and v are refreshed only

@@ -102,14 +102,15 @@ bool BodyStates::load(Body& body, std::uint32_t index) const {
   put(state.velocity, body.v);
   put(state.velocity + 3, body.w);
   state.velocity[solve::kInverseMass] = pushed ? static_cast<float>(body.inverse_mass) : 0.0f;
-  state.velocity[solve::kFalls] = pushed && !body.rested && body.first_joint == kNone ? 1.0f : 0.0f;
+  state.velocity[solve::kFalls] =
+      pushed && !body.supported && body.first_joint == kNone ? 1.0f : 0.0f;
   state.inertia[solve::kKeepLinear] = state.inertia[solve::kKeepAngular] = 1.0f;
   if (pushed && (body.linear_damping > 0.0 || body.angular_damping > 0.0)) {
     const double h = dt / sub_steps;
     state.inertia[solve::kKeepLinear] = static_cast<float>(1.0 / (1.0 + h * body.linear_damping));
     state.inertia[solve::kKeepAngular] = static_cast<float>(1.0 / (1.0 + h * body.angular_damping));
   }
-  state.displacement[solve::kCarried] = 0.0f;
+  state.displacement[solve::kSupported] = 0.0f;
   state.displacement[solve::kFractionMinusOne] = 0.0f;
   if (pushed && body.lanes > kMaxUnscaledContacts)
     state.displacement[solve::kFractionMinusOne] =
@@ -198,7 +199,7 @@ bool BodyStates::leave_untouched(Body& body, std::uint32_t index) const {
 
 bool BodyStates::settle(Body& body, std::uint32_t index, Velocity& more) const {
   solve::BodyState& state = states[index + 1];
-  body.rested = state.displacement[solve::kCarried] > 0.0f;
+  body.supported = state.displacement[solve::kSupported] > 0.0f;
   more = {};
   if (!body.is_solver_driven()) {
     const double half = 0.5 * dt * (1.0 + 1.0 / sub_steps);
@@ -234,7 +235,7 @@ bool BodyStates::advance(Body& body, std::uint32_t index) const {
              rotation = vector_of(state.displacement + 3) - vector_of(start + 3);
   const Vec3 x = body.T * body.centre + displacement;
   if (!in_range(v) || !in_range(w) || !in_range(x) || !in_range(rotation)) return false;
-  body.rested = state.displacement[solve::kCarried] > 0.0f;
+  body.supported = state.displacement[solve::kSupported] > 0.0f;
   body.v = v;
   Mat3 R;
   if (leave_untouched(body, index)) {

@@ -164,7 +164,7 @@ void World::Impl::change_motion(std::uint32_t index, Motion motion,
   forget_joints(bodies[index], joints);
   body.motion = motion;
   body.continuous = body.requested_continuous && motion == Motion::dynamic;
-  body.rested = false;
+  body.supported = false;
   body.region = solve::kSharedRegion;
   body.w = body.v = {};
   body.prescribed = motion == Motion::kinematic ? V : se3{};

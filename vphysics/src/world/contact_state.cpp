@@ -54,7 +54,7 @@ void ContactState::read(Reader& in) {
 void ContactState::read_body(Reader& in, OfBody& body) {
   const std::uint64_t flags = in.u64();
   in.check(flags <= 3);
-  body.rested = (flags & 1u) != 0;
+  body.supported = (flags & 1u) != 0;
   body.asleep = (flags & 2u) != 0;
   body.rest_time = in.number();
   for (int k = 0; k < 6; ++k) {
@@ -255,7 +255,7 @@ void ContactState::adopt() {
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     Body& body = world_.bodies[i];
     const OfBody& from = bodies_[i];
-    body.rested = from.rested;
+    body.supported = from.supported;
     if (body.asleep != from.asleep || body.region != from.region) world_.lists.invalidate();
     body.asleep = from.asleep;
     body.rest_time = from.rest_time;

@@ -1,8 +1,8 @@
 // The complete contact state of a world between steps, as 64-bit words.
 //
 // broad phase     pair_finder.h
-// bodies          of each: flags (rested, asleep); how long at rest; displacement of its state and
-//                 displacement at its last bounds
+// bodies          of each: flags (supported, asleep); how long at rest; displacement of its state
+//                 and displacement at its last bounds
 // pool            of each entry its flags, and if it is alive the contact, with the chain of its
 //                 parts
 // body contacts   of each body: its contacts, in order, as edges (2 contact + side)
@@ -51,7 +51,7 @@ class ContactState {
 
  private:
   struct OfBody {
-    bool rested = false, asleep = false;
+    bool supported = false, asleep = false;
     double rest_time = 0.0;
     float displacement[6] = {}, bounded_at[6] = {};
     std::uint32_t first_edge = kNone, lanes = 0;
@@ -92,7 +92,7 @@ void write_contacts(Sink& sink, const ContactData& world) {
     const Body& body = world.bodies[i];
     const solve::BodyState& state =
         i + 1 < world.body_states.size() ? world.body_states[i + 1] : kNoState;
-    sink.u64((body.rested ? 1u : 0u) | (body.asleep ? 2u : 0u));
+    sink.u64((body.supported ? 1u : 0u) | (body.asleep ? 2u : 0u));
     put(sink, body.rest_time);
     for (int k = 0; k < 6; ++k) put_two(sink, state.displacement[k], body.bounded_at[k]);
   }

@@ -76,7 +76,7 @@ void ImpactStage::end_solve_articulations(bool first) {
     if (change == Articulation::Change::none || stop_if_out_of_range(s_, art)) continue;
     follow_velocities(art, s_.bodies, [&](std::uint32_t b, const se3& now) {
       if (first && !(forced_[b] == Velocity{}))
-        carry(b, now.w - s_.bodies[b].w, now.v - s_.bodies[b].v);
+        remove_cancelled_forces(b, now.w - s_.bodies[b].w, now.v - s_.bodies[b].v);
     });
     if (change == Articulation::Change::of_coordinates_too) follow(art, s_.bodies, s_.lists);
   }

@@ -11,7 +11,7 @@ namespace {
 
 // Removes from the forces' velocity change the part that contacts and joints have cancelled: it
 // does not count as approach speed in later impacts.
-void remove_carried(Vec3& forced, const Vec3& change) {
+void remove_cancelled(Vec3& forced, const Vec3& change) {
   const double against = -dot(forced, change), size = dot(change, change);
   if (against > 0.0) forced += std::min(1.0, against / size) * change;
 }
@@ -37,9 +37,10 @@ void ImpactStage::find_swept_contacts(bool warm) {
 }
 
 // Removes the part that the solve has cancelled from the forces' velocity changes of a body.
-void ImpactStage::carry(std::uint32_t body, const Vec3& change_w, const Vec3& change_v) {
-  remove_carried(forced_[body].w, change_w);
-  remove_carried(forced_[body].v, change_v);
+void ImpactStage::remove_cancelled_forces(std::uint32_t body, const Vec3& change_w,
+                                          const Vec3& change_v) {
+  remove_cancelled(forced_[body].w, change_w);
+  remove_cancelled(forced_[body].v, change_v);
 }
 
 // Marks articulations in contact. Bodies of joints in rows do not move freely.
@@ -112,7 +113,7 @@ void ImpactStage::solve_contacts(double h, double dt, bool first) {
   for (const std::uint32_t i : solved) {
     Body& body = s_.bodies[i];
     if (body.is_link || body.motion != Motion::dynamic) continue;
-    if (first) carry(i, rows_.body(i).w - body.w, rows_.body(i).v - body.v);
+    if (first) remove_cancelled_forces(i, rows_.body(i).w - body.w, rows_.body(i).v - body.v);
     body.w = rows_.body(i).w;
     body.v = rows_.body(i).v;
     (void)stop_if_out_of_range(s_, i, start_poses_[i]);

@@ -92,7 +92,7 @@ class ImpactStage {
   RowJointStep row_joint_step(double h, double dt, bool first) const;
   bool solve_instant(std::span<const std::uint32_t> solved, double h, double dt, bool first);
   void solve_contacts(double h, double dt, bool first);
-  void carry(std::uint32_t body, const Vec3& change_w, const Vec3& change_v);
+  void remove_cancelled_forces(std::uint32_t body, const Vec3& change_w, const Vec3& change_v);
 
   // impact_articulations.cpp
   void integrate_articulations(double dt);

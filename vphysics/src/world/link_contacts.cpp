@@ -224,7 +224,7 @@ void LinkContacts::relax(double h) {
   for (const solve::ContactConstraint& c : contacts_) {
     if (c.points[0].normal_impulse <= 0.0) continue;
     for (const std::uint32_t i : {c.a, c.b})
-      s_.body_states[i + 1].displacement[solve::kCarried] = 1.0f;
+      s_.body_states[i + 1].displacement[solve::kSupported] = 1.0f;
   }
   for (const solve::JointRow& row : rows_.rows()) {
     if (row.remember) *row.remember = s_.dt / h * row.impulse;  // of a whole step
