@@ -93,7 +93,7 @@ void ImpactStage::advance_articulations(double h) {
     if (!art.alive || stopped_[art.bodies.front()]) continue;
     art.advance(h);
     if (stop_if_out_of_range(s_, art)) {
-      hold(art.bodies.front());
+      stop_body(art.bodies.front());
     } else if (art.remote) {
       // its links wait
     } else if (art.keeps_twists() && !art.sub_stepped) {
@@ -105,13 +105,13 @@ void ImpactStage::advance_articulations(double h) {
 }
 
 // A link stops together with its whole articulation.
-void ImpactStage::hold(std::uint32_t index) {
-  const auto stand = [&](std::uint32_t b) {
+void ImpactStage::stop_body(std::uint32_t index) {
+  const auto stop = [&](std::uint32_t b) {
     stopped_[b] = 1;
     motions_[b].v = motions_[b].w = {};
   };
-  if (!s_.bodies[index].is_link) return stand(index);
-  for (const std::uint32_t b : s_.articulations[s_.bodies[index].articulation].bodies) stand(b);
+  if (!s_.bodies[index].is_link) return stop(index);
+  for (const std::uint32_t b : s_.articulations[s_.bodies[index].articulation].bodies) stop(b);
 }
 
 }  // namespace vp

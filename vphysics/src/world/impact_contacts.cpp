@@ -97,7 +97,7 @@ void ImpactStage::solve_contacts(double h, double dt, bool first) {
     contacts_.assign(discrete_contacts_.begin(), discrete_contacts_.end());
   }
   find_swept_contacts(first);
-  const std::span<const std::uint32_t> solved = first ? moving_bodies() : concerned_;
+  const std::span<const std::uint32_t> solved = first ? moving_bodies() : affected_;
   for (const std::uint32_t i : solved) in_contact_[i] = 0;
   for (const solve::ContactConstraint& c : contacts_) {
     if (c.swept) in_contact_[c.a] = in_contact_[c.b] = 1;

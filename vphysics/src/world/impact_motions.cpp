@@ -72,7 +72,7 @@ void ImpactStage::reserve(std::size_t pairs) {
   motions_.resize(n);
   start_poses_.resize(n);
   first_impacts_.resize(n);
-  concerned_.reserve(n);
+  affected_.reserve(n);
   moved_.reserve(n);
 }
 
@@ -83,9 +83,9 @@ void ImpactStage::begin_step(double dt, std::size_t pairs) {
   stopped_.assign(n, 0);
   in_contact_.assign(n, 0);
   moves_rigidly_.assign(n, 0);
-  brought_.assign(n, 0);
+  advanced_.assign(n, 0);
   times_.assign(n, 0.0);
-  concerns_.assign(n, Concern::none);
+  affected_flags_.assign(n, Affected::none);
   if (scratch_is_dirty_) {
     scratch_is_dirty_ = false;
     drift_.assign(n, {});

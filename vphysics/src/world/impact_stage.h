@@ -51,7 +51,7 @@ class ImpactStage {
 
  private:
   // Whether the current impact affects a body.
-  enum class Concern : std::uint8_t { none, listed, searched };
+  enum class Affected : std::uint8_t { none, listed, searched };
 
   // impact_motions.cpp
   const std::vector<std::uint32_t>& moving_bodies() const { return s_.lists.of_impacts(s_.bodies); }
@@ -101,28 +101,28 @@ class ImpactStage {
   void end_solve_articulations(bool first);
   void store_implicit_impulses();
   void advance_articulations(double h);
-  void hold(std::uint32_t body);
+  void stop_body(std::uint32_t body);
 
   // impacts.cpp
   void queue_swept_pairs(double now, double h);
   double time_of(const SweptPair& swept, double h);
-  void look_at_waiting(std::uint32_t pair, const Instant& now);
+  void update_waiting(std::uint32_t pair, const Instant& now);
   bool next_impact(const Instant& now, Instant& next);
   void report_reached_sensors();
-  void bring(std::uint32_t body, const Instant& now);
-  void bring_concerned(std::uint32_t body, const Instant& now);
+  void advance_to(std::uint32_t body, const Instant& now);
+  void advance_affected(std::uint32_t body, const Instant& now);
   void move_within_step(std::uint32_t body, double h, bool freely);
-  void concern(std::uint32_t body);
+  void mark_affected(std::uint32_t body);
   void advance_links(const Instant& previous, const Instant& now);
   void refresh_links(double h);
-  void concern_bodies_that_meet(const Instant& now);
+  void mark_colliding_bodies_affected(const Instant& now);
   bool touches_at(const QueuedPair& pair, const Instant& now);
-  void concern_what_touches(const Instant& now);
+  void mark_touching_bodies_affected(const Instant& now);
   void find_swept_pairs_of(std::uint32_t body, const Instant& now, double h);
-  void find_swept_pairs_of_concerned(const Instant& now);
+  void find_swept_pairs_of_affected(const Instant& now);
   void solve_impact(const Instant& previous, const Instant& now);
   void stop_swept_pairs(const Instant& now, double h);
-  void stop_what_would_hit(const Instant& now);
+  void stop_colliding_bodies(const Instant& now);
   void advance_to_end(const Instant& now);
 
   const StepContext s_;
@@ -146,13 +146,13 @@ class ImpactStage {
   std::vector<std::uint8_t> moves_rigidly_;  // moves to its next impact at the twist of its sweep
   // Of a free body: the time within the step of its pose. Links are at the last impact.
   std::vector<double> times_;
-  std::vector<std::uint8_t> brought_;  // has advanced within the step
-  std::vector<Concern> concerns_;
+  std::vector<std::uint8_t> advanced_;  // has advanced within the step
+  std::vector<Affected> affected_flags_;
   std::vector<double> first_impacts_;  // among the pairs that are being queued [s]
 
   // --- of an impact
-  std::vector<std::uint32_t> concerned_, moved_;  // bodies
-  std::vector<std::uint32_t> reached_sensors_;    // pairs of the queue
+  std::vector<std::uint32_t> affected_, moved_;  // bodies
+  std::vector<std::uint32_t> reached_sensors_;   // pairs of the queue
   std::vector<ColliderPair> discrete_pairs_;
   std::vector<SweptPair> swept_pairs_;
   std::vector<solve::ContactConstraint> discrete_contacts_, contacts_;

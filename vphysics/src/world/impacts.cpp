@@ -1,7 +1,7 @@
 // The impact stage: solves the contacts at the start of a step, then impacts in the order of time.
 //
 // An impact affects the bodies of its pair, the dynamic bodies that touch these, and so on
-// (concerned_). Only the contacts of affected bodies are solved; then their motions and pairs are
+// (affected_). Only the contacts of affected bodies are solved; then their motions and pairs are
 // computed again. Every other body keeps its motion, and its pose keeps its own time (times_); a
 // body that may collide with an affected one is advanced to the impact. Every impact affects the
 // links whose motion has changed, and the bodies in contacts with links and in row joints.
@@ -69,10 +69,10 @@ double ImpactStage::time_of(const SweptPair& swept, double h) {
 }
 
 // Computes the time of impact of a waiting pair.
-void ImpactStage::look_at_waiting(std::uint32_t index, const Instant& now) {
+void ImpactStage::update_waiting(std::uint32_t index, const Instant& now) {
   QueuedPair& pair = queue_.pair(index);
   for (const std::uint32_t body : {pair.a, pair.b}) {
-    bring(body, now);
+    advance_to(body, now);
     pose_colliders(s_.bodies[body], s_.colliders);
   }
   const double t = time_of(pair.swept, s_.dt - now.time);
@@ -97,7 +97,7 @@ bool ImpactStage::next_impact(const Instant& now, Instant& next) {
     if (first.kind == ImpactQueue::Kind::sensor) {
       reached_sensors_.push_back(first.pair);
     } else {
-      look_at_waiting(first.pair, now);
+      update_waiting(first.pair, now);
     }
   }
   return false;
@@ -123,12 +123,12 @@ void ImpactStage::report_reached_sensors() {
 // --- an impact -----------------------------------------------------------------------------------
 
 // Advances a body along its swept motion to a later time. Links are there already.
-void ImpactStage::bring(std::uint32_t index, const Instant& now) {
+void ImpactStage::advance_to(std::uint32_t index, const Instant& now) {
   Body& body = s_.bodies[index];
   if (body.is_link || times_[index] == now.time) return;
   const double h = now.since(std::exchange(times_[index], now.time));
   if (is_still(body) || stopped_[index]) return;
-  brought_[index] = 1;
+  advanced_[index] = 1;
   move_within_step(index, h, false);
   motions_[index].x = reference_point(body);
 }
@@ -142,14 +142,14 @@ void ImpactStage::move_within_step(std::uint32_t index, double h, bool freely) {
 }
 
 // Adds a body to the affected ones; a link with all links of its articulation that have colliders.
-void ImpactStage::concern(std::uint32_t index) {
+void ImpactStage::mark_affected(std::uint32_t index) {
   const auto add = [this](std::uint32_t b) {
-    if (concerns_[b] != Concern::none) return;
-    concerns_[b] = Concern::listed;
-    concerned_.push_back(b);
+    if (affected_flags_[b] != Affected::none) return;
+    affected_flags_[b] = Affected::listed;
+    affected_.push_back(b);
   };
   const Body& body = s_.bodies[index];
-  if (body.motion == Motion::fixed || concerns_[index] != Concern::none) return;
+  if (body.motion == Motion::fixed || affected_flags_[index] != Affected::none) return;
   if (!body.is_link) return add(index);
   for (const std::uint32_t b : s_.articulations[body.articulation].bodies) {
     if (s_.bodies[b].first_collider != kNone) add(b);
@@ -169,21 +169,21 @@ void ImpactStage::refresh_links(double h) {
     const collide::Motion before = motions_[i];
     refresh_motion_of(i, h);
     refresh_bounds_of(i, h);
-    if (before.v != motions_[i].v || before.w != motions_[i].w) concern(i);
+    if (before.v != motions_[i].v || before.w != motions_[i].w) mark_affected(i);
   }
 }
 
 // Adds the bodies of the pairs that collide now, and of the next pairs while these already touch.
 // Drops the pairs of affected bodies: they are found again.
-void ImpactStage::concern_bodies_that_meet(const Instant& now) {
-  const auto is_concerned = [this](std::uint32_t b) { return concerns_[b] != Concern::none; };
+void ImpactStage::mark_colliding_bodies_affected(const Instant& now) {
+  const auto is_affected = [this](std::uint32_t b) { return affected_flags_[b] != Affected::none; };
   while (const ImpactQueue::Entry* const entry = queue_.first()) {
     const QueuedPair& pair = queue_.pair(entry->pair);
-    if (!is_concerned(pair.a) && !is_concerned(pair.b)) {
+    if (!is_affected(pair.a) && !is_affected(pair.b)) {
       if (entry->kind != ImpactQueue::Kind::impact) return;
       if (entry->time > now.time && !touches_at(pair, now)) return;
-      concern(pair.a);
-      concern(pair.b);
+      mark_affected(pair.a);
+      mark_affected(pair.b);
     }
     queue_.pop();
   }
@@ -201,23 +201,23 @@ bool ImpactStage::touches_at(const QueuedPair& pair, const Instant& now) {
 // Adds the pairs of an affected body that can collide within h. A pair of two affected bodies is
 // added once.
 void ImpactStage::find_swept_pairs_of(std::uint32_t index, const Instant& now, double h) {
-  concerns_[index] = Concern::searched;
+  affected_flags_[index] = Affected::searched;
   swept_body_pairs_.for_each_partner(index, [&](std::uint32_t other) {
-    if (concerns_[other] == Concern::searched) return;
+    if (affected_flags_[other] == Affected::searched) return;
     if (!overlap(bounds_[index], bounds_[other])) return;
-    bring(other, now);
+    advance_to(other, now);
     add_swept_pairs_of({std::min(index, other), std::max(index, other)}, h);
   });
 }
 
 // Adds the dynamic bodies that touch affected ones.
-void ImpactStage::concern_what_touches(const Instant& now) {
+void ImpactStage::mark_touching_bodies_affected(const Instant& now) {
   const double h = s_.dt - now.time;
   swept_pairs_.clear();
-  for (std::size_t k = 0; k < concerned_.size(); ++k) {
-    const std::uint32_t i = concerned_[k];
+  for (std::size_t k = 0; k < affected_.size(); ++k) {
+    const std::uint32_t i = affected_[k];
     if (!s_.bodies[i].is_link) {
-      bring_concerned(i, now);
+      advance_affected(i, now);
       refresh_motion_of(i, h);
       refresh_bounds_of(i, h);
     }
@@ -229,68 +229,68 @@ void ImpactStage::concern_what_touches(const Instant& now) {
       if (swept.sensor || swept.separation > s_.desc.contact_slop) continue;
       for (const std::uint32_t c : {swept.pair.a, swept.pair.b}) {
         if (s_.bodies[s_.colliders[c].body].motion == Motion::dynamic)
-          concern(s_.colliders[c].body);
+          mark_affected(s_.colliders[c].body);
       }
     }
   }
-  std::sort(concerned_.begin(), concerned_.end());
+  std::sort(affected_.begin(), affected_.end());
   sort_swept_pairs();
 }
 
 // Advances an affected body to the impact, with its free rotation if no swept pair was found for
 // it.
-void ImpactStage::bring_concerned(std::uint32_t index, const Instant& now) {
+void ImpactStage::advance_affected(std::uint32_t index, const Instant& now) {
   if (times_[index] != now.time && !is_still(s_.bodies[index]) && !stopped_[index]) {
     const double h = now.since(std::exchange(times_[index], now.time));
-    move_within_step(index, h, !moves_rigidly_[index] && !brought_[index]);
+    move_within_step(index, h, !moves_rigidly_[index] && !advanced_[index]);
   }
   times_[index] = now.time;
-  moves_rigidly_[index] = brought_[index] = 0;
+  moves_rigidly_[index] = advanced_[index] = 0;
 }
 
-void ImpactStage::find_swept_pairs_of_concerned(const Instant& now) {
+void ImpactStage::find_swept_pairs_of_affected(const Instant& now) {
   const double h = s_.dt - now.time;
-  for (const std::uint32_t i : concerned_) {
+  for (const std::uint32_t i : affected_) {
     if (s_.bodies[i].is_link) continue;
     refresh_motion_of(i, h);
     refresh_bounds_of(i, h);
   }
   refresh_links(h);
   collide_remote(h);
-  moved_.assign(concerned_.begin(), concerned_.end());
+  moved_.assign(affected_.begin(), affected_.end());
   for (const std::uint32_t i : s_.lists.links) {
-    if (!s_.bodies[i].remote && concerns_[i] == Concern::none) moved_.push_back(i);
+    if (!s_.bodies[i].remote && affected_flags_[i] == Affected::none) moved_.push_back(i);
   }
   swept_body_pairs_.find(body_motions(), moved_, s_.desc.contact_slop, h);
-  for (const std::uint32_t i : concerned_) {
+  for (const std::uint32_t i : affected_) {
     queue_.forget_pairs_of(i);
-    concerns_[i] = Concern::listed;
+    affected_flags_[i] = Affected::listed;
   }
   swept_pairs_.clear();
-  for (const std::uint32_t i : concerned_) find_swept_pairs_of(i, now, h);
+  for (const std::uint32_t i : affected_) find_swept_pairs_of(i, now, h);
   sort_swept_pairs();
 }
 
 void ImpactStage::solve_impact(const Instant& previous, const Instant& now) {
   const double h = s_.dt - now.time;
-  concerned_.clear();
+  affected_.clear();
   advance_links(previous, now);
   for (const solve::ContactConstraint& c : discrete_contacts_) {
-    concern(c.a);
-    concern(c.b);
+    mark_affected(c.a);
+    mark_affected(c.b);
   }
   for (const std::uint32_t i : rows_.joints()) {
     if (rows_.is_in_sub_steps(s_.joints[i])) continue;
-    concern(s_.joints[i].a);
-    concern(s_.joints[i].b);
+    mark_affected(s_.joints[i].a);
+    mark_affected(s_.joints[i].b);
   }
-  concern_bodies_that_meet(now);
-  concern_what_touches(now);
+  mark_colliding_bodies_affected(now);
+  mark_touching_bodies_affected(now);
   solve_contacts(h, s_.dt, false);
   pair_contacts_.report(contacts_, now.time);
-  find_swept_pairs_of_concerned(now);
+  find_swept_pairs_of_affected(now);
   queue_swept_pairs(now.time, h);
-  for (const std::uint32_t i : concerned_) concerns_[i] = Concern::none;
+  for (const std::uint32_t i : affected_) affected_flags_[i] = Affected::none;
 }
 
 // --- the stage -----------------------------------------------------------------------------------
@@ -298,14 +298,14 @@ void ImpactStage::solve_impact(const Instant& previous, const Instant& now) {
 // Stops the bodies of the swept pairs that would collide within h. A body that stops is in the way
 // of others that it would have stayed ahead of, so its pairs are found again.
 void ImpactStage::stop_swept_pairs(const Instant& now, double h) {
-  std::vector<std::uint32_t>& held = concerned_;
-  held.clear();
+  std::vector<std::uint32_t>& stopped = affected_;
+  stopped.clear();
   const auto stop = [&](std::uint32_t body) {
     if (stopped_[body]) return;
-    hold(body);
-    if (!s_.bodies[body].is_link) return held.push_back(body);
+    stop_body(body);
+    if (!s_.bodies[body].is_link) return stopped.push_back(body);
     const auto& links = s_.articulations[s_.bodies[body].articulation].bodies;
-    std::copy_if(links.begin(), links.end(), std::back_inserter(held),
+    std::copy_if(links.begin(), links.end(), std::back_inserter(stopped),
                  [this](std::uint32_t b) { return s_.bodies[b].first_collider != kNone; });
   };
   for (std::size_t pair = 0, searched = 0;; ++searched) {
@@ -315,19 +315,19 @@ void ImpactStage::stop_swept_pairs(const Instant& now, double h) {
       stop(s_.colliders[swept.pair.a].body);
       stop(s_.colliders[swept.pair.b].body);
     }
-    if (searched == held.size()) break;
-    find_swept_pairs_of(held[searched], now, h);
+    if (searched == stopped.size()) break;
+    find_swept_pairs_of(stopped[searched], now, h);
   }
-  for (const std::uint32_t i : held) concerns_[i] = Concern::none;
+  for (const std::uint32_t i : stopped) affected_flags_[i] = Affected::none;
 }
 
 // The limit of impacts is reached: bodies that would still collide stop for the rest of the step.
-void ImpactStage::stop_what_would_hit(const Instant& now) {
+void ImpactStage::stop_colliding_bodies(const Instant& now) {
   s_.status.impact_limit = true;
   const double h = s_.status.time_lost = s_.dt - now.time;
   for (const std::uint32_t i : moving_bodies()) {
-    bring(i, now);
-    brought_[i] = 0;
+    advance_to(i, now);
+    advanced_[i] = 0;
   }
   refresh_displacements(h);
   find_swept_pairs(h);
@@ -352,7 +352,7 @@ void ImpactStage::advance_to_end(const Instant& now) {
     const Body& body = s_.bodies[i];
     if (body.is_link || is_still(body) || stopped_[i]) continue;
     const double h = s_.dt - std::exchange(times_[i], s_.dt);
-    move_within_step(i, h, !in_contact_[i] && !brought_[i]);
+    move_within_step(i, h, !in_contact_[i] && !advanced_[i]);
   }
   advance_articulations(s_.dt - now.time);
 }
@@ -375,7 +375,7 @@ void ImpactStage::run(double dt) {
     Instant next;
     bool collides = next_impact(now, next);
     if (collides && solved >= s_.desc.max_impacts_per_step) {
-      stop_what_would_hit(now);
+      stop_colliding_bodies(now);
       collides = false;
     }
     report_reached_sensors();
