@@ -388,8 +388,8 @@ class BaseToTip {
 
 // Runs a pass over all groups. Repeats it with reduced angles if an angle is too large.
 template <class T, PassDepth kDepth, class BodyOf, class Take>
-void outwards(const Tree<base_t<T>>& tree, Work<T>& work, Span<T> q, Span<T> v, Span<T> a,
-              const BodyOf& body_of, const Take& take) {
+void pass_base_to_tip(const Tree<base_t<T>>& tree, Work<T>& work, Span<T> q, Span<T> v, Span<T> a,
+                      const BodyOf& body_of, const Take& take) {
   SlotMotion<T> motion(tree, work, q, v, a);
   BaseToTip<T, kDepth, BodyOf, Take> pass(motion, body_of, take);
   const int count = static_cast<int>(layout_of<T>(tree).groups.size());

@@ -209,12 +209,12 @@ VP_FLATTEN void body_forces(const vphysics_factor::Bodies& b, const double* grav
   }
 }
 
-VP_FLATTEN void twists(const void* of_columns, const std::uint32_t* inwards,
+VP_FLATTEN void twists(const void* of_columns, const std::uint32_t* tip_to_base,
                        const std::uint32_t* next, std::size_t dofs, const double* v, void* of_all) {
   const auto* const columns = static_cast<const FactorColumn*>(of_columns);
   auto* const V = static_cast<se3*>(of_all);
   for (std::size_t i = dofs; i-- > 0;) {
-    const std::uint32_t d = inwards[i];
+    const std::uint32_t d = tip_to_base[i];
     const SixLanes own = v[d] * six(numbers(columns[d].S));
     const bool root = next[d] == vphysics_factor::kNone;
     put(numbers(V[d]), root ? own : six(numbers(V[next[d]])) + own);

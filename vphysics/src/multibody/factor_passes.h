@@ -42,7 +42,7 @@ struct Passes {
                const void* wrenches, std::size_t depth, double* y);
   // ImpulseFactor::bias() without its tip-to-base sums.
   void (*body_forces)(const Bodies& bodies, const double* gravity);
-  void (*twists)(const void* columns, const std::uint32_t* inwards, const std::uint32_t* next,
+  void (*twists)(const void* columns, const std::uint32_t* tip_to_base, const std::uint32_t* next,
                  std::size_t dofs, const double* v, void* V);
   // Adds the inertias and momenta of some nodes, ascending, to *inertia and *momentum. Uses the
   // twists V or, if V is null, those of the kinematics.

@@ -207,11 +207,12 @@ VP_FLATTEN bool forward_dynamics_kernel(const Tree<base_t<T>>& tree, Work<T>& wo
                                         Span<T> v, Span<T> tau, const Vec3T<T>& gravity,
                                         Span<dse3T<T>> external, std::span<T> a) {
   work.A_world.v = -gravity;
-  outwards<T, PassDepth::accelerations>(tree, work, q, v, {}, BodyInTree<T>(),
-                                        [&](int g, const auto& body, const auto& V, const auto& A) {
-                                          put_body(work, g, body);
-                                          put_force(work, g, body_force(body, V, A));
-                                        });
+  pass_base_to_tip<T, PassDepth::accelerations>(
+      tree, work, q, v, {}, BodyInTree<T>(),
+      [&](int g, const auto& body, const auto& V, const auto& A) {
+        put_body(work, g, body);
+        put_force(work, g, body_force(body, V, A));
+      });
   subtract_external<T, kByRows<T>>(tree, work, external);
   if (!factor<T, true>(tree, work, v, tau)) return false;
   expand<T>(tree, work, a);
@@ -220,7 +221,7 @@ VP_FLATTEN bool forward_dynamics_kernel(const Tree<base_t<T>>& tree, Work<T>& wo
 
 template <class T>
 VP_FLATTEN bool factor_mass_kernel(const Tree<base_t<T>>& tree, Work<T>& work, Span<T> q) {
-  outwards<T, PassDepth::poses>(
+  pass_base_to_tip<T, PassDepth::poses>(
       tree, work, q, {}, {}, BodyInTree<T>(),
       [&](int g, const auto& body, const auto&, const auto&) { put_body(work, g, body); });
   return factor<T, false>(tree, work, {}, {});

@@ -15,10 +15,11 @@ VP_FLATTEN void inverse_dynamics_kernel(const Tree<base_t<T>>& tree, Work<T>& wo
                                         Span<T> v, Span<T> a, const Vec3T<T>& gravity,
                                         Span<dse3T<T>> external, std::span<T> tau) {
   work.A_world.v = -gravity;
-  outwards<T, PassDepth::accelerations>(tree, work, q, v, a, BodyInTree<T>(),
-                                        [&](int g, const auto& body, const auto& V, const auto& A) {
-                                          work.group(g).set(kF, body_force(body, V, A));
-                                        });
+  pass_base_to_tip<T, PassDepth::accelerations>(
+      tree, work, q, v, a, BodyInTree<T>(),
+      [&](int g, const auto& body, const auto& V, const auto& A) {
+        work.group(g).set(kF, body_force(body, V, A));
+      });
   subtract_external<T, false>(tree, work, external);
   LightChildSum<ChainSix<T>, PaddedSix<T>> child_sum(work.force_flow);
   const auto& groups = layout_of<T>(tree).groups;

@@ -16,12 +16,12 @@ T at_most(const T& x, const T& max_value) {
   return select(x > max_value, max_value, select(x < -max_value, -max_value, x));
 }
 
-// `outwards` is the distance of the coordinate beyond the limit, rate its rate of increase.
+// `beyond` is the distance of the coordinate beyond the limit, rate its rate of increase.
 template <class T>
-T limit_force(const JointForces& f, const T& outwards, const T& rate) {
-  const T resistance = T(static_cast<base_t<T>>(f.limit_stiffness)) * outwards +
+T limit_force(const JointForces& f, const T& beyond, const T& rate) {
+  const T resistance = T(static_cast<base_t<T>>(f.limit_stiffness)) * beyond +
                        T(static_cast<base_t<T>>(f.limit_damping)) * rate;
-  return select(both(outwards > T(0), resistance > T(0)), resistance, T(0));
+  return select(both(beyond > T(0), resistance > T(0)), resistance, T(0));
 }
 
 template <class T>

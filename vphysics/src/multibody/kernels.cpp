@@ -51,9 +51,9 @@ bool run_kinematics(const Arguments& args) {
   const auto no_body = [](const auto&, const auto&) { return 0; };
   const auto nothing = [](int, int, const auto&, const auto&) {};
   if (c.v().empty()) {
-    outwards<T, PassDepth::poses>(c.tree, c.work, c.q(), {}, {}, no_body, nothing);
+    pass_base_to_tip<T, PassDepth::poses>(c.tree, c.work, c.q(), {}, {}, no_body, nothing);
   } else {
-    outwards<T, PassDepth::velocities>(c.tree, c.work, c.q(), c.v(), {}, no_body, nothing);
+    pass_base_to_tip<T, PassDepth::velocities>(c.tree, c.work, c.q(), c.v(), {}, no_body, nothing);
   }
   return true;
 }

@@ -44,7 +44,7 @@ void fill_root(const Mat3T<T>& R, const dse3T<T>& F, std::size_t row, std::size_
 template <class T>
 VP_FLATTEN void mass_matrix_kernel(const Tree<base_t<T>>& tree, Work<T>& work, Span<T> q,
                                    std::span<T> M) {
-  outwards<T, PassDepth::poses>(
+  pass_base_to_tip<T, PassDepth::poses>(
       tree, work, q, {}, {}, BodyInTree<T>(),
       [&](int g, const auto& body, const auto&, const auto&) { set_inertia(work, g, body); });
   LightChildSum<Moments<T>, MomentsRow<T>> child_sum(work.moment_flow);
