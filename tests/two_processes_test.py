@@ -32,7 +32,7 @@ class Program:
             self.lines.put(line)
         self.lines.put(None)
 
-    def hear(self, words):
+    def wait_for(self, words):
         """The next line with these words, and the time at which it came."""
         end = time.monotonic() + DEADLINE_S
         while True:
@@ -91,10 +91,10 @@ class TwoProcesses(unittest.TestCase):
     def test_a_killed_renderer_leaves_the_match_and_a_new_one_is_in_step_within_a_second(self):
         server, port = self.server()
         first = self.renderer(port)
-        first.hear("synchronised")
+        first.wait_for("synchronised")
         first.kill()
         second = self.renderer(port)
-        line, _ = second.hear("synchronised")
+        line, _ = second.wait_for("synchronised")
         # Its own figure: from asking to join to a picture of the match on the screen. Opening a
         # window and building shaders in software come before.
         milliseconds = int(line.rsplit(" ms", 1)[0].rsplit(" ", 1)[1])
@@ -107,13 +107,13 @@ class TwoProcesses(unittest.TestCase):
     def test_a_killed_server_is_said_awaited_and_rejoined(self):
         server, port = self.server()
         renderer = self.renderer(port)
-        renderer.hear("synchronised")
+        renderer.wait_for("synchronised")
         server.kill()
         killed = time.monotonic()
-        _, lost = renderer.hear("physics server lost")
+        _, lost = renderer.wait_for("physics server lost")
         server, _ = self.server(port)
         back = time.monotonic()
-        _, joined = renderer.hear("synchronised")
+        _, joined = renderer.wait_for("synchronised")
         print(f"lost server said after {lost - killed:.2f} s, rejoined {joined - back:.2f} s after its return")
         self.assertLessEqual(lost - killed, 2.0)
         self.assertLessEqual(joined - back, 2.0)

@@ -51,7 +51,7 @@ void listen(std::vector<Listener>& listeners, ListenerTotals& totals) {
       Listener& l = listeners[i];
       if (polled[2 * i].revents != 0) drain(l, totals);
       if (polled[2 * i + 1].revents == 0 || l.over) continue;
-      const auto message = l.client.hear(0);
+      const auto message = l.client.receive(0);
       if (message && !std::holds_alternative<wire::Bye>(*message)) continue;
       if (message) drain(l, totals);  // everything was sent before the Bye
       l.over = true;

@@ -32,10 +32,10 @@ double us(std::int64_t ns) {
 }
 
 std::vector<Row> rows(const server::LoopStats& loop, const server::SendStats& sending,
-                      std::uint64_t sent, const bench::ListenerTotals& heard) {
-  const double lost = static_cast<double>(sent) - static_cast<double>(heard.received);
+                      std::uint64_t sent, const bench::ListenerTotals& totals) {
+  const double lost = static_cast<double>(sent) - static_cast<double>(totals.received);
   return {{"sent", static_cast<double>(sent), "datagrams"},
-          {"received", static_cast<double>(heard.received), "datagrams"},
+          {"received", static_cast<double>(totals.received), "datagrams"},
           {"lost", lost, "datagrams"},
           {"late_p50", us(loop.lateness.quantile(0.5)), "us"},
           {"late_p99", us(loop.lateness.quantile(0.99)), "us"},
@@ -95,18 +95,18 @@ int measure(const Options& options) {
       .ticks = static_cast<std::uint64_t>(options.seconds / foosball::kTick)};
   server::run(**server, loop, run_options, stop);
   (*server)->finish(wire::Sentence::untranslated("the measurement is over"));
-  const auto heard = listeners.totals();
-  if (!heard || !heard->complete) return fail("the listeners ended before they were told to");
+  const auto totals = listeners.totals();
+  if (!totals || !totals->complete) return fail("the listeners ended before they were told to");
 
   const auto counters = (*server)->counters();
-  const auto table = rows(loop.stats(), (*server)->sending(), counters.snapshots_sent, *heard);
+  const auto table = rows(loop.stats(), (*server)->sending(), counters.snapshots_sent, *totals);
   std::printf("%d listeners, %.0f s, %zu bytes a snapshot\n", options.listeners,
               loop.stats().seconds,
               static_cast<std::size_t>(counters.snapshot_bytes /
                                        std::max<std::uint64_t>(1, counters.snapshots_sent)));
   for (const Row& row : table) fmt::print("{:<14}{:>14.6g} {}\n", row.metric, row.value, row.unit);
-  fmt::print("gaps {}, out of order {}, bad {}, send errors {}\n", heard->gaps, heard->reordered,
-             heard->bad, counters.send_errors);
+  fmt::print("gaps {}, out of order {}, bad {}, send errors {}\n", totals->gaps, totals->reordered,
+             totals->bad, counters.send_errors);
   if (options.csv.empty()) return server::kExitOk;
   const auto written = server::write_whole(options.csv, csv(table));
   return written ? server::kExitOk : fail(written.error());

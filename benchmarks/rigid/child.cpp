@@ -61,13 +61,13 @@ Child::Child(Child&& other) noexcept
     : pid_(std::exchange(other.pid_, -1)),
       to_(std::exchange(other.to_, -1)),
       from_(std::exchange(other.from_, -1)),
-      heard_(std::move(other.heard_)) {}
+      received_(std::move(other.received_)) {}
 
 Child& Child::operator=(Child&& other) noexcept {
   std::swap(pid_, other.pid_);
   std::swap(to_, other.to_);
   std::swap(from_, other.from_);
-  std::swap(heard_, other.heard_);
+  std::swap(received_, other.received_);
   return *this;
 }
 
@@ -92,18 +92,18 @@ std::string Child::how_it_ended() {
   return fmt::format("ended with exit code {}", WEXITSTATUS(status));
 }
 
-void Child::tell(const std::string& line) {
+void Child::send(const std::string& line) {
   const std::string whole = line + "\n";
-  // A failed write is ignored: hear() detects that the program has ended.
+  // A failed write is ignored: receive() detects that the program has ended.
   [[maybe_unused]] const ssize_t written = write(to_, whole.data(), whole.size());
 }
 
-tl::expected<Answer, std::string> Child::hear(double seconds) {
+tl::expected<Answer, std::string> Child::receive(double seconds) {
   const auto until = Clock::now() + std::chrono::duration<double>(seconds);
   for (;;) {
-    for (std::size_t at; (at = heard_.find('\n')) != std::string::npos;) {
-      const std::string line = heard_.substr(0, at);
-      heard_.erase(0, at + 1);
+    for (std::size_t at; (at = received_.find('\n')) != std::string::npos;) {
+      const std::string line = received_.substr(0, at);
+      received_.erase(0, at + 1);
       const std::string word = line.substr(0, line.find(' '));
       if (is_answer(word)) return Answer{word, line.substr(std::min(line.size(), word.size() + 1))};
     }
@@ -117,8 +117,8 @@ tl::expected<Answer, std::string> Child::hear(double seconds) {
     const ssize_t got = read(from_, bytes, sizeof(bytes));
     if (got < 0 && errno == EINTR) continue;
     if (got <= 0) return tl::make_unexpected(how_it_ended());
-    heard_.append(bytes, static_cast<std::size_t>(got));
-    if (heard_.size() > 100000) heard_.clear();  // a line of this length is no answer
+    received_.append(bytes, static_cast<std::size_t>(got));
+    if (received_.size() > 100000) received_.clear();  // a line of this length is no answer
   }
 }
 

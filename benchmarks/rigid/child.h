@@ -22,10 +22,10 @@ class Child {
   Child& operator=(Child&& other) noexcept;
   ~Child();  // kills it
 
-  void tell(const std::string& line);
+  void send(const std::string& line);
   // Returns the next answer: ready, cannot, more or end. Skips other lines. The error says how the
   // program ended, or that it did not answer in time; then it is killed.
-  tl::expected<Answer, std::string> hear(double seconds);
+  tl::expected<Answer, std::string> receive(double seconds);
 
  private:
   Child(pid_t pid, int to, int from) : pid_(pid), to_(to), from_(from) {}
@@ -34,7 +34,7 @@ class Child {
 
   pid_t pid_ = -1;
   int to_ = -1, from_ = -1;
-  std::string heard_;
+  std::string received_;
 };
 
 }  // namespace rigid

@@ -204,7 +204,7 @@ class Race {
     } else if (auto child = Child::start(*words, plan_.log); !child) {
       entry.figure.missing = child.error();
     } else {
-      const auto answer = child->hear(plan_.patience);
+      const auto answer = child->receive(plan_.patience);
       if (!answer) {
         entry.figure.missing = answer.error();
       } else if (answer->word != "ready") {
@@ -218,8 +218,8 @@ class Race {
   }
 
   void take_turn(Entry& entry) {
-    entry.child->tell(std::to_string(std::max(1L, std::lround(kTurn * rate_))));
-    const auto answer = entry.child->hear(kBusy * entry.budget + plan_.patience);
+    entry.child->send(std::to_string(std::max(1L, std::lround(kTurn * rate_))));
+    const auto answer = entry.child->receive(kBusy * entry.budget + plan_.patience);
     if (answer && answer->word == "more") return;
     if (!answer || answer->word != "end") {
       entry.figure.missing = answer ? answer->text : answer.error();

@@ -30,7 +30,7 @@ struct Order {
   double rate = 60.0, budget_us = 10e6;
 };
 
-int say(const char* word, const std::string& text) {
+int print_answer(const char* word, const std::string& text) {
   std::printf("%s %s\n", word, text.c_str());
   std::fflush(stdout);
   return 0;
@@ -134,20 +134,20 @@ class Run {
 
 int run(const Order& order) {
   const auto scene = rigid::load(order.scene);
-  if (!scene) return say("cannot", scene.error().message);
+  if (!scene) return print_answer("cannot", scene.error().message);
   const auto engine = rigid::make_engine(*scene, 1.0 / order.rate);
-  if (!engine) return say("cannot", engine.error());
-  say("ready", (*engine)->settings());
+  if (!engine) return print_answer("cannot", engine.error());
+  print_answer("ready", (*engine)->settings());
   Run run(*scene, **engine, order);
   char line[64];
   while (std::fgets(line, sizeof(line), stdin)) {
     const std::string why = run.turn(std::atol(line));
     if (why.empty()) {
-      say("more", "");
+      print_answer("more", "");
       continue;
     }
-    if (!run.write()) return say("cannot", "write " + order.file);
-    return say("end", why);
+    if (!run.write()) return print_answer("cannot", "write " + order.file);
+    return print_answer("end", why);
   }
   return 0;
 }

@@ -25,12 +25,12 @@ constexpr double kOldDays = 180;      // in half a year, sensors and rods get mo
 const char* const kBusyCure =
     "end what keeps the machine busy; the server asks for real-time priority (CAP_SYS_NICE)";
 
-struct KindWords {
+struct KindText {
   const char* named;    // in a sentence of its own
   const char* a_class;  // class that a path may belong to
 };
 
-KindWords words_of(DeviceKind kind) {
+KindText text_of(DeviceKind kind) {
   switch (kind) {
     case DeviceKind::hid_controller:
       return {"the controller", "HID device"};
@@ -45,7 +45,7 @@ KindWords words_of(DeviceKind kind) {
 }
 
 Trouble not_readable(const FoundDevice& device) {
-  const std::string what = words_of(device.kind).named;
+  const std::string what = text_of(device.kind).named;
   const std::string sentence =
       fmt::format("{} cannot be read: {}", what, std::strerror(device.error));
   switch (device.error) {
@@ -69,7 +69,7 @@ Trouble not_readable(const FoundDevice& device) {
       return {device.path, what + " is known to the kernel but has no device file",
               "start udev; in a container pass the device in"};
     case ENOTTY:
-      return {device.path, std::string("this is no ") + words_of(device.kind).a_class,
+      return {device.path, std::string("this is no ") + text_of(device.kind).a_class,
               "give one that is; without --device, all connected devices are listed"};
     default:
       return {device.path, sentence, "plug it in again, into another socket or with another cable"};
@@ -180,7 +180,7 @@ void judge_reports(const FoundDevice& device, std::vector<Trouble>& troubles) {
 
 void judge_input(const FoundDevice& device, std::vector<Trouble>& troubles) {
   if (device.state != DeviceState::live) {
-    troubles.push_back({device.path, fmt::format("{} disappeared", words_of(device.kind).named),
+    troubles.push_back({device.path, fmt::format("{} disappeared", text_of(device.kind).named),
                         "plug it in again; if it happens by itself, change the cable"});
     return;
   }

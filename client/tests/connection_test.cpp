@@ -57,7 +57,7 @@ class ConnectionTest : public ::testing::Test {
     ASSERT_TRUE(server.welcome(session));
     ASSERT_TRUE(eventually([&] { return connection->status().link == Link::joined; }));
   }
-  bool hears(std::uint64_t session, std::uint64_t tick) {
+  bool receives(std::uint64_t session, std::uint64_t tick) {
     const auto before = connection->counters().received;
     return eventually([&] {
       server.send_snapshot(snapshot(session, tick++));
@@ -66,8 +66,8 @@ class ConnectionTest : public ::testing::Test {
   }
   // Between the two snapshots the listening thread has checked what to send. A repetition is due 45
   // ms after the last input; a loss and a return take longer, so it would have been sent.
-  bool hears_twice(std::uint64_t session) {
-    return hears(session, 20'000) && hears(session, 30'000);
+  bool receives_twice(std::uint64_t session) {
+    return receives(session, 20'000) && receives(session, 30'000);
   }
   ScriptedServer server;
   ConnectionOptions options = options_for(0);
@@ -81,14 +81,14 @@ TEST_F(ConnectionTest, SaysHelloWithItsLayoutAndPortAndHearsSnapshots) {
   EXPECT_EQ(server.hello().team, 0);
   EXPECT_EQ(server.hello().name, "tester");
   EXPECT_NE(server.hello().udp_port, 0);
-  EXPECT_TRUE(hears(42, 0));
+  EXPECT_TRUE(receives(42, 0));
   EXPECT_TRUE(connection->sample(os::monotonic_us()).any);
 }
 
 TEST_F(ConnectionTest, BadForeignAndRepeatedDatagramsAreEachCounted) {
   open();
   join(42);
-  ASSERT_TRUE(hears(42, 0));
+  ASSERT_TRUE(receives(42, 0));
   const std::vector<std::byte> noise(300, std::byte{0x5A}), oversized(4000, std::byte{1});
   server.send_datagram(noise);
   server.send_datagram({});
@@ -117,12 +117,12 @@ TEST_F(ConnectionTest, AServerThatTalksNonsenseIsLeftAndTriedAgain) {
 TEST_F(ConnectionTest, AGapIsNoticedAndCostsNoSeat) {
   open();
   join(42);
-  ASSERT_TRUE(hears(42, 0));
+  ASSERT_TRUE(receives(42, 0));
   const std::int64_t silent_since = os::monotonic_us();
   ASSERT_TRUE(eventually([&] { return connection->status().link == Link::lost; }));
   EXPECT_GE(os::monotonic_us() - silent_since, 450'000);
   EXPECT_TRUE(connection->sample(os::monotonic_us()).any);  // the last scene stays
-  ASSERT_TRUE(hears(42, 600));                              // the link is back
+  ASSERT_TRUE(receives(42, 600));                           // the link is back
   EXPECT_TRUE(eventually([&] { return connection->status().link == Link::joined; }));
   EXPECT_EQ(connection->status().joins, 1u) << "the connection was never let go";
 }
@@ -144,7 +144,7 @@ TEST_F(ConnectionTest, ALongSilenceIsTheEndOfAConnectionAndTheSeatIsAskedForAgai
 TEST_F(ConnectionTest, NoForgedDatagramMovesTheScene) {
   open();
   join(42);
-  ASSERT_TRUE(hears(42, 1000));
+  ASSERT_TRUE(receives(42, 1000));
   ScriptedServer attacker;  // separate sockets: another address
   const auto forge = [&](const ScriptedServer& from, std::span<const std::byte> bytes) {
     const auto to = os::loopback(server.hello().udp_port);
@@ -174,7 +174,7 @@ TEST_F(ConnectionTest, NoForgedDatagramMovesTheScene) {
   // A faulty server, or a member of the group: a jump that no later snapshot confirms.
   server.send_snapshot(far);
   ASSERT_TRUE(eventually([&] { return connection->counters().implausible == 1; }));
-  EXPECT_TRUE(hears(42, 1901));
+  EXPECT_TRUE(receives(42, 1901));
   const auto scene = connection->sample(os::monotonic_us());
   EXPECT_LT(scene.state.tick, 3000u);
 }
@@ -182,14 +182,14 @@ TEST_F(ConnectionTest, NoForgedDatagramMovesTheScene) {
 TEST_F(ConnectionTest, AFloodFromElsewhereCostsTheListenerNothing) {
   open();
   join(42);
-  ASSERT_TRUE(hears(42, 0));
+  ASSERT_TRUE(receives(42, 0));
   const ScriptedServer attacker;
   const std::vector<std::byte> garbage(700, std::byte{0x5A});
   const auto to = os::loopback(server.hello().udp_port);
   for (int i = 0; i < 20'000; ++i) {
     ::sendto(attacker.udp(), garbage.data(), garbage.size(), 0, to.generic(), to.size());
   }
-  ASSERT_TRUE(hears(42, 500));
+  ASSERT_TRUE(receives(42, 500));
   const SnapshotCounters c = connection->counters();
   EXPECT_EQ(c.bad + c.foreign, 0u);
 }
@@ -198,12 +198,12 @@ TEST_F(ConnectionTest, AServerThatDiesAndReturnsWithANewSessionIsJoinedAgain) {
   const std::uint16_t port = server.port();
   open();
   join(42);
-  ASSERT_TRUE(hears(42, 9000));
+  ASSERT_TRUE(receives(42, 9000));
   server.drop_client();
   ASSERT_TRUE(eventually([&] { return connection->status().link == Link::lost; }));
   ASSERT_EQ(server.port(), port);
   join(43);
-  EXPECT_TRUE(hears(43, 0));
+  EXPECT_TRUE(receives(43, 0));
   EXPECT_TRUE(
       eventually([&] { return connection->sample(os::monotonic_us()).state.session == 43; }));
   EXPECT_EQ(connection->status().joins, 2u);
@@ -282,7 +282,7 @@ TEST_F(ConnectionTest, NothingOfAnOldMatchReachesANewServer) {
   join(43);
   connection->drive(42, old_rods);  // a window that does not know of the new match yet
   connection->request(42, {0, 0, 0});
-  ASSERT_TRUE(hears_twice(43));
+  ASSERT_TRUE(receives_twice(43));
   EXPECT_EQ(connection->inputs_sent(), sent);
   server.forget_inputs();
   connection->request(43, {2, 0, 1});
@@ -308,7 +308,7 @@ TEST_F(ConnectionTest, AServerJoinedAgainGetsNoInputUntilTheHandMovesAnew) {
   ASSERT_TRUE(eventually([&] { return connection->status().link == Link::lost; }));
   const std::uint64_t sent = connection->inputs_sent();
   join(42);
-  ASSERT_TRUE(hears_twice(42));
+  ASSERT_TRUE(receives_twice(42));
   EXPECT_EQ(connection->inputs_sent(), sent);
   server.forget_inputs();
   connection->drive(42, rods);  // unchanged input: still sent

@@ -25,7 +25,7 @@ wire::Game usual() {
 
 class GamePage : public testing::Test {
  protected:
-  GamePage() { menu.hear(1, reported, true, ""); }
+  GamePage() { menu.update(1, reported, true, ""); }
   const MenuRow& row(const std::string& label) {
     shown = menu.page(0);
     for (const MenuRow& one : shown.rows)
@@ -51,7 +51,7 @@ class GamePage : public testing::Test {
         const bool dated = reported.mode == number(wire::Mode::challenge);
         if (dated) reported.level = 4, reported.style = 1, reported.date = 20261122;
       }
-      menu.hear(1, reported, true, "");
+      menu.update(1, reported, true, "");
     }
     return asked;
   }
@@ -68,7 +68,7 @@ TEST_F(GamePage, ShowsWhatTheServerTells) {
   reported.sets = 5;
   reported.match_ms = 90'000;
   reported.change_sides = true;
-  menu.hear(1, reported, true, "");
+  menu.update(1, reported, true, "");
   EXPECT_EQ(value("Mode"), "ladder");
   EXPECT_EQ(value("Rules"), "tournament (ITSF)");
   EXPECT_EQ(value("Goals that win a set"), "7");
@@ -164,7 +164,7 @@ TEST_F(GamePage, OtherRulesComeWithTheirOwnGoalsAndSets) {
 }
 
 TEST_F(GamePage, OnlyAHostChanges) {
-  menu.hear(1, reported, false, "");
+  menu.update(1, reported, false, "");
   for (const MenuRow& one : menu.page(0).rows) EXPECT_TRUE(one.fixed) << one.label;
   EXPECT_NE(menu.page(0).note, "");
   for (int i = 0; i < menu.rows(); ++i) EXPECT_FALSE(menu.step(i, {.right = 1, .confirm = true}));
@@ -177,7 +177,7 @@ TEST_F(GamePage, AGameThatWaitsIsSaidAndBegunByARestart) {
   EXPECT_FALSE(menu.step(begin, {.confirm = true})) << "no game is waiting";
   const std::string before = menu.page(0).note;
   reported.waits = true;
-  menu.hear(1, reported, true, "");
+  menu.update(1, reported, true, "");
   EXPECT_NE(menu.page(0).note, before);
   EXPECT_FALSE(menu.step(begin, {.right = 1})) << "no match ends by a slip";
   EXPECT_TRUE(menu.step(begin, {.confirm = true}));
@@ -188,7 +188,7 @@ TEST_F(GamePage, ARefusedRequestIsGivenUpAndItsReasonShown) {
   int asked = 0;
   for (const std::int64_t end = now + 10 * kSecond; now < end; now += 16'000) {
     asked += menu.ask(now) ? 1 : 0;
-    menu.hear(1, reported, true, asked > 0 ? "why not" : "");
+    menu.update(1, reported, true, asked > 0 ? "why not" : "");
   }
   EXPECT_EQ(asked, GameMenu::kTries);
   EXPECT_EQ(menu.page(0).detail, "why not");
@@ -197,10 +197,10 @@ TEST_F(GamePage, ARefusedRequestIsGivenUpAndItsReasonShown) {
 
 TEST_F(GamePage, WhatWasWantedOfAnotherSessionIsForgotten) {
   turn("Mode", 1);
-  menu.hear(2, reported, true, "");
+  menu.update(2, reported, true, "");
   EXPECT_FALSE(menu.ask(now + kSecond));
   EXPECT_EQ(value("Mode"), "match");
-  menu.hear(2, std::nullopt, true, "");
+  menu.update(2, std::nullopt, true, "");
   EXPECT_FALSE(menu.page(0).rows.empty());
   for (int i = 0; i < menu.rows(); ++i) EXPECT_FALSE(menu.step(i, {.right = 1, .confirm = true}));
 }
@@ -211,7 +211,7 @@ TEST(Menu, AsksForARestartFromThePageOfTheGame) {
   Menu menu("");
   wire::Game reported = usual();
   reported.waits = true;
-  menu.game().hear(1, reported, true, "");
+  menu.game().update(1, reported, true, "");
   const Menu::Context context{settings, nothing, nullptr};
   menu.toggle(Menu::Page::game);
   EXPECT_EQ(menu.page(context).title, "Game");

@@ -38,7 +38,7 @@ class TuningPanel : public testing::Test {
                    .string()),
         menu(folder) {
     std::filesystem::create_directories(folder);
-    menu.hear(1, reported, true);
+    menu.update(1, reported, true);
   }
   ~TuningPanel() override { std::filesystem::remove_all(folder); }
   int row(const std::string& label) const { return row_of(menu.page(0), label); }
@@ -50,7 +50,7 @@ class TuningPanel : public testing::Test {
         all.push_back(request);
         reported.*foosball::kTuningFields[request.value].value = request.amount;
       }
-      menu.hear(session, reported, true);
+      menu.update(session, reported, true);
     }
     return all;
   }
@@ -88,7 +88,7 @@ TEST_F(TuningPanel, GivesUpARequestThatHasNoEffectAndSaysSo) {
   int asked = 0;
   for (int i = 0; i < 600; ++i, now += 16'000) {
     asked += static_cast<int>(menu.requests(now).size());
-    menu.hear(1, reported, true);
+    menu.update(1, reported, true);
   }
   EXPECT_EQ(asked, TuningMenu::kTries);
   EXPECT_NE(menu.page(0).problem.find("gravity"), std::string::npos);
@@ -97,15 +97,15 @@ TEST_F(TuningPanel, GivesUpARequestThatHasNoEffectAndSaysSo) {
 
 TEST_F(TuningPanel, ForgetsWhatWasWantedOfAServerThatRestarted) {
   menu.step(row("gravity"), {.right = 5});
-  menu.hear(2, std::nullopt, true);
+  menu.update(2, std::nullopt, true);
   EXPECT_TRUE(menu.requests(now).empty());
-  menu.hear(2, reported, true);
+  menu.update(2, reported, true);
   EXPECT_TRUE(menu.requests(now).empty());
 }
 
 TEST_F(TuningPanel, ShowsTheValuesToOthersAndAsksNothingForThem) {
   reported.gravity = 9.5;
-  menu.hear(1, reported, false);
+  menu.update(1, reported, false);
   for (int i = 0; i < menu.rows(); ++i) {
     if (i == row("Save as this profile")) continue;
     menu.step(i, {.right = 1});
@@ -271,7 +271,7 @@ class ControllersPage : public testing::Test {
  protected:
   // A controller with 1000 frames per second, of which every 50th is lost; frames are 0.4 ms old
   // when used.
-  void hear(double seconds) {
+  void report(double seconds) {
     wire::Devices reported{std::llround(1e6 * seconds), {{}}};
     wire::DeviceReport& device = reported.devices[0];
     device.name = "cabinet";
@@ -280,7 +280,7 @@ class ControllersPage : public testing::Test {
     device.lost = static_cast<std::uint64_t>(20 * seconds);
     device.latency_sum_us = 400 * device.frames;
     device.rods[2] = {number(wire::RodStatus::live), std::llround(100 * seconds), -7, 0.0f, 0.0f};
-    menu.hear(reported);
+    menu.update(reported);
   }
   DevicesMenu menu;
 };
@@ -295,7 +295,7 @@ TEST_F(ControllersPage, AsksOnlyAsHostTwentyTimesASecondAndWaitsForAnswers) {
   for (std::int64_t now = 2 * kSecond; now < 3 * kSecond; now += 10'000) {
     if (!menu.ask(now)) continue;
     ++asked;
-    hear(1e-6 * static_cast<double>(now));
+    report(1e-6 * static_cast<double>(now));
   }
   EXPECT_EQ(asked, 20);
   EXPECT_TRUE(menu.ask(4 * kSecond));
@@ -307,7 +307,7 @@ TEST_F(ControllersPage, AsksOnlyAsHostTwentyTimesASecondAndWaitsForAnswers) {
 
 TEST_F(ControllersPage, RatesAndLatencyAreOfTheLastSecondAndTracesOfTen) {
   menu.follow(1, true);
-  for (int i = 20; i <= 20 * 30; ++i) hear(0.05 * i);
+  for (int i = 20; i <= 20 * 30; ++i) report(0.05 * i);
   const MenuPage page = menu.page(0);
   ASSERT_EQ(page.rows.size(), 1u);
   EXPECT_EQ(page.rows[0].label, "cabinet");
@@ -323,8 +323,8 @@ TEST_F(ControllersPage, RatesAndLatencyAreOfTheLastSecondAndTracesOfTen) {
 
 TEST_F(ControllersPage, AServerThatCountsFromTheBeginningAgainIsNoBurst) {
   menu.follow(1, true);
-  for (int i = 0; i <= 100; ++i) hear(100 + 0.05 * i);
-  for (int i = 0; i <= 10; ++i) hear(1 + 0.05 * i);
+  for (int i = 0; i <= 100; ++i) report(100 + 0.05 * i);
+  for (int i = 0; i <= 10; ++i) report(1 + 0.05 * i);
   const MenuPage page = menu.page(0);
   EXPECT_NEAR(page.device->frames_per_second, 980, 30);
   EXPECT_EQ(page.device->traces[2].size(), 11u);
@@ -335,11 +335,11 @@ TEST_F(ControllersPage, SaysWhyNothingIsSeen) {
   EXPECT_NE(menu.page(0).note.find("Only the host"), std::string::npos);
   menu.follow(1, true);
   EXPECT_NE(menu.page(0).note.find("Waiting"), std::string::npos);
-  menu.hear({1, {}});
+  menu.update({1, {}});
   EXPECT_NE(menu.page(0).note.find("--device"), std::string::npos);
-  hear(1.0);
-  hear(2.0);
-  menu.hear({3'000'000, {}});  // all are unplugged
+  report(1.0);
+  report(2.0);
+  menu.update({3'000'000, {}});  // all are unplugged
   EXPECT_FALSE(menu.page(3).device);
 }
 

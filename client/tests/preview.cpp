@@ -158,7 +158,7 @@ MenuPage controllers_page() {
   Menu menu("/nowhere");
   menu.toggle(Menu::Page::controllers);
   menu.devices().follow(1, true);
-  for (int i = 0; i < 240; ++i) menu.devices().hear(scripted_devices(0.05 * i));
+  for (int i = 0; i < 240; ++i) menu.devices().update(scripted_devices(0.05 * i));
   static Settings settings;
   static const SeatsView nobody;
   return menu.page({settings, nobody, nullptr});
@@ -185,7 +185,7 @@ MenuPage menu_page(Menu::Page page, int row, bool host = true,
   Menu menu("/nowhere");
   foosball::Tuning tuning;
   tuning.hop_gain = 3.2;
-  menu.tuning().hear(1, tuning, host);
+  menu.tuning().update(1, tuning, host);
   wire::Game game;
   game.mode = game_mode;
   game.goals = 5;
@@ -193,7 +193,7 @@ MenuPage menu_page(Menu::Page page, int row, bool host = true,
   game.level = game_mode == number(wire::Mode::ladder) ? 0 : 4;
   game.style = game_mode == number(wire::Mode::challenge) ? 4 : 0;
   game.waits = game_mode == number(wire::Mode::match) && host;
-  menu.game().hear(1, game, host, "");
+  menu.game().update(1, game, host, "");
   const Menu::Context context{settings, seats, &crew};
   menu.toggle(page);
   menu.step({.down = row - 1}, 0, context);

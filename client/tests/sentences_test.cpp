@@ -69,7 +69,7 @@ TEST(Sentences, OfTheServerAreAllKnownInEachLanguage) {
       }
       const std::string shown = tr_sentence(said);
       EXPECT_NE(shown, said) << code;
-      for (char place = '1'; place <= '0' + wire::places_of(form); ++place)
+      for (char place = '1'; place <= '0' + wire::count_placeholders(form); ++place)
         EXPECT_NE(shown.find(std::string("<") + place + ">"), std::string::npos) << shown;
       EXPECT_EQ(shown.find('%'), std::string::npos) << shown;
     }
@@ -77,29 +77,30 @@ TEST(Sentences, OfTheServerAreAllKnownInEachLanguage) {
 }
 
 TEST(Sentences, WithinASentenceAreTranslatedToo) {
-  using wire::Said, wire::say;
+  using wire::SentenceId, wire::make_sentence;
   const Language german("de");
-  const std::string rods = say<Said::rods_for>("1 and 2", "Ann").text() + "; " +
-                           say<Said::rods_for>("3", say<Said::a_player>()).text();
-  EXPECT_EQ(tr_sentence(say<Said::computer_plays>(rods).text()),
+  const std::string rods =
+      make_sentence<SentenceId::rods_for>("1 and 2", "Ann").text() + "; " +
+      make_sentence<SentenceId::rods_for>("3", make_sentence<SentenceId::a_player>()).text();
+  EXPECT_EQ(tr_sentence(make_sentence<SentenceId::computer_plays>(rods).text()),
             "der Computer spielt: Stangen 1, 2 für Ann; Stangen 3 für jemanden");
-  EXPECT_EQ(tr_sentence(say<Said::rods_offered>(10, rods).text()),
+  EXPECT_EQ(tr_sentence(make_sentence<SentenceId::rods_offered>(10, rods).text()),
             "10 s lang frei für die Mannschaft, dann spielt der Computer: Stangen 1, 2 für Ann; "
             "Stangen 3 für jemanden");
-  EXPECT_EQ(
-      tr_sentence(say<Said::results_not_kept>(
-                      say<Said::results_problem>("/tmp/a.sqlite", say<Said::results_locked>()))
-                      .text()),
-      "Ergebnisse in /tmp/a.sqlite: ein anderes Programm hält sie gesperrt; beende es und "
-      "versuche es noch einmal; das Spiel geht weiter");
-  EXPECT_EQ(tr_sentence(say<Said::not_rated>("Ann (62%), Bob; (9%)").text()),
+  EXPECT_EQ(tr_sentence(make_sentence<SentenceId::results_not_kept>(
+                            make_sentence<SentenceId::results_problem>(
+                                "/tmp/a.sqlite", make_sentence<SentenceId::results_locked>()))
+                            .text()),
+            "Ergebnisse in /tmp/a.sqlite: ein anderes Programm hält sie gesperrt; beende es und "
+            "versuche es noch einmal; das Spiel geht weiter");
+  EXPECT_EQ(tr_sentence(make_sentence<SentenceId::not_rated>("Ann (62%), Bob; (9%)").text()),
             "das Spiel zählt nicht für die Wertung derer, die zu wenig davon gespielt haben: "
             "Ann (62%), Bob; (9%)");
 }
 
 TEST(Sentences, OfARecordingAreNotTakenForTheShorterOnesTheyBeginLike) {
   const Language german("de");
-  EXPECT_EQ(tr_sentence(wire::say<wire::Said::disk_too_slow>("a.sfr").text()),
+  EXPECT_EQ(tr_sentence(wire::make_sentence<wire::SentenceId::disk_too_slow>("a.sfr").text()),
             "die Aufzeichnung in a.sfr endete vorzeitig: die Platte ist zu langsam; das Spiel geht "
             "weiter");
 }

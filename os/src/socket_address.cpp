@@ -75,8 +75,8 @@ std::string SocketAddress::network() const {
   return machine().substr(0, kPrefixBytes);
 }
 
-std::string SocketAddress::owner(const SocketAddress& heard_at) const {
-  return network() == heard_at.network() ? machine() : network();
+std::string SocketAddress::owner(const SocketAddress& local) const {
+  return network() == local.network() ? machine() : network();
 }
 
 std::string SocketAddress::host() const {

@@ -117,8 +117,8 @@ TEST(SocketAddress, MachinesOfOneNetworkAreToldApartAndLinkLocalOnesAreNoNetwork
 }
 
 TEST(SocketAddress, AnOwnerHasOneAddressOrANetworkAndANeighbourIsNotAllOfTheLan) {
-  const auto owner = [](const char* address, const char* heard_at) {
-    return parse_address(address, 4242)->owner(*parse_address(heard_at, 17));
+  const auto owner = [](const char* address, const char* local) {
+    return parse_address(address, 4242)->owner(*parse_address(local, 17));
   };
   const char *far = "2001:db8:1:2::1", *farther = "2001:db8:1:2:ffff:ffff:ffff:ffff";
   EXPECT_EQ(owner(far, "2001:db8::1"), owner(farther, "2001:db8::1"));

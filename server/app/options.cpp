@@ -264,16 +264,16 @@ foosball::GameSetup setup_of(const Raw& raw) {
 
 // The options that a rejection of a game refers to.
 std::vector<const char*> options_of(const wire::Sentence& refusal) {
-  using wire::Said;
+  using wire::SentenceId;
   const std::vector<const char*> end{"--goals", "--sets", "--minutes", "--change-sides"},
       opponent{"--level", "--style"};
-  if (refusal == wire::say<Said::challenge_is_set>())
+  if (refusal == wire::make_sentence<SentenceId::challenge_is_set>())
     return {"--goals", "--sets", "--minutes", "--change-sides", "--rules", "--level", "--style"};
-  if (refusal == wire::say<Said::training_has_no_end>()) return end;
-  if (refusal == wire::say<Said::ladder_has_its_levels>()) return opponent;
-  if (refusal == wire::say<Said::challenge_table>()) return {"--layout"};
-  if (refusal == wire::say<Said::challenge_characters>()) return {"--characters"};
-  if (refusal == wire::say<Said::challenge_tuning>()) return {"--tuning"};
+  if (refusal == wire::make_sentence<SentenceId::training_has_no_end>()) return end;
+  if (refusal == wire::make_sentence<SentenceId::ladder_has_its_levels>()) return opponent;
+  if (refusal == wire::make_sentence<SentenceId::challenge_table>()) return {"--layout"};
+  if (refusal == wire::make_sentence<SentenceId::challenge_characters>()) return {"--characters"};
+  if (refusal == wire::make_sentence<SentenceId::challenge_tuning>()) return {"--tuning"};
   return {"--change-sides"};
 }
 

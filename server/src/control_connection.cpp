@@ -39,12 +39,12 @@ ControlConnection::ControlConnection(os::FileDescriptor socket, const os::Socket
   watch_for_silence(socket_.get());
 }
 
-os::SocketAddress ControlConnection::heard_at() const {
+os::SocketAddress ControlConnection::local_address() const {
   return vouched_at_ ? *vouched_at_ : os::local_address(socket_.get());
 }
 
-void ControlConnection::vouch(const os::SocketAddress& heard_at) {
-  vouched_at_ = heard_at;
+void ControlConnection::vouch(const os::SocketAddress& local) {
+  vouched_at_ = local;
   role = wire::Role::player;
 }
 
@@ -53,7 +53,7 @@ bool ControlConnection::receive() {
   const ssize_t size = ::recv(socket_.get(), buffer.data(), buffer.size(), MSG_DONTWAIT);
   if (size < 0) return would_block();
   if (size == 0) return false;
-  heard_ = true;
+  received_ = true;
   if (state == State::closing) return true;
   const auto bytes = std::span<const std::byte>(buffer).first(static_cast<std::size_t>(size));
   if (!opener_) {

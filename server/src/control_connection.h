@@ -48,14 +48,14 @@ class ControlConnection {
   void close_softly(std::int64_t deadline_us);
   bool wants_to_send() const { return sent_ < out_.size(); }
   std::size_t buffered_bytes() const { return out_.size(); }  // unsent bytes, and some sent ones
-  bool broke_off() const { return state == State::greeting && heard_; }
+  bool broke_off() const { return state == State::greeting && received_; }
 
   int fd() const { return socket_.get(); }
   const os::SocketAddress& peer() const { return peer_; }
   // The local address that received the connection.
-  os::SocketAddress heard_at() const;
+  os::SocketAddress local_address() const;
   // Another port has accepted this connection, at that address. Its inputs do not come by UDP.
-  void vouch(const os::SocketAddress& heard_at);
+  void vouch(const os::SocketAddress& local);
   bool vouched() const { return vouched_at_.has_value(); }
 
   State state = State::greeting;
@@ -80,7 +80,7 @@ class ControlConnection {
   bool opened_ = false, wrong_password_ = false;
   std::vector<std::byte> out_;
   std::size_t sent_ = 0;
-  bool heard_ = false;
+  bool received_ = false;
   bool shut_when_sent_ = false;
 };
 

@@ -7,8 +7,8 @@
 namespace server {
 namespace {
 
-using wire::Said;
-using wire::say;
+using wire::make_sentence;
+using wire::SentenceId;
 
 bool is_default(const wire::Tuning& tuning) {
   const foosball::Tuning usual;
@@ -34,16 +34,18 @@ void ControlServer::take_game(ControlConnection& connection, wire::Game game) {
     count(Count::requests_dropped);
     return;
   }
-  if (!options_.teams_open) return refuse_it(say<Said::recording_plays>());
-  if (seat->role != wire::Role::host) return refuse_it(say<Said::only_host_chooses>());
+  if (!options_.teams_open) return refuse_it(make_sentence<SentenceId::recording_plays>());
+  if (seat->role != wire::Role::host)
+    return refuse_it(make_sentence<SentenceId::only_host_chooses>());
   GameSite site = options_.site;
   if (tuning_) site.default_tuning = is_default(*tuning_);
   if (const wire::Sentence why = why_not(game, site); !why.empty()) return refuse_it(why);
   if (game.mode == number(wire::Mode::challenge)) {
     game.date = challenge_day();
-    if (game.date == 0) return refuse_it(say<Said::challenge_undated>());
+    if (game.date == 0) return refuse_it(make_sentence<SentenceId::challenge_undated>());
   }
-  if (pending_.size() > kMaxPending) return refuse_it(say<Said::server_overloaded>());
+  if (pending_.size() > kMaxPending)
+    return refuse_it(make_sentence<SentenceId::server_overloaded>());
   count(Count::requests);
   send(connection, wire::Notice{wire::Notice::Level::cleared, wire::kGameAnswerTopic, "chosen"});
   choose(game, seat->client);

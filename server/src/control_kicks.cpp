@@ -11,8 +11,8 @@ namespace server {
 namespace {
 
 using State = ControlConnection::State;
-using wire::Said;
-using wire::say;
+using wire::make_sentence;
+using wire::SentenceId;
 
 std::int64_t minutes(std::int64_t us) {
   constexpr std::int64_t kMinuteUs = 60'000'000;
@@ -25,13 +25,15 @@ std::int64_t minutes(std::int64_t us) {
 // up the rods during a vote does not end the vote.
 wire::Sentence ControlServer::why_not_kick(const Seat& voter, const Seat* target) const {
   const bool host = voter.role == wire::Role::host;
-  if (!options_.teams_open) return say<Said::recording_plays>();
-  if (!host && !voter.plays()) return say<Said::watchers_have_no_vote>();
-  if (target == nullptr) return say<Said::target_has_left>();
-  if (target->client == voter.client) return say<Said::target_is_you>();
-  if (!target->plays() && !kicks_.open_against(target->client)) return say<Said::target_watches>();
-  if (target->role == wire::Role::host) return say<Said::target_is_host>();
-  if (!host && target->owner == voter.owner) return say<Said::target_at_your_address>();
+  if (!options_.teams_open) return make_sentence<SentenceId::recording_plays>();
+  if (!host && !voter.plays()) return make_sentence<SentenceId::watchers_have_no_vote>();
+  if (target == nullptr) return make_sentence<SentenceId::target_has_left>();
+  if (target->client == voter.client) return make_sentence<SentenceId::target_is_you>();
+  if (!target->plays() && !kicks_.open_against(target->client))
+    return make_sentence<SentenceId::target_watches>();
+  if (target->role == wire::Role::host) return make_sentence<SentenceId::target_is_host>();
+  if (!host && target->owner == voter.owner)
+    return make_sentence<SentenceId::target_at_your_address>();
   return {};
 }
 
@@ -52,16 +54,17 @@ void ControlServer::take_kick(ControlConnection& connection, const wire::Kick& k
   }
   std::ranges::sort(voters);
   voters.erase(std::unique(voters.begin(), voters.end()), voters.end());
-  if (voters.size() < KickVotes::kFewest) return refuse_it(say<Said::one_alone>());
+  if (voters.size() < KickVotes::kFewest) return refuse_it(make_sentence<SentenceId::one_alone>());
   const auto count = kicks_.cast(voter->owner, {target->client, target->name, target->owner},
                                  voters, os::monotonic_us());
-  if (!count.taken) return refuse_it(say<Said::vote_just_begun>());
+  if (!count.taken) return refuse_it(make_sentence<SentenceId::vote_just_begun>());
   if (count.passed()) return put_out(*target, false);
   const std::string votes =
       std::to_string(count.votes) + " of " + std::to_string(count.needed) + " votes";
   log(LogLevel::info, voter->name + " votes to put " + target->name + " out: " + votes);
   tell(wire::Notice::Level::info, wire::kKickTopics + target->client,
-       say<Said::would_put_out>(voter->name, target->name, count.votes, count.needed));
+       make_sentence<SentenceId::would_put_out>(voter->name, target->name, count.votes,
+                                                count.needed));
 }
 
 // Frees the seat and invalidates its ticket. The machine gets no rods until a match is over.
@@ -79,8 +82,8 @@ void ControlServer::put_out(Seat& seat, bool by_host) {
   });
   if (connection == connections_.end()) return give_up_seat(client);
   refuse(**connection, wire::Refusal::Code::not_allowed,
-         by_host ? say<Said::put_out_by_host>(minutes(KickVotes::kOutUs))
-                 : say<Said::put_out_by_players>(minutes(KickVotes::kOutUs)));
+         by_host ? make_sentence<SentenceId::put_out_by_host>(minutes(KickVotes::kOutUs))
+                 : make_sentence<SentenceId::put_out_by_players>(minutes(KickVotes::kOutUs)));
 }
 
 // The reason why this owner's client (0: not joined yet) may not have rods; empty: it may.
@@ -88,8 +91,9 @@ wire::Sentence ControlServer::why_out(const std::string& owner, wire::Role role,
                                       std::uint32_t client) const {
   if (role == wire::Role::host) return {};
   const std::int64_t out_us = kicks_.out_us(owner, os::monotonic_us());
-  if (out_us > 0) return say<Said::address_put_out>(minutes(out_us));
-  if (kicks_.open_against_another(owner, client, here())) return say<Said::vote_at_your_address>();
+  if (out_us > 0) return make_sentence<SentenceId::address_put_out>(minutes(out_us));
+  if (kicks_.open_against_another(owner, client, here()))
+    return make_sentence<SentenceId::vote_at_your_address>();
   return {};
 }
 
@@ -115,7 +119,7 @@ void ControlServer::carry_vote_over(const Seat& newcomer) {
   if (!before) return;
   clear_notice(wire::kKickTopics + before->client, "the vote continues");
   tell(wire::Notice::Level::info, wire::kKickTopics + newcomer.client,
-       say<Said::vote_goes_on>(newcomer.name, before->name, newcomer.name));
+       make_sentence<SentenceId::vote_goes_on>(newcomer.name, before->name, newcomer.name));
 }
 
 }  // namespace server

@@ -15,8 +15,8 @@ namespace server {
 namespace {
 
 using State = ControlConnection::State;
-using wire::Said;
-using wire::say;
+using wire::make_sentence;
+using wire::SentenceId;
 
 constexpr std::int64_t kClosingUs = 1'000'000;  // time for a rejected peer to read the reason
 constexpr std::int64_t kGoodbyeUs = 200'000;    // when the server ends
@@ -45,7 +45,7 @@ ControlServer::ControlServer(ControlOptions options, os::FileDescriptor listener
       thread_([this] { run(); }) {}
 
 ControlServer::~ControlServer() {
-  stop(say<Said::server_ends>());
+  stop(make_sentence<SentenceId::server_ends>());
 }
 
 void ControlServer::notify(wire::Notice::Level level, std::uint32_t topic,
@@ -137,7 +137,7 @@ void ControlServer::run() {
     for (auto& connection : connections_) {
       expire(*connection);
       if (connection->state != State::dead && !connection->flush()) {
-        hear_out(*connection);
+        drain(*connection);
         if (connection->state != State::dead) release(*connection, Going::lost);
       }
     }
@@ -205,7 +205,7 @@ void ControlServer::admit_vouched() {
   VouchedConnection vouched;
   while (vouched_.pop(vouched)) {
     admit(std::move(vouched.socket), vouched.peer);
-    connections_.back()->vouch(vouched.heard_at);
+    connections_.back()->vouch(vouched.local_address);
   }
 }
 
@@ -260,7 +260,7 @@ void ControlServer::serve(ControlConnection& connection) {
     const auto status = connection.next(message);
     if (status == wire::ControlReader::Status::need_more) return;
     if (status == wire::ControlReader::Status::broken) {
-      reject(connection, say<Said::unreadable>());
+      reject(connection, make_sentence<SentenceId::unreadable>());
       return;
     }
     handle(connection, message);
@@ -270,7 +270,7 @@ void ControlServer::serve(ControlConnection& connection) {
 // The peer's end may be known before it is read. It comes after the client's last messages, which
 // may include a Bye. If the client had not read all it was sent, its end is a reset, and the next
 // send fails first.
-void ControlServer::hear_out(ControlConnection& connection) {
+void ControlServer::drain(ControlConnection& connection) {
   while (connection.state == State::joined && connection.peer_left()) serve(connection);
 }
 
@@ -300,7 +300,7 @@ void ControlServer::handle(ControlConnection& connection, const wire::ControlMes
   } else if (std::holds_alternative<wire::Bye>(message)) {
     release(connection, Going::left);
   } else if (!(joined && std::holds_alternative<wire::Pong>(message))) {
-    reject(connection, say<Said::out_of_place>());
+    reject(connection, make_sentence<SentenceId::out_of_place>());
   }
 }
 

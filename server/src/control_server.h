@@ -67,13 +67,13 @@ struct ControlEvent {
   std::uint64_t token = 0;                      // joined, back, rods
   std::array<char, wire::kMaxName + 1> name{};  // joined, rods, name: zero-terminated
   wire::SealKey input_key{}, snapshot_key{};
-  os::FileDescriptor socket;    // joined, back, rods: when it gets rods for the first time
-  os::SocketAddress listener;   // joined, back: destination of its snapshots; port 0: none
-  os::SocketAddress heard_at;   // joined, back: local address that received it
-  foosball::Command request{};  // request
-  wire::Game game;              // game: date: of a challenge
-  bool put_out = false;         // left: removed by others
-  wire::Answers answers;        // answers: for rods of one team, asked and not yet answered
+  os::FileDescriptor socket;        // joined, back, rods: when it gets rods for the first time
+  os::SocketAddress listener;       // joined, back: destination of its snapshots; port 0: none
+  os::SocketAddress local_address;  // joined, back: local address that received it
+  foosball::Command request{};      // request
+  wire::Game game;                  // game: date: of a challenge
+  bool put_out = false;             // left: removed by others
+  wire::Answers answers;            // answers: for rods of one team, asked and not yet answered
 };
 
 struct ControlOptions {
@@ -165,7 +165,7 @@ class ControlServer {
   void make_room_at_the_door();
   bool trusted(const ControlConnection& connection) const;
   void serve(ControlConnection& connection);
-  void hear_out(ControlConnection& connection);
+  void drain(ControlConnection& connection);
   void handle(ControlConnection& connection, const wire::ControlMessage& message);
   void send(ControlConnection& connection, const wire::ControlMessage& message);
   void refuse(ControlConnection& connection, wire::Refusal::Code code,
@@ -194,7 +194,7 @@ class ControlServer {
   bool resume(ControlConnection& connection, const wire::Hello& hello);
   bool admit_to_table(ControlConnection& connection, const wire::Hello& hello, RodSet& rods);
   static std::string owner_of(const ControlConnection& connection);
-  void hear_out_leavers(RodSet wanted);
+  void drain_leavers(RodSet wanted);
   void join(ControlConnection& connection, const wire::Hello& hello, RodSet rods);
   bool welcome(ControlConnection& connection, Seat& seat, ControlEvent::Kind kind,
                std::uint16_t udp_port);

@@ -16,8 +16,8 @@ namespace server {
 namespace {
 
 using State = ControlConnection::State;
-using wire::Said;
-using wire::say;
+using wire::make_sentence;
+using wire::SentenceId;
 
 // Topics of notices: of a reserved seat; of a vote, see wire/limits.h; of a claim.
 constexpr std::uint32_t kAwayTopic = 1'000'000;
@@ -32,9 +32,9 @@ std::uint32_t vote_topic(const foosball::Command& request) {
 wire::Sentence asks_for(const foosball::Command& request, const std::string& name, int votes,
                         int needed) {
   if (request.kind == foosball::Command::Kind::restart)
-    return say<Said::asks_for_restart>(name, votes, needed);
-  return request.value != 0 ? say<Said::asks_for_pause>(name, votes, needed)
-                            : say<Said::asks_to_go_on>(name, votes, needed);
+    return make_sentence<SentenceId::asks_for_restart>(name, votes, needed);
+  return request.value != 0 ? make_sentence<SentenceId::asks_for_pause>(name, votes, needed)
+                            : make_sentence<SentenceId::asks_to_go_on>(name, votes, needed);
 }
 
 }  // namespace
@@ -47,17 +47,17 @@ void ControlServer::answer_knock(ControlConnection& connection, const wire::Knoc
       role == wire::Role::host ? options_.access.host_password : options_.access.password;
   if (knock.version != wire::kControlVersion) {
     refuse(connection, wire::Refusal::Code::version,
-           say<Said::other_version>(wire::kControlVersion, knock.version));
+           make_sentence<SentenceId::other_version>(wire::kControlVersion, knock.version));
     return;
   }
   if (!password) {
-    refuse(
-        connection, wire::Refusal::Code::not_allowed,
-        role == wire::Role::host ? say<Said::no_hosts_from_afar>() : say<Said::nobody_from_afar>());
+    refuse(connection, wire::Refusal::Code::not_allowed,
+           role == wire::Role::host ? make_sentence<SentenceId::no_hosts_from_afar>()
+                                    : make_sentence<SentenceId::nobody_from_afar>());
     return;
   }
   if (!password_tries_.charge(connection.peer(), os::monotonic_us())) {
-    refuse(connection, wire::Refusal::Code::password, say<Said::wrong_passwords>());
+    refuse(connection, wire::Refusal::Code::password, make_sentence<SentenceId::wrong_passwords>());
     return;
   }
   connection.try_charged = true;
@@ -65,7 +65,7 @@ void ControlServer::answer_knock(ControlConnection& connection, const wire::Knoc
                                         wire::exchange_channel(role == wire::Role::host),
                                         knock.sid);
   const auto secret = exchange.secret(knock.share);
-  if (!secret) return reject(connection, say<Said::other_password_share>());
+  if (!secret) return reject(connection, make_sentence<SentenceId::other_password_share>());
   send(connection, wire::Challenge{exchange.share()});
   connection.seal(wire::stream_keys(*secret));
   connection.role = role;
@@ -84,13 +84,13 @@ void ControlServer::greet(ControlConnection& connection, const wire::Hello& hell
   if (!connection.sealed() && trusted(connection)) connection.role = wire::Role::host;
   if (hello.version != wire::kControlVersion) {
     refuse(connection, wire::Refusal::Code::version,
-           say<Said::other_version>(wire::kControlVersion, hello.version));
+           make_sentence<SentenceId::other_version>(wire::kControlVersion, hello.version));
   } else if (hello.snapshot_layout != wire::snapshot_layout_hash()) {
-    refuse(connection, wire::Refusal::Code::layout, say<Said::other_snapshots>());
+    refuse(connection, wire::Refusal::Code::layout, make_sentence<SentenceId::other_snapshots>());
   } else if (!connection.sealed() && !connection.vouched() && !trusted(connection)) {
-    refuse(connection, wire::Refusal::Code::password, say<Said::password_wanted>());
+    refuse(connection, wire::Refusal::Code::password, make_sentence<SentenceId::password_wanted>());
   } else if (pending_.size() > kMaxPending) {
-    refuse(connection, wire::Refusal::Code::full, say<Said::server_overloaded>());
+    refuse(connection, wire::Refusal::Code::full, make_sentence<SentenceId::server_overloaded>());
   } else if (!resume(connection, hello)) {
     RodSet rods = 0;
     if (admit_to_table(connection, hello, rods)) join(connection, hello, rods);
@@ -103,7 +103,7 @@ bool ControlServer::resume(ControlConnection& connection, const wire::Hello& hel
   Seat* seat = seats_.find_ticket(hello.ticket);
   if (seat == nullptr) return false;
   if (!seat->resumes.take(os::monotonic_us())) {
-    refuse(connection, wire::Refusal::Code::full, say<Said::server_overloaded>());
+    refuse(connection, wire::Refusal::Code::full, make_sentence<SentenceId::server_overloaded>());
     return true;
   }
   // The previous connection may still look open: the cable was unplugged, or the address has
@@ -135,21 +135,23 @@ bool ControlServer::admit_to_table(ControlConnection& connection, const wire::He
                                    RodSet& rods) {
   const auto& limits = options_.limits;
   if (hello.team != wire::kWatchOnly && !options_.teams_open) {
-    refuse(connection, wire::Refusal::Code::team_taken, say<Said::recording_plays_join>());
+    refuse(connection, wire::Refusal::Code::team_taken,
+           make_sentence<SentenceId::recording_plays_join>());
     return false;
   }
-  hear_out_leavers(hello.rods != 0 ? hello.rods : rods_of_team(options_.layout, hello.team));
+  drain_leavers(hello.rods != 0 ? hello.rods : rods_of_team(options_.layout, hello.team));
   // The roster cannot list more than kMaxSeats.
   const auto max = std::min(static_cast<std::size_t>(limits.connections), wire::kMaxSeats);
   if (seats_.all().size() >= max) {
-    refuse(connection, wire::Refusal::Code::full, say<Said::server_full>());
+    refuse(connection, wire::Refusal::Code::full, make_sentence<SentenceId::server_full>());
     return false;
   }
   const auto& peer = connection.peer();
   const bool here = peer.is_loopback();
   if (seats_.of_machine(peer) >= (here ? limits.per_local_address : limits.per_address) ||
       (!here && seats_.of_network(peer) >= limits.per_network)) {
-    refuse(connection, wire::Refusal::Code::full, say<Said::too_many_connections>());
+    refuse(connection, wire::Refusal::Code::full,
+           make_sentence<SentenceId::too_many_connections>());
     return false;
   }
   if (hello.team == wire::kWatchOnly && hello.rods == 0) return true;
@@ -176,16 +178,16 @@ bool ControlServer::admit_to_table(ControlConnection& connection, const wire::He
 }
 
 std::string ControlServer::owner_of(const ControlConnection& connection) {
-  return connection.peer().owner(connection.heard_at());
+  return connection.peer().owner(connection.local_address());
 }
 
 // Handles disconnections that are not processed yet, so that these rods become free.
-void ControlServer::hear_out_leavers(RodSet wanted) {
+void ControlServer::drain_leavers(RodSet wanted) {
   for (std::size_t i = 0; i < connections_.size(); ++i) {
     ControlConnection& connection = *connections_[i];
     const Seat* seat = seats_.find(connection.client);
     if (seat == nullptr || (seat->rods & wanted) == 0) continue;
-    hear_out(connection);
+    drain(connection);
   }
 }
 
@@ -226,7 +228,7 @@ wire::SealKey ControlServer::random_key() {
 // The socket for its inputs; none for a watcher.
 os::FileDescriptor ControlServer::client_socket(const ControlConnection& connection,
                                                 const os::SocketAddress& listener) {
-  auto local = connection.heard_at();
+  auto local = connection.local_address();
   local.set_port(options_.udp_port);
   auto opened = open_client_socket(options_.udp, local, listener);
   return opened ? std::move(*opened) : os::FileDescriptor();
@@ -248,12 +250,12 @@ bool ControlServer::welcome(ControlConnection& connection, Seat& seat, ControlEv
   event.snapshot_key = options_.multicast ? options_.group_key : random_key();
   event.listener = connection.peer();
   event.listener.set_port(udp_port);
-  event.heard_at = connection.heard_at();
+  event.local_address = connection.local_address();
   seat.has_socket = seat.plays() && !connection.vouched();
   if (seat.has_socket) {
     event.socket = client_socket(connection, event.listener);
     if (!event.socket) {
-      refuse(connection, wire::Refusal::Code::full, say<Said::no_socket_left>());
+      refuse(connection, wire::Refusal::Code::full, make_sentence<SentenceId::no_socket_left>());
       return false;
     }
   }
@@ -297,8 +299,9 @@ void ControlServer::take_claim(ControlConnection& connection, const wire::Claim&
   const auto refuse_it = [&](const wire::Sentence& why_not) {
     answer(connection, kClaimTopic, why_not);
   };
-  if (!options_.teams_open) return refuse_it(say<Said::recording_plays>());
-  if (connection.role == wire::Role::watcher) return refuse_it(say<Said::joined_to_watch>());
+  if (!options_.teams_open) return refuse_it(make_sentence<SentenceId::recording_plays>());
+  if (connection.role == wire::Role::watcher)
+    return refuse_it(make_sentence<SentenceId::joined_to_watch>());
   const wire::Sentence out = why_out(seat->owner, connection.role, seat->client);
   if (!out.empty() && (claim.rods & ~seat->rods) != 0) return refuse_it(out);
   const std::uint8_t team = claim.team != wire::kWatchOnly ? claim.team : seat->team;
@@ -312,7 +315,7 @@ void ControlServer::take_claim(ControlConnection& connection, const wire::Claim&
     auto listener = connection.peer();
     listener.set_port(seat->udp_port);
     event.socket = client_socket(connection, listener);
-    if (!event.socket) return refuse_it(say<Said::no_socket_left>());
+    if (!event.socket) return refuse_it(make_sentence<SentenceId::no_socket_left>());
     seat->has_socket = true;
   }
   const std::uint8_t team_now = grant.rods != 0 ? team : wire::kWatchOnly;
@@ -383,7 +386,7 @@ void ControlServer::lose_seat(std::uint32_t client) {
   tell_tick();
   const auto seconds = std::to_string(options_.limits.seat_kept_us / 1'000'000);
   tell(wire::Notice::Level::warning, kAwayTopic + client,
-       say<Said::player_lost>(seat.name, to_text(seat.rods), seconds));
+       make_sentence<SentenceId::player_lost>(seat.name, to_text(seat.rods), seconds));
   log(LogLevel::warning, seat.name + " at " + os::to_text(seat.peer) +
                              " was lost: its rods are reserved for " + seconds + " s");
   roster_changed_ = true;
@@ -434,7 +437,7 @@ void ControlServer::send_roster() {
 
 void ControlServer::take_request(ControlConnection& connection, const wire::MatchRequest& asked) {
   if (!well_formed(asked)) {
-    reject(connection, say<Said::no_such_request>());
+    reject(connection, make_sentence<SentenceId::no_such_request>());
     return;
   }
   const Seat* seat = seats_.find(connection.client);
@@ -447,7 +450,7 @@ void ControlServer::take_request(ControlConnection& connection, const wire::Matc
                             : Ruling::no;
   const bool keeps_tuning = command.kind == foosball::Command::Kind::tune && in_challenge();
   if (ruling == Ruling::yes && keeps_tuning)
-    answer(connection, wire::kGameAnswerTopic, say<Said::challenge_keeps_tuning>());
+    answer(connection, wire::kGameAnswerTopic, make_sentence<SentenceId::challenge_keeps_tuning>());
   const bool taken =
       !keeps_tuning && ruling != Ruling::no && connection.requests.take(os::monotonic_us()) &&
       (ruling == Ruling::yes ? hand_on(seat->client, command) : put_to_vote(*seat, command));
@@ -486,16 +489,18 @@ void ControlServer::take_answers(ControlConnection& connection, const wire::Answ
     answer(connection, wire::kAnswersTopic, why);
   };
   if (answers.match == 0 || answers.match != seat->asked_match)
-    return refuse_them(say<Said::answers_of_other_match>());
+    return refuse_them(make_sentence<SentenceId::answers_of_other_match>());
   if ((answers.rods & ~seat->asked_rods) != 0)
-    return refuse_them(say<Said::answers_given_already>());
+    return refuse_them(make_sentence<SentenceId::answers_given_already>());
   std::uint8_t team = 0;
   while (team < foosball::kTeams && (answers.rods & ~rods_of_team(options_.layout, team)) != 0)
     ++team;
-  if (team == foosball::kTeams) return refuse_them(say<Said::answers_of_both_teams>());
+  if (team == foosball::kTeams)
+    return refuse_them(make_sentence<SentenceId::answers_of_both_teams>());
   if (std::ranges::all_of(answers.scores, [](std::uint8_t score) { return score == 0; }))
-    return refuse_them(say<Said::answers_empty>());
-  if (pending_.size() > kMaxPending) return refuse_them(say<Said::server_overloaded>());
+    return refuse_them(make_sentence<SentenceId::answers_empty>());
+  if (pending_.size() > kMaxPending)
+    return refuse_them(make_sentence<SentenceId::server_overloaded>());
   seat->asked_rods &= static_cast<RodSet>(~answers.rods);
   count(Count::answers);
   ControlEvent event;

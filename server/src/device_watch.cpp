@@ -8,20 +8,20 @@ namespace server {
 namespace {
 
 using cabinet::DeviceState;
-using wire::Said;
-using wire::say;
+using wire::make_sentence;
 using wire::Sentence;
+using wire::SentenceId;
 
 Sentence refusal(const std::string& name, int error) {
   const std::string why = std::strerror(error);
   switch (error) {
     case EACCES:
     case EPERM:
-      return say<Said::device_not_allowed>(name, why);
+      return make_sentence<SentenceId::device_not_allowed>(name, why);
     case EBUSY:
-      return say<Said::device_busy>(name, why);
+      return make_sentence<SentenceId::device_busy>(name, why);
     default:
-      return say<Said::device_refused>(name, why);
+      return make_sentence<SentenceId::device_refused>(name, why);
   }
 }
 
@@ -31,13 +31,15 @@ Sentence sentence(const cabinet::Device& device, DeviceState state, bool ever_li
     case DeviceState::refused:
       return refusal(name, device.open_error());
     case DeviceState::missing:
-      return ever_live ? say<Said::device_unplugged>(name) : say<Said::device_missing>(name);
+      return ever_live ? make_sentence<SentenceId::device_unplugged>(name)
+                       : make_sentence<SentenceId::device_missing>(name);
     case DeviceState::silent:
-      return say<Said::device_silent>(name);
+      return make_sentence<SentenceId::device_silent>(name);
     case DeviceState::garbled:
-      return say<Said::device_garbled>(name);
+      return make_sentence<SentenceId::device_garbled>(name);
     case DeviceState::over:
-      return ever_live ? say<Said::device_over>(name) : say<Said::device_without_frames>(name);
+      return ever_live ? make_sentence<SentenceId::device_over>(name)
+                       : make_sentence<SentenceId::device_without_frames>(name);
     case DeviceState::live:
       break;
   }
@@ -79,7 +81,8 @@ void DeviceWatch::look_at_sensors(const std::vector<std::unique_ptr<cabinet::Dev
     const std::string& name = devices[i]->name();
     if (overflows != std::exchange(known.overflows, overflows)) {
       known.last_us = now_us;
-      if (!std::exchange(known.reported, true)) tell(i, say<Said::device_too_fast>(name), {});
+      if (!std::exchange(known.reported, true))
+        tell(i, make_sentence<SentenceId::device_too_fast>(name), {});
     } else if (known.reported && now_us - known.last_us > kSaturationShownUs) {
       known.reported = false;
       tell(i, {}, name + ": its sensors follow again");

@@ -45,27 +45,29 @@ GameSite site_of(const foosball::MatchDesc& match, bool computer, bool cabinet) 
 
 wire::Sentence why_not(const wire::Game& asked, const GameSite& site) {
   using foosball::Mode;
-  using wire::Said;
-  using wire::say;
+  using wire::make_sentence;
+  using wire::SentenceId;
   const foosball::GameSetup setup = setup_of(asked, 0);
   const bool in_range = foosball::in_range(setup) && asked.level <= foosball::kLevels &&
                         asked.style <= foosball::kPlayStyles && asked.date == 0 &&
                         (asked.style == 0 || asked.level != 0);
-  if (!in_range) return say<Said::no_such_game>();
+  if (!in_range) return make_sentence<SentenceId::no_such_game>();
   const bool opponent = asked.level != 0 || asked.style != 0;
   const bool contradicts = setup != only_chosen(setup);
   if (setup.mode == Mode::challenge && (contradicts || opponent))
-    return say<Said::challenge_is_set>();
-  if (contradicts) return say<Said::training_has_no_end>();
-  if (opponent && !chooses_opponent(setup.mode)) return say<Said::ladder_has_its_levels>();
-  if (!chooses_opponent(setup.mode) && !site.computer) return say<Said::no_computer_here>();
-  if (setup.change_sides && !site.cabinet) return say<Said::sides_at_a_cabinet>();
+    return make_sentence<SentenceId::challenge_is_set>();
+  if (contradicts) return make_sentence<SentenceId::training_has_no_end>();
+  if (opponent && !chooses_opponent(setup.mode))
+    return make_sentence<SentenceId::ladder_has_its_levels>();
+  if (!chooses_opponent(setup.mode) && !site.computer)
+    return make_sentence<SentenceId::no_computer_here>();
+  if (setup.change_sides && !site.cabinet) return make_sentence<SentenceId::sides_at_a_cabinet>();
   if (setup.change_sides && rules_of(setup).sets_to_win == 1)
-    return say<Said::sides_between_sets>();
+    return make_sentence<SentenceId::sides_between_sets>();
   if (setup.mode != Mode::challenge) return {};
-  if (!site.tournament_table) return say<Said::challenge_table>();
-  if (!site.built_in_characters) return say<Said::challenge_characters>();
-  if (!site.default_tuning) return say<Said::challenge_tuning>();
+  if (!site.tournament_table) return make_sentence<SentenceId::challenge_table>();
+  if (!site.built_in_characters) return make_sentence<SentenceId::challenge_characters>();
+  if (!site.default_tuning) return make_sentence<SentenceId::challenge_tuning>();
   return {};
 }
 

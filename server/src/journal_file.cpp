@@ -122,20 +122,20 @@ class JournalFile::Writer {
 };
 
 wire::Sentence JournalFile::Writer::problem() const {
-  using wire::Said, wire::say;
+  using wire::SentenceId, wire::make_sentence;
   const std::string& path = options_.path;
   switch (failure_.load(std::memory_order_acquire)) {
     case Failure::none:
       return {};
     case Failure::ring_full:
-      return say<Said::disk_too_slow>(path);
+      return make_sentence<SentenceId::disk_too_slow>(path);
     case Failure::write_failed:
-      return say<Said::recording_failed>(path,
-                                         errno_text(error_number_.load(std::memory_order_relaxed)));
+      return make_sentence<SentenceId::recording_failed>(
+          path, errno_text(error_number_.load(std::memory_order_relaxed)));
     case Failure::too_large:
-      return say<Said::recording_too_large>(path, options_.max_bytes >> 20);
+      return make_sentence<SentenceId::recording_too_large>(path, options_.max_bytes >> 20);
     case Failure::stalled:
-      return say<Said::recording_stalled>(path);
+      return make_sentence<SentenceId::recording_stalled>(path);
   }
   return {};
 }

@@ -251,7 +251,7 @@ void PhoneCaller::take_message() {
     house_.count(Count::bad_messages);
     return close_socket(websocket::close_code::bad_payload);
   }
-  follow(guest_.hear(message_));
+  follow(guest_.handle(message_));
   if (!dead_ && !closing_) read_message();
 }
 
@@ -265,10 +265,10 @@ void PhoneCaller::follow(PhoneGuest::Outcome&& outcome) {
     deadline_.cancel();
     if (!room) house_.count(Count::refused);
     if (!room || !open_link()) {
-      tell(wire::PhoneNotice{
-          number(wire::PhoneNotice::Level::end),
-          (room ? wire::say<wire::Said::server_overloaded>() : wire::say<wire::Said::server_full>())
-              .text()});
+      tell(wire::PhoneNotice{number(wire::PhoneNotice::Level::end),
+                             (room ? wire::make_sentence<wire::SentenceId::server_overloaded>()
+                                   : wire::make_sentence<wire::SentenceId::server_full>())
+                                 .text()});
       outcome.end = true;
       outcome.to_control.clear();
     }
@@ -340,9 +340,8 @@ bool PhoneCaller::open_link() {
   link_.assign(asio::local::stream_protocol(), mine.get(), error);
   if (error) return false;
   mine.release();
-  const auto heard_at =
-      os::local_address(beast::get_lowest_layer(socket_).socket().native_handle());
-  if (!house_.adopt({std::move(other), peer_, heard_at})) return false;
+  const auto local = os::local_address(beast::get_lowest_layer(socket_).socket().native_handle());
+  if (!house_.adopt({std::move(other), peer_, local})) return false;
   link_open_ = true;
   house_.count(Count::joined);
   house_.log(LogLevel::info, "a phone at " + os::to_text(peer_) + " has the token");
@@ -365,7 +364,7 @@ void PhoneCaller::read_link() {
         wire::ControlMessage message;
         while (!self->dead_ && !self->closing_ &&
                self->reader_.next(message) == wire::ControlReader::Status::message)
-          self->follow(self->guest_.hear(message));
+          self->follow(self->guest_.handle(message));
         if (!self->dead_ && !self->closing_) self->read_link();
       });
 }

@@ -48,11 +48,11 @@ std::optional<std::uint8_t> PhoneGuest::index_of(int rod) const {
   return std::nullopt;
 }
 
-PhoneGuest::Outcome PhoneGuest::hear(const wire::PhoneRequest& request) {
+PhoneGuest::Outcome PhoneGuest::handle(const wire::PhoneRequest& request) {
   Outcome out;
   const auto* hello = std::get_if<wire::PhoneHello>(&request);
   if ((hello != nullptr) == greeted_) {
-    end(wire::say<wire::Said::out_of_place>().text(), out);
+    end(wire::make_sentence<wire::SentenceId::out_of_place>().text(), out);
   } else if (hello != nullptr) {
     greet(*hello, out);
   } else if (const auto* asked = std::get_if<wire::PhoneClaim>(&request)) {
@@ -110,7 +110,7 @@ void PhoneGuest::end(const std::string& why, Outcome& out) {
   out.end = true;
 }
 
-PhoneGuest::Outcome PhoneGuest::hear(const wire::ControlMessage& message) {
+PhoneGuest::Outcome PhoneGuest::handle(const wire::ControlMessage& message) {
   Outcome out;
   if (const auto* welcome = std::get_if<wire::Welcome>(&message)) {
     client_ = welcome->client;

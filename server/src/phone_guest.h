@@ -41,9 +41,9 @@ class PhoneGuest {
     bool end = false;  // close the connection after to_phone
   };
   // Handles a phone's message. One that is out of sequence ends the connection.
-  Outcome hear(const wire::PhoneRequest& request);
+  Outcome handle(const wire::PhoneRequest& request);
   // Handles the control port's answer.
-  Outcome hear(const wire::ControlMessage& message);
+  Outcome handle(const wire::ControlMessage& message);
 
   bool greeted() const { return greeted_; }         // has sent a hello
   std::uint32_t client() const { return client_; }  // 0: no Welcome yet

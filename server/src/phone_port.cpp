@@ -67,7 +67,7 @@ struct PhonePort::Impl final : PhoneHouse {
   void accept_next();
   void admit(os::FileDescriptor socket, const os::SocketAddress& peer);
   void make_room_at_the_door();
-  void hear_the_tick();
+  void receive_pulses();
   void run();
   void end();
 
@@ -185,7 +185,7 @@ void PhonePort::Impl::gone(PhoneCaller* caller) {
   if (ending_ && callers_.empty()) io_.stop();
 }
 
-void PhonePort::Impl::hear_the_tick() {
+void PhonePort::Impl::receive_pulses() {
   wake_.async_wait(asio::posix::stream_descriptor::wait_read, [this](const Error& error) {
     if (error) return;
     eventfd_t times = 0;
@@ -196,7 +196,7 @@ void PhonePort::Impl::hear_the_tick() {
       for (const auto& caller : keep)
         if (caller->client() == event.client) caller->pulse(event);
     }
-    hear_the_tick();
+    receive_pulses();
   });
 }
 
@@ -251,7 +251,7 @@ void PhonePort::start(std::function<bool(VouchedConnection&&)> adopt) {
   Impl& in = *impl_;
   in.adopt_ = std::move(adopt);
   in.accept_next();
-  in.hear_the_tick();
+  in.receive_pulses();
   in.thread_ = std::thread([&in] { in.run(); });
 }
 

@@ -15,8 +15,8 @@ void let_go(cabinet::RodInput& rod) {
 void RemoteSource::reset(std::int64_t now_us) {
   rods_ = {};
   own_ = {};
-  heard_ = false;
-  heard_us_ = now_us;
+  received_ = false;
+  received_us_ = now_us;
 }
 
 void RemoteSource::set_rods(std::uint8_t rods) {
@@ -29,15 +29,15 @@ void RemoteSource::set_rods(std::uint8_t rods) {
 bool RemoteSource::accept(const wire::InputDatagram& input, std::int64_t now_us) {
   // A signed difference, so that a counter may wrap.
   const auto ahead = static_cast<std::int32_t>(input.sequence - sequence_);
-  if (heard_ && ahead <= 0) {
+  if (received_ && ahead <= 0) {
     ++counters_.stale;
     return false;
   }
-  if (heard_) counters_.lost += static_cast<std::uint64_t>(ahead - 1);
+  if (received_) counters_.lost += static_cast<std::uint64_t>(ahead - 1);
   ++counters_.frames;
-  heard_ = true;
+  received_ = true;
   sequence_ = input.sequence;
-  heard_us_ = now_us;
+  received_us_ = now_us;
   for (int rod = 0; rod < cabinet::kRods; ++rod) {
     const wire::InputRod& in = input.rods[rod];
     if (!own_[rod]) continue;
@@ -52,7 +52,7 @@ bool RemoteSource::accept(const wire::InputDatagram& input, std::int64_t now_us)
 }
 
 void RemoteSource::poll(std::int64_t now_us) {
-  if (!heard_ || now_us - heard_us_ < kSilenceUs) return;
+  if (!received_ || now_us - received_us_ < kSilenceUs) return;
   for (cabinet::RodInput& rod : rods_) let_go(rod);
 }
 

@@ -22,9 +22,9 @@ class RemoteSource final : public cabinet::InputSource {
   void set_rods(std::uint8_t rods);
   // The client reconnects: its rods stay in place and its sequence restarts. Its silence continues,
   // since a connection moves no rod.
-  void resume() { heard_ = false; }
+  void resume() { received_ = false; }
   // Time since its last datagram, or since reset() if it has sent none.
-  std::int64_t silent_us(std::int64_t now_us) const { return now_us - heard_us_; }
+  std::int64_t silent_us(std::int64_t now_us) const { return now_us - received_us_; }
   // Ignores rods of others. False for a datagram that is not newer than the last accepted one.
   bool accept(const wire::InputDatagram& input, std::int64_t now_us);
 
@@ -38,9 +38,9 @@ class RemoteSource final : public cabinet::InputSource {
   cabinet::RodInputs rods_{};
   cabinet::SourceCounters counters_;
   std::string name_;
-  bool heard_ = false;
+  bool received_ = false;
   std::uint32_t sequence_ = 0;
-  std::int64_t heard_us_ = 0;
+  std::int64_t received_us_ = 0;
 };
 
 }  // namespace server

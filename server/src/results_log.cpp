@@ -167,7 +167,7 @@ void ResultsLog::Keeper::keep() {
       store_ = std::move(*opened);
       if (matches_.empty()) report(0);
     } else {
-      tell(wire::say<wire::Said::results_not_kept>(opened.error()));
+      tell(wire::make_sentence<wire::SentenceId::results_not_kept>(opened.error()));
     }
   }
   Entry entry;
@@ -175,7 +175,7 @@ void ResultsLog::Keeper::keep() {
   while (store_ && !waiting_.empty()) {
     const auto id = keep(waiting_.front());
     if (!id) {
-      tell(wire::say<wire::Said::results_not_kept>(id.error()));
+      tell(wire::make_sentence<wire::SentenceId::results_not_kept>(id.error()));
       store_.reset();
       return;
     }
@@ -214,7 +214,7 @@ void ResultsLog::close() {
   if (ended_.wait_for(close_patience_) == std::future_status::ready) {
     thread_.join();
   } else {
-    keeper_->tell(wire::say<wire::Said::results_problem>(
+    keeper_->tell(wire::make_sentence<wire::SentenceId::results_problem>(
         path_, "the file did not answer in time; some may be missing"));
     thread_.detach();
   }

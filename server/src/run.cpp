@@ -8,7 +8,7 @@ namespace {
 void tell(Server& server, OverloadWatch::Change change) {
   switch (change) {
     case OverloadWatch::Change::overloaded:
-      server.warn(Server::Topic::overload, wire::say<wire::Said::cannot_keep_up>());
+      server.warn(Server::Topic::overload, wire::make_sentence<wire::SentenceId::cannot_keep_up>());
       break;
     case OverloadWatch::Change::keeps_up_again:
       server.clear(Server::Topic::overload, "the physics server runs in real time again");
@@ -32,16 +32,16 @@ std::optional<RunEnd> reason_to_end(const Server& server, const RunOptions& opti
 }  // namespace
 
 wire::Sentence to_sentence(RunEnd end) {
-  using wire::Said, wire::say;
+  using wire::SentenceId, wire::make_sentence;
   switch (end) {
     case RunEnd::stopped:
-      return say<Said::server_stopped>();
+      return make_sentence<SentenceId::server_stopped>();
     case RunEnd::time_over:
-      return say<Said::time_is_over>();
+      return make_sentence<SentenceId::time_is_over>();
     case RunEnd::empty:
-      return say<Said::everybody_left>();
+      return make_sentence<SentenceId::everybody_left>();
     case RunEnd::replay_over:
-      return say<Said::recording_over>();
+      return make_sentence<SentenceId::recording_over>();
   }
   return {};
 }

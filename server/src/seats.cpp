@@ -5,8 +5,8 @@
 
 namespace server {
 
-using wire::Said;
-using wire::say;
+using wire::make_sentence;
+using wire::SentenceId;
 
 RodSet rods_of_team(foosball::Layout layout, std::uint8_t team) {
   RodSet rods = 0;
@@ -116,19 +116,19 @@ RodSet Seats::taken_from(std::uint32_t client) const {
 Seats::Grant Seats::grant(std::uint8_t team, RodSet wanted, std::uint32_t client,
                           bool trusted) const {
   const RodSet own = rods_of_team(layout_, team);
-  if (own == 0) return {Grant::Kind::none, 0, say<Said::which_team>()};
+  if (own == 0) return {Grant::Kind::none, 0, make_sentence<SentenceId::which_team>()};
   const RodSet taken = taken_from(client), left = RodSet(own & ~taken);
   if (wanted == 0) {
     if (left != 0) return {Grant::Kind::granted, left, {}};
-    return {Grant::Kind::taken, 0, say<Said::team_taken>(team)};
+    return {Grant::Kind::taken, 0, make_sentence<SentenceId::team_taken>(team)};
   }
   if ((wanted & ~own) != 0 && !trusted && !mixed_teams_)
-    return {Grant::Kind::other_team, 0, say<Said::rods_of_both_teams>(team)};
+    return {Grant::Kind::other_team, 0, make_sentence<SentenceId::rods_of_both_teams>(team)};
   if ((wanted & taken) != 0) {
     const std::string theirs = to_text(RodSet(wanted & taken));
     return {Grant::Kind::taken, 0,
-            left != 0 ? say<Said::rods_taken>(theirs, team, to_text(left))
-                      : say<Said::rods_and_team_taken>(theirs, team)};
+            left != 0 ? make_sentence<SentenceId::rods_taken>(theirs, team, to_text(left))
+                      : make_sentence<SentenceId::rods_and_team_taken>(theirs, team)};
   }
   return {Grant::Kind::granted, wanted, {}};
 }

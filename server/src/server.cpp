@@ -169,7 +169,7 @@ void Server::Impl::listen_to(ControlEvent& event) {
   if (!unicast) return;
   broadcaster.add({.client = event.client,
                    .to = event.listener,
-                   .from = everywhere ? event.heard_at : os::SocketAddress(),
+                   .from = everywhere ? event.local_address : os::SocketAddress(),
                    .key = event.snapshot_key});
 }
 
@@ -310,7 +310,8 @@ void Server::Impl::watch_sending() {
   errors_seen = errors;
   if (failing == std::exchange(sending_fails, failing)) return;
   notify(Topic::sending,
-         failing ? wire::say<wire::Said::nothing_is_sent>(std::strerror(broadcaster.last_error()))
+         failing ? wire::make_sentence<wire::SentenceId::nothing_is_sent>(
+                       std::strerror(broadcaster.last_error()))
                  : wire::Sentence(),
          "snapshots are sent again");
 }
@@ -373,7 +374,7 @@ tl::expected<std::unique_ptr<Server>, StartError> Server::create(ServerOptions o
 Server::Server(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 
 Server::~Server() {
-  finish(wire::say<wire::Said::server_ends>());
+  finish(wire::make_sentence<wire::SentenceId::server_ends>());
 }
 
 void Server::add_device(std::unique_ptr<cabinet::Device> device) {

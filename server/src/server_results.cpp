@@ -100,8 +100,10 @@ void Server::Impl::tell_who_is_not_rated_as_the_team(const results::MatchResult&
       who += (who.empty() ? "" : ", ") + player.name + " (" + std::to_string(percent) + "%)";
     }
   }
-  if (!late.empty()) notify(Topic::not_counted, wire::say<wire::Said::not_rated>(late));
-  if (!left.empty()) notify(Topic::leavers, wire::say<wire::Said::lost_by_leaving>(left));
+  if (!late.empty())
+    notify(Topic::not_counted, wire::make_sentence<wire::SentenceId::not_rated>(late));
+  if (!left.empty())
+    notify(Topic::leavers, wire::make_sentence<wire::SentenceId::lost_by_leaving>(left));
   not_counted_reported = !late.empty();
   leavers_reported = !left.empty();
 }

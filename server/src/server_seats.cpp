@@ -10,8 +10,8 @@
 namespace server {
 namespace {
 
-using wire::Said;
-using wire::say;
+using wire::make_sentence;
+using wire::SentenceId;
 
 // "rods 1 and 2 for Ann; rods 3 for Bob"
 std::string rods_by_name(RodSet rods, const auto& names) {
@@ -23,8 +23,9 @@ std::string rods_by_name(RodSet rods, const auto& names) {
       if ((rods >> rod & 1) != 0 && names[rod] == name) same |= RodSet(1u << rod);
     rods &= static_cast<RodSet>(~same);
     if (!text.empty()) text += "; ";
-    const std::string who = name[0] != 0 ? name.data() : say<Said::a_player>().text();
-    text += say<Said::rods_for>(to_text(same), who).text();
+    const std::string who =
+        name[0] != 0 ? name.data() : make_sentence<SentenceId::a_player>().text();
+    text += make_sentence<SentenceId::rods_for>(to_text(same), who).text();
   }
   return text;
 }
@@ -120,9 +121,11 @@ void Server::Impl::watch_absences() {
   };
   const RodSet plays = desk.stand_ins(), offered = desk.offered();
   wire::Sentence stand_in, offer;
-  if (plays != 0) stand_in = say<Said::computer_plays>(rods_by_name(plays, had_rod));
+  if (plays != 0)
+    stand_in = make_sentence<SentenceId::computer_plays>(rods_by_name(plays, had_rod));
   if (offered != 0)
-    offer = say<Said::rods_offered>(RodDesk::kOfferUs / 1'000'000, rods_by_name(offered, had_rod));
+    offer = make_sentence<SentenceId::rods_offered>(RodDesk::kOfferUs / 1'000'000,
+                                                    rods_by_name(offered, had_rod));
   tell(Topic::stand_in, stand_ins_reported, stand_in, "the computer replaces nobody any more");
   tell(Topic::offer, offer_reported, offer, "no rods are offered any more");
 }
@@ -135,7 +138,7 @@ void Server::Impl::wait_for_players(bool in_match) {
   const bool waits = play && desk.all_silent();
   if (waits == waiting || (waits && view.paused)) return;
   waiting = waits;
-  notify(Topic::waiting, waits ? say<Said::waits_for_players>() : wire::Sentence(),
+  notify(Topic::waiting, waits ? make_sentence<SentenceId::waits_for_players>() : wire::Sentence(),
          "the match continues, or is over");
   if (play && !std::exchange(pause_outlasts_wait, false))
     next.commands.push_back(

@@ -8,8 +8,8 @@
 namespace server {
 
 struct VouchedConnection {
-  os::FileDescriptor socket;         // a stream of control messages
-  os::SocketAddress peer, heard_at;  // remote and local address, for limits and votes
+  os::FileDescriptor socket;              // a stream of control messages
+  os::SocketAddress peer, local_address;  // remote and local address, for limits and votes
 };
 
 }  // namespace server

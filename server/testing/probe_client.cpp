@@ -75,7 +75,7 @@ void ProbeClient::leave() {
 }
 
 void ProbeClient::send_goodbye() {
-  say(wire::Bye{"done"});
+  send(wire::Bye{"done"});
   if (connected()) os::finish_sending(tcp_, kPatienceMs);
   leave();
 }
@@ -93,7 +93,7 @@ wire::Hello ProbeClient::hello(std::uint8_t team) const {
   return hello;
 }
 
-bool ProbeClient::say(const wire::ControlMessage& message) {
+bool ProbeClient::send(const wire::ControlMessage& message) {
   std::vector<std::byte> bytes;
   wire::encode_control(message, bytes);
   if (!sealer_) return send_raw(bytes);
@@ -111,7 +111,7 @@ bool ProbeClient::send_raw(std::span<const std::byte> bytes) {
   return true;
 }
 
-std::optional<wire::ControlMessage> ProbeClient::hear(int patience_ms) {
+std::optional<wire::ControlMessage> ProbeClient::receive(int patience_ms) {
   const Deadline deadline(patience_ms);
   wire::ControlMessage message;
   while (true) {
@@ -146,7 +146,7 @@ std::optional<wire::ControlMessage> ProbeClient::hear(int patience_ms) {
 
 bool ProbeClient::catch_up() {
   for (int i = 0; i < 2; ++i) {
-    if (!say(wire::Ping{}) || !hear_a<wire::Pong>()) return false;
+    if (!send(wire::Ping{}) || !receive_a<wire::Pong>()) return false;
   }
   return true;
 }
@@ -165,8 +165,8 @@ std::optional<wire::Welcome> ProbeClient::resume(const wire::Welcome& before) {
 }
 
 std::optional<wire::Welcome> ProbeClient::join(const wire::Hello& hello) {
-  if (!connected() || !say(hello)) return std::nullopt;
-  const auto answer = hear();
+  if (!connected() || !send(hello)) return std::nullopt;
+  const auto answer = receive();
   const auto* welcome = answer ? std::get_if<wire::Welcome>(&*answer) : nullptr;
   if (welcome == nullptr) return std::nullopt;
   welcome_ = *welcome;
@@ -183,8 +183,8 @@ bool ProbeClient::prove(const std::string& password, wire::Role role) {
                                         wire::exchange_channel(role == wire::Role::host),
                                         knock.sid);
   knock.share = exchange.share();
-  if (!say(knock)) return false;
-  const auto challenge = hear_a<wire::Challenge>();
+  if (!send(knock)) return false;
+  const auto challenge = receive_a<wire::Challenge>();
   const auto secret = challenge ? exchange.secret(challenge->share) : std::nullopt;
   if (!secret) return false;
   const wire::StreamKeys keys = wire::stream_keys(*secret);

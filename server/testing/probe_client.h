@@ -36,11 +36,11 @@ class ProbeClient {
 
   // --- control
   wire::Hello hello(std::uint8_t team = wire::kWatchOnly) const;
-  bool say(const wire::ControlMessage& message);
+  bool send(const wire::ControlMessage& message);
   bool send_raw(std::span<const std::byte> bytes);  // false if the server has closed
   // The next message that is not a Roster, Tuning, Game, Report or list of Characters; nothing at
   // the deadline or if the server has closed.
-  std::optional<wire::ControlMessage> hear(int patience_ms = kPatienceMs);
+  std::optional<wire::ControlMessage> receive(int patience_ms = kPatienceMs);
   const wire::Roster& roster() const { return roster_; }  // the last one received
   const std::optional<wire::Tuning>& tuning() const { return tuning_; }
   const std::optional<wire::Game>& game() const { return game_; }
@@ -48,8 +48,8 @@ class ProbeClient {
   const std::optional<wire::Report>& report() const { return report_; }
   // The next message of this type; discards others.
   template <class Message>
-  std::optional<Message> hear_a(int patience_ms = kPatienceMs) {
-    while (auto message = hear(patience_ms)) {
+  std::optional<Message> receive_a(int patience_ms = kPatienceMs) {
+    while (auto message = receive(patience_ms)) {
       if (const auto* wanted = std::get_if<Message>(&*message)) return *wanted;
     }
     return std::nullopt;

@@ -44,7 +44,7 @@ TEST_F(WarmTick, TakesNoMemoryWithTwoComputersARecordingAndAListener) {
       if (table->match().view().screen == screen) return true;
       if (asked++ % 200 != 0) return false;  // no faster than a person
       for (std::uint8_t team = 0; team < foosball::kTeams; ++team) {
-        watcher.say(
+        watcher.send(
             wire::MatchRequest{static_cast<std::uint8_t>(foosball::Command::Kind::push), team, 0});
       }
       return false;
@@ -84,11 +84,11 @@ TEST_F(WarmTick, TakesNoMemoryWhileAHostLooksAtTheDevices) {
   ASSERT_TRUE(host.join());
   long during = 0;
   for (int asked = 0; asked < 3; ++asked) {
-    ASSERT_TRUE(host.say(wire::DeviceQuery{}));
+    ASSERT_TRUE(host.send(wire::DeviceQuery{}));
     bool reported = false;
     ASSERT_TRUE(table.tick_until([&] {
       during += taken(1);
-      reported = host.hear_a<wire::Devices>(1).has_value();
+      reported = host.receive_a<wire::Devices>(1).has_value();
       return reported;
     }));
   }
@@ -110,7 +110,7 @@ TEST(WarmPhones, TakeNoMemoryInATickWithInputsOrPulses) {
   ASSERT_TRUE(host.join());
   for (const auto screen : {foosball::Screen::selection, foosball::Screen::play}) {
     for (std::uint8_t team = 0; team < foosball::kTeams; ++team)
-      host.say(wire::MatchRequest{number(wire::RequestKind::push), team, 0});
+      host.send(wire::MatchRequest{number(wire::RequestKind::push), team, 0});
     ASSERT_TRUE(table.tick_until([&] { return table->match().view().screen == screen; }));
   }
   wire::PhoneInput input;
@@ -119,7 +119,7 @@ TEST(WarmPhones, TakeNoMemoryInATickWithInputsOrPulses) {
     const double t = 1e-6 * static_cast<double>(table.now_us());
     for (wire::PhoneRod& rod : input.rods)
       rod = {true, static_cast<float>(0.08 * std::sin(3.0 * t)), 1.2 * std::sin(25.0 * t), 0, 0};
-    ASSERT_TRUE(phone.say(input));
+    ASSERT_TRUE(phone.send(input));
   };
   for (int i = 0; i < 6'000; ++i) swing(), table.tick();  // once warm
   long taken = 0;
@@ -154,7 +154,7 @@ class BestPlayersTick : public testing::Test {
     ASSERT_TRUE(host.join());
     for (const auto screen : {foosball::Screen::selection, foosball::Screen::play}) {
       for (std::uint8_t team = 0; team < foosball::kTeams; ++team) {
-        host.say(wire::MatchRequest{number(wire::RequestKind::push), team, 0});
+        host.send(wire::MatchRequest{number(wire::RequestKind::push), team, 0});
       }
       ASSERT_TRUE(table.tick_until([&] { return table->match().view().screen == screen; }));
     }
@@ -216,9 +216,9 @@ TEST_F(BestPlayersTick, TakesNoMemoryWhileTheComputerStandsInForAPlayer) {
 TEST_F(BestPlayersTick, TakesMemoryForNewWorldsWhenTheTuningChangesAPartATick) {
   EXPECT_EQ(taken_in(1'000).sum, 0);
   const double gravity = table->match().view().tuning.gravity + 0.5;
-  host.say(wire::MatchRequest{number(wire::RequestKind::tune), 0,
-                              static_cast<std::uint8_t>(foosball::tuning_index("gravity")),
-                              gravity});
+  host.send(wire::MatchRequest{number(wire::RequestKind::tune), 0,
+                               static_cast<std::uint8_t>(foosball::tuning_index("gravity")),
+                               gravity});
   long at_once = 0;
   const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(5);
   while (table->match().view().tuning.gravity != gravity) {

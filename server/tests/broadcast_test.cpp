@@ -194,9 +194,9 @@ std::vector<std::pair<std::string, std::vector<std::byte>>> requests_of_a_strang
   turned.back() ^= std::byte{1};
   all.emplace_back("a forged input", turned);
   std::vector<std::byte> snapshot(wire::kMaxDatagram + wire::kSealBytes);
-  const ssize_t heard = ::recv(player.udp(), snapshot.data(), snapshot.size(), MSG_DONTWAIT);
-  EXPECT_GT(heard, 0);
-  snapshot.resize(static_cast<std::size_t>(std::max<ssize_t>(heard, 0)));
+  const ssize_t received = ::recv(player.udp(), snapshot.data(), snapshot.size(), MSG_DONTWAIT);
+  EXPECT_GT(received, 0);
+  snapshot.resize(static_cast<std::size_t>(std::max<ssize_t>(received, 0)));
   all.emplace_back("a snapshot sent back", snapshot);
   wire::DeviceFrame frame{};
   std::array<std::uint8_t, wire::kDeviceFrameBytes> device{};

@@ -85,10 +85,10 @@ TEST_F(Sending, WhatFindsNoPlaceIsCountedForEachListener) {
   for (int i = 0; i < kGiven; ++i) give(i);
   out.close();
   EXPECT_EQ(out.sent() + out.errors(), 2u * kGiven);
-  const std::vector<int> heard = arrived(one, 1);
-  EXPECT_EQ(heard.size(), out.sent() / 2);
-  EXPECT_TRUE(std::is_sorted(heard.begin(), heard.end()));
-  EXPECT_EQ(heard, arrived(two, 2));
+  const std::vector<int> received = arrived(one, 1);
+  EXPECT_EQ(received.size(), out.sent() / 2);
+  EXPECT_TRUE(std::is_sorted(received.begin(), received.end()));
+  EXPECT_EQ(received, arrived(two, 2));
 }
 
 TEST_F(Sending, AListenerThatCannotBeReachedCostsTheOthersNothing) {

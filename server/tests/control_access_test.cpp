@@ -99,8 +99,8 @@ void want_password(ServerOptions& o) {
 TEST(Password, LetsInWhoKnowsItAndNobodyElse) {
   Lockstep table(want_password);
   ProbeClient without(table.port()), wrong(table.port()), right(table.port());
-  without.say(without.hello(0));
-  const auto refusal = without.hear_a<wire::Refusal>();
+  without.send(without.hello(0));
+  const auto refusal = without.receive_a<wire::Refusal>();
   ASSERT_TRUE(refusal);
   EXPECT_EQ(refusal->code, Code::password);
 
@@ -187,16 +187,16 @@ TEST(Votes, TwoPlayersFromAfarRestartTogetherAndAWatcherNever) {
   const auto push = static_cast<std::uint8_t>(foosball::Command::Kind::push);
   const wire::MatchRequest restart{static_cast<std::uint8_t>(foosball::Command::Kind::restart), 0,
                                    0};
-  first.say(wire::MatchRequest{push, 0, 0});
+  first.send(wire::MatchRequest{push, 0, 0});
   ASSERT_TRUE(table.tick_until(
       [&] { return table->match().view().screen == foosball::Screen::selection; }));
-  watcher.say(restart);
-  first.say(restart);
+  watcher.send(restart);
+  first.send(restart);
   EXPECT_NE(notice_of(second).find("1 of 2 votes"), std::string::npos);
   table.tick(5);
   EXPECT_EQ(table->match().view().screen, foosball::Screen::selection);
   EXPECT_EQ(table->counters().control.requests_dropped, 1u) << "the watcher's";
-  second.say(restart);
+  second.send(restart);
   EXPECT_TRUE(table.tick_until(
       [&] { return table->match().view().screen != foosball::Screen::selection; }));
 }
@@ -211,12 +211,12 @@ TEST(Votes, NobodyRestartsAloneWhileTheOpponentsSeatIsKept) {
   ASSERT_TRUE(first.prove("open sesame") && first.join(0));
   ASSERT_TRUE(second.prove("open sesame") && second.join(1));
   const auto push = static_cast<std::uint8_t>(foosball::Command::Kind::push);
-  first.say(wire::MatchRequest{push, 0, 0});
+  first.send(wire::MatchRequest{push, 0, 0});
   ASSERT_TRUE(table.tick_until(
       [&] { return table->match().view().screen == foosball::Screen::selection; }));
   second.leave();
   ASSERT_TRUE(table.wait_until([&] { return table->counters().control.lost == 1; }));
-  first.say(wire::MatchRequest{static_cast<std::uint8_t>(foosball::Command::Kind::restart), 0, 0});
+  first.send(wire::MatchRequest{static_cast<std::uint8_t>(foosball::Command::Kind::restart), 0, 0});
   std::string reported;
   for (int notice = 0; notice < 2 && reported.find("votes") == std::string::npos; ++notice) {
     reported = notice_of(first);
@@ -240,16 +240,16 @@ TEST(Votes, AGuestWithSeveralSeatsHasOneVote) {
   const auto push = static_cast<std::uint8_t>(foosball::Command::Kind::push);
   const wire::MatchRequest restart{static_cast<std::uint8_t>(foosball::Command::Kind::restart), 0,
                                    0};
-  other.say(wire::MatchRequest{push, 1, 0});
+  other.send(wire::MatchRequest{push, 1, 0});
   ASSERT_TRUE(table.tick_until(
       [&] { return table->match().view().screen == foosball::Screen::selection; }));
   for (auto& seat : greedy) {
-    seat->say(restart);
+    seat->send(restart);
     EXPECT_NE(notice_of(other).find("1 of 2 votes"), std::string::npos);
   }
   table.tick(5);
   EXPECT_EQ(table->match().view().screen, foosball::Screen::selection);
-  other.say(restart);
+  other.send(restart);
   EXPECT_TRUE(
       table.tick_until([&] { return table->match().view().screen == foosball::Screen::logo; }));
 }

@@ -30,13 +30,13 @@ class ControlConnectionTest : public testing::Test {
     wire::ControlMessage message;
     while (received.next(message) == wire::ControlReader::Status::message) {
       ASSERT_TRUE(std::holds_alternative<wire::Pong>(message));
-      ASSERT_EQ(std::get<wire::Pong>(message).id, ++heard);
+      ASSERT_EQ(std::get<wire::Pong>(message).id, ++received_count);
     }
   }
   std::optional<ControlConnection> connection;
   os::FileDescriptor peer;
   wire::ControlReader received;
-  std::uint64_t heard = 0;
+  std::uint64_t received_count = 0;
 };
 
 // A peer that sends pings and reads at one rate is never dropped, and sent bytes are not retained.
@@ -59,11 +59,11 @@ TEST_F(ControlConnectionTest, KeepsNoMoreForASteadyReaderThatNeverCatchesUp) {
   }
   EXPECT_LE(max, kCap + 16 * 1024);
   EXPECT_GT(20'000 * 8 * one.size(), 10 * kCap);  // far more than that was sent
-  while (connection->wants_to_send() || heard < said) {
+  while (connection->wants_to_send() || received_count < said) {
     ASSERT_TRUE(connection->flush());
     read(kCap);
   }
-  EXPECT_EQ(heard, said);  // in order, each once
+  EXPECT_EQ(received_count, said);  // in order, each once
 }
 
 TEST_F(ControlConnectionTest, CountsOnlyUnsentBytesAgainstTheCap) {

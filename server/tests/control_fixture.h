@@ -19,7 +19,7 @@ inline std::vector<std::byte> bytes_of(const wire::ControlMessage& message) {
 }
 
 inline std::string notice_of(ProbeClient& client) {
-  return client.hear_a<wire::Notice>().value_or(wire::Notice{}).text;
+  return client.receive_a<wire::Notice>().value_or(wire::Notice{}).text;
 }
 
 }  // namespace server

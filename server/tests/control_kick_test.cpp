@@ -36,11 +36,11 @@ class Kicks : public testing::Test {
     return (rods_of_team(foosball::MatchDesc{}.layout, 0) >> rod & 1) != 0 ? 0 : 1;
   }
   void vote(Guest& voter, std::uint32_t against) {
-    voter.probe.say(wire::Kick{against});
+    voter.probe.send(wire::Kick{against});
     voter.probe.catch_up();
   }
   void claim(Guest& who, RodSet rods, int team) {
-    who.probe.say(wire::Claim{rods, static_cast<std::uint8_t>(team)});
+    who.probe.send(wire::Claim{rods, static_cast<std::uint8_t>(team)});
     who.probe.catch_up();
   }
   RodSet rods_of(Guest& who) {
@@ -51,7 +51,7 @@ class Kicks : public testing::Test {
   }
   void push(Guest& who, int rod) {
     const std::uint64_t requests = table->counters().control.requests;
-    who.probe.say(wire::MatchRequest{number(wire::RequestKind::push), team_of(rod), 0});
+    who.probe.send(wire::MatchRequest{number(wire::RequestKind::push), team_of(rod), 0});
     ASSERT_TRUE(table.wait_until([&] { return table->counters().control.requests > requests; }));
     table.tick(5);
   }
@@ -69,7 +69,7 @@ TEST_F(Kicks, MoreThanHalfOfTheOthersPutAPlayerOutWhoMayWatchAndPlaysTheNextMatc
   EXPECT_EQ(kicked(), 0u);
   vote(b, bad.client());
   EXPECT_EQ(kicked(), 1u);
-  const auto refusal = bad.probe.hear_a<wire::Refusal>();
+  const auto refusal = bad.probe.receive_a<wire::Refusal>();
   ASSERT_TRUE(refusal);
   EXPECT_EQ(refusal->code, Code::not_allowed);
   Guest again{ProbeClient(table.port(), "127.0.0.5"), std::nullopt};
@@ -78,7 +78,7 @@ TEST_F(Kicks, MoreThanHalfOfTheOthersPutAPlayerOutWhoMayWatchAndPlaysTheNextMatc
   EXPECT_FALSE(guest("127.0.0.5", 3).welcome) << "nor does a new seat help";
   Guest watcher = guest("127.0.0.5", -1);
   ASSERT_TRUE(watcher.welcome);
-  watcher.probe.say(wire::Claim{RodSet(1u << 3), team_of(3)});
+  watcher.probe.send(wire::Claim{RodSet(1u << 3), team_of(3)});
   EXPECT_TRUE(watcher.probe.catch_up());
   for (const wire::Seat& seat : watcher.probe.roster().seats)
     EXPECT_TRUE(seat.client != watcher.client() || seat.rods == 0);
@@ -106,7 +106,7 @@ TEST_F(Kicks, TheHostDoesItAloneAndIsNotPutOut) {
   EXPECT_EQ(kicked(), 0u);
   vote(host, a.client());
   EXPECT_EQ(kicked(), 1u);
-  EXPECT_TRUE(a.probe.hear_a<wire::Refusal>());
+  EXPECT_TRUE(a.probe.receive_a<wire::Refusal>());
 }
 
 TEST_F(Kicks, WatchersHaveNoVoteAndAreNotPutOut) {
@@ -176,7 +176,7 @@ TEST_F(Kicks, AVoteIsNotEscapedByGivingUpTheRods) {
   claim(bad, 0, team_of(2));
   vote(b, bad.client());
   EXPECT_EQ(kicked(), 1u);
-  EXPECT_TRUE(bad.probe.hear_a<wire::Refusal>());
+  EXPECT_TRUE(bad.probe.receive_a<wire::Refusal>());
   EXPECT_FALSE(guest("127.0.0.5", 2).welcome);
 }
 
@@ -220,7 +220,7 @@ TEST_F(Kicks, ANewcomerFromTheAddressIsNotToldToBeTheOneWhoLeft) {
   std::string said;
   while (said.find("127.0.0.5 comes from the address of 127.0.0.5, who has left") ==
          std::string::npos) {
-    const auto notice = b.probe.hear_a<wire::Notice>();
+    const auto notice = b.probe.receive_a<wire::Notice>();
     ASSERT_TRUE(notice) << said;
     said = notice->text;
   }
@@ -245,7 +245,7 @@ TEST_F(Kicks, DecidedOnTheLogoItOutlastsAnExhibitionAndEndsWithTheNextMatch) {
   ASSERT_TRUE(table.tick_until([&] { return screen() == foosball::Screen::play; }));
   EXPECT_FALSE(guest("127.0.0.5", 2).welcome);
   for (Guest* one : {&a, &b})
-    one->probe.say(wire::MatchRequest{number(wire::RequestKind::restart), 0, 0});
+    one->probe.send(wire::MatchRequest{number(wire::RequestKind::restart), 0, 0});
   ASSERT_TRUE(table.tick_until([&] { return screen() == foosball::Screen::logo; }));
   EXPECT_TRUE(guest("127.0.0.5", 2).welcome);
 }
@@ -268,12 +268,12 @@ TEST_F(Kicks, AFloodOfVotesIsOneVoteAndTheTableHearsLittleOfIt) {
   Guest a = guest("127.0.0.2", 0), b = guest("127.0.0.3", 1), c = guest("127.0.0.4", 2),
         d = guest("127.0.0.5", 3);
   ASSERT_TRUE(a.welcome && b.welcome && c.welcome && d.welcome);
-  for (int i = 0; i < 500; ++i) a.probe.say(wire::Kick{i % 2 == 0 ? d.client() : c.client()});
+  for (int i = 0; i < 500; ++i) a.probe.send(wire::Kick{i % 2 == 0 ? d.client() : c.client()});
   ASSERT_TRUE(a.probe.catch_up());
   EXPECT_EQ(kicked(), 0u);
-  b.probe.say(wire::Ping{2});
+  b.probe.send(wire::Ping{2});
   int notices = 0;
-  while (const auto message = b.probe.hear()) {
+  while (const auto message = b.probe.receive()) {
     if (std::holds_alternative<wire::Pong>(*message)) break;
     notices += std::holds_alternative<wire::Notice>(*message) ? 1 : 0;
   }

@@ -25,8 +25,8 @@ TEST(Seat, OfAPlayerWhoWasLostIsKeptFromRivalsAndTakenAgainWithItsTicket) {
   EXPECT_NE(notice_of(watcher).find("was lost"), std::string::npos);
 
   ProbeClient rival(table.port()), thief(table.port()), again(table.port());
-  rival.say(rival.hello(0));
-  const auto refusal = rival.hear_a<wire::Refusal>();
+  rival.send(rival.hello(0));
+  const auto refusal = rival.receive_a<wire::Refusal>();
   ASSERT_TRUE(refusal);
   EXPECT_EQ(refusal->code, Code::team_taken);
   wire::Welcome guess = *before;
@@ -38,7 +38,7 @@ TEST(Seat, OfAPlayerWhoWasLostIsKeptFromRivalsAndTakenAgainWithItsTicket) {
   EXPECT_EQ(back->client, before->client);
   EXPECT_EQ(back->rods, before->rods);
   EXPECT_NE(back->input_key, before->input_key);
-  EXPECT_EQ(watcher.hear_a<wire::Notice>().value_or(wire::Notice{}).level,
+  EXPECT_EQ(watcher.receive_a<wire::Notice>().value_or(wire::Notice{}).level,
             wire::Notice::Level::cleared);
   table.tick();
   EXPECT_TRUE(again.snapshot());
@@ -76,8 +76,8 @@ TEST(Seat, IsNotTakenAgainHundredsOfTimesASecond) {
     wire::Hello hello = thief->hello(0);
     hello.session = ticket->session;
     hello.ticket = ticket->token;
-    ASSERT_TRUE(thief->say(hello));
-    const auto answer = thief->hear();
+    ASSERT_TRUE(thief->send(hello));
+    const auto answer = thief->receive();
     ASSERT_TRUE(answer);
     refused = std::holds_alternative<wire::Refusal>(*answer);
     if (refused) break;
@@ -164,7 +164,7 @@ TEST(Seat, IsFreeAtOnceAfterTheGoodByeOfAClientThatHasNotReadAll) {
   });
   ProbeClient player(table.port());
   ASSERT_TRUE(player.join(0));
-  player.say(wire::Ping{1});
+  player.send(wire::Ping{1});
   ASSERT_TRUE(wait_readable(player.tcp(), ProbeClient::kPatienceMs));
   table.tick();
   leaver = &player;
@@ -216,12 +216,12 @@ TEST(Rods, AreClaimedAndGivenUpWhileTheGameGoesOnAndAllAreTold) {
   const RodSet one = RodSet(all0 & -all0), rest = RodSet(all0 & ~one);
   ProbeClient first(table.port()), second(table.port());
   ASSERT_TRUE(first.join(0));
-  first.say(wire::Claim{one});
+  first.send(wire::Claim{one});
   ASSERT_TRUE(first.catch_up());
   const auto joined = second.join(0);
   ASSERT_TRUE(joined);
   EXPECT_EQ(joined->rods, rest);
-  second.say(wire::Claim{all0});
+  second.send(wire::Claim{all0});
   EXPECT_NE(notice_of(second).find("are taken"), std::string::npos);
   ASSERT_TRUE(first.catch_up());
   ASSERT_EQ(first.roster().seats.size(), 2u);
@@ -236,7 +236,7 @@ TEST(Rods, AreGivenUpToWatchAndTakenAgainOnTheOtherTeam) {
   const auto welcome = client.join(0);
   ASSERT_TRUE(welcome);
   const auto claim = [&](wire::Claim asked) {
-    client.say(asked);
+    client.send(asked);
     return client.catch_up() && client.roster().seats.size() == 1;
   };
   ASSERT_TRUE(claim({0, wire::kWatchOnly}));
@@ -263,7 +263,7 @@ TEST(Rods, AWatcherTakesOneAndIsHeard) {
   const auto welcome = client.join();
   ASSERT_TRUE(welcome);
   const RodSet one = 1;
-  client.say(wire::Claim{one, 0});
+  client.send(wire::Claim{one, 0});
   ASSERT_TRUE(client.catch_up());
   ASSERT_EQ(client.roster().seats.at(0).rods, one);
   table.tick();
@@ -293,12 +293,12 @@ TEST(Rods, WhoChangesSidesToTheOpponentOfThatNameIsToldApart) {
   };
   using Names = std::vector<std::string>;
   EXPECT_EQ(names(), (Names{"probe", "probe"}));
-  second.say(wire::Claim{all1, 1});
+  second.send(wire::Claim{all1, 1});
   ASSERT_TRUE(second.catch_up());
   EXPECT_EQ(names(), (Names{"probe", "probe (2)"}));
   first.send_goodbye();
   ASSERT_TRUE(table.tick_until([&] { return table->clients() == 1; }));
-  second.say(wire::Claim{all0, 0});
+  second.send(wire::Claim{all0, 0});
   ASSERT_TRUE(second.catch_up());
   EXPECT_EQ(second.roster().seats.at(0).name, "probe (2)") << "not the one who has left";
 }
@@ -316,7 +316,7 @@ TEST(Names, OfSeveralPeopleAtOneClientAreToldToAllAndChangedByNoOther) {
   const auto theirs = static_cast<std::size_t>(std::countr_zero(all1));
   names.players[first] = " Ben\xE2\x80\x8B ";  // cleaned like the name of a Hello
   names.players[theirs] = "Dora";              // a rod that it does not have
-  window.say(names);
+  window.send(names);
   ASSERT_TRUE(window.catch_up());
   EXPECT_EQ(window.roster().seats.at(0).name, "Ann");
   EXPECT_EQ(window.roster().players[first], "Ben");
@@ -324,12 +324,12 @@ TEST(Names, OfSeveralPeopleAtOneClientAreToldToAllAndChangedByNoOther) {
   // For another machine the names are taken, and nobody may use the names reserved by the results.
   wire::Names same{"Ben", {}};
   same.players[theirs] = "Ann";
-  rival.say(same);
+  rival.send(same);
   ASSERT_TRUE(rival.catch_up());
   EXPECT_EQ(rival.roster().seats.at(1).name, "Ben (2)");
   EXPECT_EQ(rival.roster().players[theirs], "Ann (2)");
   same.players[theirs] = "computer 5";
-  rival.say(same);
+  rival.send(same);
   ASSERT_TRUE(rival.catch_up());
   EXPECT_EQ(rival.roster().players[theirs], "computer 5 (1)");
 }
@@ -338,11 +338,11 @@ TEST(Rods, WhoeverHasRodsOfBothTeamsAsksForBoth) {
   Lockstep table;
   ProbeClient client(table.port());
   ASSERT_TRUE(client.join(0, 0xff));
-  client.say(wire::MatchRequest{number(wire::RequestKind::push), 0, 0});
+  client.send(wire::MatchRequest{number(wire::RequestKind::push), 0, 0});
   ASSERT_TRUE(table.tick_until(
       [&] { return table->match().view().screen == foosball::Screen::selection; }));
   const auto character = static_cast<std::uint8_t>((table->match().view().character[1] + 1) % 3);
-  client.say(wire::MatchRequest{number(wire::RequestKind::choose_character), 1, character});
+  client.send(wire::MatchRequest{number(wire::RequestKind::choose_character), 1, character});
   EXPECT_TRUE(
       table.tick_until([&] { return table->match().view().character[1] == character; }, 5000));
 }
@@ -369,14 +369,14 @@ TEST(Tuning, IsToldToAllAndChangedByHostsOnlyWithinItsRange) {
   const auto tune = [](std::uint8_t value, double amount) {
     return wire::MatchRequest{number(wire::RequestKind::tune), 0, value, amount};
   };
-  host.say(tune(0, 9.0));
+  host.send(tune(0, 9.0));
   EXPECT_TRUE(all_received(9.0));
   // Two hosts, like all clients on this machine: the later value counts, and both receive it.
-  second.say(tune(0, 10.0));
+  second.send(tune(0, 10.0));
   EXPECT_TRUE(all_received(10.0));
   ProbeClient forger(table.port());
   ASSERT_TRUE(forger.join());
-  forger.say(tune(0, 1e6));  // ends the connection: our clients never send it
+  forger.send(tune(0, 1e6));  // ends the connection: our clients never send it
   EXPECT_TRUE(forger.sees_close());
   table.tick(20);
   EXPECT_EQ(table->match().view().tuning.gravity, 10.0);

@@ -38,8 +38,8 @@ TEST(Control, RefusesAnotherVersionAndAnotherLayout) {
     wire::Hello hello = client.hello();
     if (version) hello.version = wire::kControlVersion + 1;
     if (!version) hello.snapshot_layout ^= 1;
-    client.say(hello);
-    const auto refusal = client.hear_a<wire::Refusal>();
+    client.send(hello);
+    const auto refusal = client.receive_a<wire::Refusal>();
     ASSERT_TRUE(refusal);
     EXPECT_EQ(refusal->code, version ? Code::version : Code::layout);
     EXPECT_NE(refusal->reason.find("use the same release"), std::string::npos);
@@ -53,8 +53,8 @@ TEST(Control, GivesATeamToOneClientUntilItLeaves) {
   Lockstep table;
   ProbeClient first(table.port()), second(table.port());
   ASSERT_TRUE(first.join(0));
-  second.say(second.hello(0));
-  const auto refusal = second.hear_a<wire::Refusal>();
+  second.send(second.hello(0));
+  const auto refusal = second.receive_a<wire::Refusal>();
   ASSERT_TRUE(refusal);
   EXPECT_EQ(refusal->code, Code::team_taken);
 
@@ -69,7 +69,7 @@ TEST(Control, GivesATeamToOneClientUntilItLeaves) {
 TEST(Control, RefusesATeamThatDoesNotExist) {
   Lockstep table;
   ProbeClient client(table.port());
-  client.say(client.hello(2));
+  client.send(client.hello(2));
   EXPECT_TRUE(client.sees_close());
   EXPECT_EQ(table->counters().control.bad_messages, 1u);
   expect_alive(table);
@@ -80,7 +80,7 @@ TEST(Control, ClosesAnOversizedMessageBeforeItsBodyComes) {
   ProbeClient client(table.port());
   const std::array<std::byte, 4> length{std::byte{1}, std::byte{0}, std::byte{1}, std::byte{0}};
   client.send_raw(length);  // 65537 bytes announced
-  const auto refusal = client.hear_a<wire::Refusal>();
+  const auto refusal = client.receive_a<wire::Refusal>();
   ASSERT_TRUE(refusal);
   EXPECT_EQ(refusal->code, Code::bad_message);
   EXPECT_TRUE(client.sees_close());
@@ -102,7 +102,7 @@ TEST(Control, SurvivesGarbageAndTurnedBits) {
       bytes[random() % bytes.size()] ^= std::byte(1u << random() % 8);
     }
     client.send_raw(bytes);
-    const auto answer = client.hear();
+    const auto answer = client.receive();
     if (!answer || !std::holds_alternative<wire::Welcome>(*answer)) {
       EXPECT_TRUE(client.sees_close()) << i;
     }
@@ -138,11 +138,11 @@ TEST(Control, DropsWhoSaysNothing) {
 TEST(Control, DropsWhoSpeaksOutOfPlace) {
   Lockstep table;
   ProbeClient early(table.port());
-  early.say(wire::Ping{1});
+  early.send(wire::Ping{1});
   EXPECT_TRUE(early.sees_close());
   ProbeClient twice(table.port());
   ASSERT_TRUE(twice.join());
-  twice.say(twice.hello());
+  twice.send(twice.hello());
   EXPECT_TRUE(twice.sees_close());
   EXPECT_EQ(table->counters().control.bad_messages, 2u);
   EXPECT_TRUE(table.tick_until([&] { return table->clients() == 0; }));
@@ -159,16 +159,16 @@ TEST(Control, CapsConnectionsInAllAndPerAddress) {
     ASSERT_TRUE(inside.back().join());
   }
   ProbeClient greedy(table.port());
-  greedy.say(greedy.hello());
-  const auto too_many = greedy.hear_a<wire::Refusal>();
+  greedy.send(greedy.hello());
+  const auto too_many = greedy.receive_a<wire::Refusal>();
   ASSERT_TRUE(too_many);
   EXPECT_NE(too_many->reason.find("from your address"), std::string::npos);
 
   ProbeClient neighbour(table.port(), "127.0.0.2");
   EXPECT_TRUE(neighbour.join());
   ProbeClient late(table.port(), "127.0.0.3");
-  late.say(late.hello());
-  const auto full = late.hear_a<wire::Refusal>();
+  late.send(late.hello());
+  const auto full = late.receive_a<wire::Refusal>();
   ASSERT_TRUE(full);
   EXPECT_EQ(full->code, Code::full);
   EXPECT_EQ(table->counters().control.refused, 2u);
@@ -178,8 +178,8 @@ TEST(Control, AnswersAPing) {
   Lockstep table;
   ProbeClient client(table.port());
   ASSERT_TRUE(client.join());
-  client.say(wire::Ping{77});
-  const auto pong = client.hear_a<wire::Pong>();
+  client.send(wire::Ping{77});
+  const auto pong = client.receive_a<wire::Pong>();
   ASSERT_TRUE(pong);
   EXPECT_EQ(pong->id, 77u);
 }
@@ -203,8 +203,9 @@ TEST(Control, HandsRequestsToTheMatchAndCountsThoseThatAreNotAllowed) {
   ProbeClient player(table.port());
   ASSERT_TRUE(player.join(0));
   using Kind = foosball::Command::Kind;
-  player.say(wire::MatchRequest{static_cast<std::uint8_t>(Kind::push), 1, 0});  // of the other team
-  player.say(wire::MatchRequest{static_cast<std::uint8_t>(Kind::push), 0, 0});
+  player.send(
+      wire::MatchRequest{static_cast<std::uint8_t>(Kind::push), 1, 0});  // of the other team
+  player.send(wire::MatchRequest{static_cast<std::uint8_t>(Kind::push), 0, 0});
   EXPECT_TRUE(table.tick_until(
       [&] { return table->match().view().screen == foosball::Screen::selection; }));
   const ControlCounters c = table->counters().control;
@@ -216,7 +217,7 @@ TEST(Control, LetsAWatcherAtThisMachineMakeRequests) {
   Lockstep table;
   ProbeClient watcher(table.port());
   ASSERT_TRUE(watcher.join());
-  watcher.say(wire::MatchRequest{static_cast<std::uint8_t>(foosball::Command::Kind::push), 1, 0});
+  watcher.send(wire::MatchRequest{static_cast<std::uint8_t>(foosball::Command::Kind::push), 1, 0});
   EXPECT_TRUE(table.tick_until(
       [&] { return table->match().view().screen == foosball::Screen::selection; }));
 }
@@ -242,7 +243,7 @@ TEST(Control, TakesNoMoreRequestsOfAClientThanAHandCanMake) {
   const std::uint64_t taken = table->counters().control.requests;
   EXPECT_GE(taken, 16u);
   EXPECT_LE(taken, 16u + earned);
-  other.say(restart);  // a request of another client
+  other.send(restart);  // a request of another client
   EXPECT_TRUE(table.wait_until([&] { return table->counters().control.requests > taken; }));
 }
 
@@ -250,7 +251,7 @@ TEST(Control, TakesNoMoreRequestsOfAClientThanAHandCanMake) {
 void start_play(Lockstep& table, ProbeClient& watcher) {
   const auto push = static_cast<std::uint8_t>(foosball::Command::Kind::push);
   for (const std::uint8_t team : std::array<std::uint8_t, 3>{0, 0, 1})
-    watcher.say(wire::MatchRequest{push, team, 0});
+    watcher.send(wire::MatchRequest{push, team, 0});
   ASSERT_TRUE(
       table.tick_until([&] { return table->match().view().screen == foosball::Screen::play; }));
 }
@@ -261,7 +262,7 @@ TEST(Control, APauseEndsWhenTheLastPlayerLeaves) {
   ASSERT_TRUE(watcher.join() && first.join(0) && second.join(1));
   start_play(table, watcher);
   const auto paused = [&] { return table->match().view().paused; };
-  first.say(wire::MatchRequest{static_cast<std::uint8_t>(foosball::Command::Kind::pause), 0, 1});
+  first.send(wire::MatchRequest{static_cast<std::uint8_t>(foosball::Command::Kind::pause), 0, 1});
   ASSERT_TRUE(table.tick_until(paused));
   first.leave();
   ASSERT_TRUE(table.tick_until([&] { return table->clients() == 2; }));
@@ -278,7 +279,7 @@ TEST(Control, AHostsPauseOutlastsThePlayers) {
   start_play(table, host);
   const auto paused = [&] { return table->match().view().paused; };
   const std::uint64_t requests = table->counters().control.requests;
-  host.say(wire::MatchRequest{static_cast<std::uint8_t>(foosball::Command::Kind::pause), 0, 1});
+  host.send(wire::MatchRequest{static_cast<std::uint8_t>(foosball::Command::Kind::pause), 0, 1});
   ASSERT_TRUE(table.wait_until([&] { return table->counters().control.requests > requests; }));
   table.tick(2);
   ASSERT_TRUE(paused());
@@ -296,7 +297,7 @@ TEST(Control, APauseEndsWhenTheLastWatcherLeavesAnExhibition) {
   ASSERT_TRUE(watcher.join() && another.join());
   start_play(table, watcher);
   const auto paused = [&] { return table->match().view().paused; };
-  watcher.say(wire::MatchRequest{static_cast<std::uint8_t>(foosball::Command::Kind::pause), 0, 1});
+  watcher.send(wire::MatchRequest{static_cast<std::uint8_t>(foosball::Command::Kind::pause), 0, 1});
   ASSERT_TRUE(table.tick_until(paused));
   watcher.leave();
   ASSERT_TRUE(table.tick_until([&] { return table->clients() == 1; }));
@@ -330,22 +331,22 @@ TEST(Control, TellsEveryoneANoticeAndThoseWhoJoinLaterUntilItIsCleared) {
   ProbeClient first(table.port());
   ASSERT_TRUE(first.join());
   table->warn(Server::Topic::overload, wire::Sentence::untranslated("slow"));
-  const auto reported = first.hear_a<wire::Notice>();
+  const auto reported = first.receive_a<wire::Notice>();
   ASSERT_TRUE(reported);
   EXPECT_EQ(reported->text, "slow");
 
   ProbeClient second(table.port());
   ASSERT_TRUE(second.join());
-  EXPECT_EQ(second.hear_a<wire::Notice>().value_or(wire::Notice{}).text, "slow");
+  EXPECT_EQ(second.receive_a<wire::Notice>().value_or(wire::Notice{}).text, "slow");
 
   table->clear(Server::Topic::overload, "fast again");
-  const auto cleared = first.hear_a<wire::Notice>();
+  const auto cleared = first.receive_a<wire::Notice>();
   ASSERT_TRUE(cleared);
   EXPECT_EQ(cleared->level, wire::Notice::Level::cleared);
   ProbeClient third(table.port());
   ASSERT_TRUE(third.join());
-  third.say(wire::Ping{1});
-  const auto answer = third.hear();  // no notice in between
+  third.send(wire::Ping{1});
+  const auto answer = third.receive();  // no notice in between
   ASSERT_TRUE(answer);
   EXPECT_TRUE(std::holds_alternative<wire::Pong>(*answer));
 }
@@ -355,7 +356,7 @@ TEST(Control, SaysByeBeforeItEnds) {
   ProbeClient client(table.port());
   ASSERT_TRUE(client.join());
   table->finish(wire::Sentence::untranslated("closing time"));
-  const auto bye = client.hear_a<wire::Bye>();
+  const auto bye = client.receive_a<wire::Bye>();
   ASSERT_TRUE(bye);
   EXPECT_EQ(bye->reason, "closing time");
   EXPECT_TRUE(client.sees_close());

@@ -88,7 +88,7 @@ class DeviceTest : public testing::Test {
     return watcher.snapshot().value_or(wire::Snapshot{});
   }
   std::string notice_text() {
-    const auto notice = watcher.hear_a<wire::Notice>();
+    const auto notice = watcher.receive_a<wire::Notice>();
     return notice ? notice->text : std::string();
   }
   Controller controller;  // outlives the server
@@ -117,10 +117,10 @@ TEST_F(DeviceTest, TheRodArrivesWhereTheSensorSays) {
 
 // The tick answers a host's request.
 std::optional<wire::Devices> answer_to(ProbeClient& client, Lockstep& table) {
-  if (!client.say(wire::DeviceQuery{})) return {};
+  if (!client.send(wire::DeviceQuery{})) return {};
   std::optional<wire::Devices> reported;
   table.tick_until([&] {
-    reported = client.hear_a<wire::Devices>(5);
+    reported = client.receive_a<wire::Devices>(5);
     return reported.has_value();
   });
   return reported;
@@ -155,16 +155,16 @@ TEST_F(DeviceTest, AHostWhoAsksIsToldWhatItDoes) {
 
 TEST_F(DeviceTest, AFloodOfQuestionsIsAnsweredAtItsPace) {
   run(20);
-  for (int i = 0; i < 500; ++i) ASSERT_TRUE(watcher.say(wire::DeviceQuery{}));
+  for (int i = 0; i < 500; ++i) ASSERT_TRUE(watcher.send(wire::DeviceQuery{}));
   int answers = 0;
-  watcher.say(wire::Ping{1});
-  while (const auto message = watcher.hear()) {
+  watcher.send(wire::Ping{1});
+  while (const auto message = watcher.receive()) {
     answers += std::holds_alternative<wire::Devices>(*message) ? 1 : 0;
     if (std::holds_alternative<wire::Pong>(*message)) break;
     table.tick();
   }
   table.tick(50);
-  while (watcher.hear_a<wire::Devices>(20)) ++answers;
+  while (watcher.receive_a<wire::Devices>(20)) ++answers;
   EXPECT_GE(answers, 1);
   EXPECT_LE(answers, 5);
   EXPECT_TRUE(watcher.catch_up());
@@ -180,7 +180,7 @@ TEST_F(DeviceTest, UnpluggedIsToldWithin100MillisecondsAndTheRodsHold) {
   while (next_snapshot().rods[2].status != 2 && table.now_us() < from + 1'000'000) {
   }
   EXPECT_LE(table.now_us() - from, 100'000);
-  const auto notice = watcher.hear_a<wire::Notice>();
+  const auto notice = watcher.receive_a<wire::Notice>();
   ASSERT_TRUE(notice);
   EXPECT_EQ(notice->text, "cabinet test unplugged: its rods are held; plug it in again");
   table.tick(300);
@@ -194,7 +194,7 @@ TEST_F(DeviceTest, UnpluggedIsToldWithin100MillisecondsAndTheRodsHold) {
     farthest = std::max(farthest, std::abs(table->match().view().rods[2].slide - where));
   }
   EXPECT_LE(table.now_us() - back_from, 2'000'000);
-  const auto back = watcher.hear_a<wire::Notice>();
+  const auto back = watcher.receive_a<wire::Notice>();
   ASSERT_TRUE(back);
   EXPECT_EQ(back->level, wire::Notice::Level::cleared);
   EXPECT_LT(farthest, 0.0005);  // no jump
@@ -203,7 +203,7 @@ TEST_F(DeviceTest, UnpluggedIsToldWithin100MillisecondsAndTheRodsHold) {
 // Messages for a person, each with a remedy.
 TEST_F(DeviceTest, ADeviceThatNeverSaysAWordIsToldToBeSilent) {
   table.tick(900);
-  EXPECT_FALSE(watcher.hear(0));  // it has a second to start
+  EXPECT_FALSE(watcher.receive(0));  // it has a second to start
   table.tick(200);
   EXPECT_EQ(notice_text(),
             "cabinet test is connected but sends nothing: plug it in again, and check its "
@@ -238,9 +238,9 @@ TEST_F(DeviceTest, ASensorThatCannotFollowItsRodIsTold) {
     table.tick();
   }
   run(5000);
-  EXPECT_FALSE(watcher.hear(0)) << "it stands, and is not told again";
+  EXPECT_FALSE(watcher.receive(0)) << "it stands, and is not told again";
   run(3000);
-  const auto over = watcher.hear_a<wire::Notice>();
+  const auto over = watcher.receive_a<wire::Notice>();
   ASSERT_TRUE(over);
   EXPECT_EQ(over->level, wire::Notice::Level::cleared);
 }
@@ -263,7 +263,7 @@ TEST_F(DeviceTest, FromOneFaultToTheNextAPersonIsToldOnce) {
   table.tick(400);  // opened, but still silent
   run(2);
   EXPECT_EQ(notice_text(), "cabinet test is back");
-  EXPECT_FALSE(watcher.hear(0));
+  EXPECT_FALSE(watcher.receive(0));
 }
 
 std::optional<wire::Notice> notice_of(std::unique_ptr<cabinet::DeviceSource> device, int ticks) {
@@ -272,7 +272,7 @@ std::optional<wire::Notice> notice_of(std::unique_ptr<cabinet::DeviceSource> dev
   ProbeClient watcher(table.port());
   EXPECT_TRUE(watcher.join());
   table.tick(ticks);
-  return watcher.hear_a<wire::Notice>();
+  return watcher.receive_a<wire::Notice>();
 }
 
 TEST(DeviceWatch, SaysThatADeviceIsNotThere) {
@@ -330,17 +330,17 @@ TEST(DevicesAsked, APlayerIsToldNothing) {
   ProbeClient player(table.port());
   ASSERT_TRUE(player.prove("open sesame"));
   ASSERT_TRUE(player.join(0));
-  ASSERT_TRUE(player.say(wire::DeviceQuery{}));
-  player.say(wire::Ping{1});
+  ASSERT_TRUE(player.send(wire::DeviceQuery{}));
+  player.send(wire::Ping{1});
   bool reported = false, ponged = false;
   while (!ponged) {
-    const auto message = player.hear();
+    const auto message = player.receive();
     ASSERT_TRUE(message);
     reported = reported || std::holds_alternative<wire::Devices>(*message);
     ponged = std::holds_alternative<wire::Pong>(*message);
   }
   table.tick(20);
-  EXPECT_FALSE(player.hear_a<wire::Devices>(20));
+  EXPECT_FALSE(player.receive_a<wire::Devices>(20));
   EXPECT_FALSE(reported);
   EXPECT_EQ(table->counters().control.requests_dropped, 1u);
 }
@@ -401,7 +401,7 @@ TEST_F(MiceTest, EachMovesItsRodAndNoOther) {
 TEST_F(MiceTest, OneThatIsUnpluggedIsToldAndTheOtherGoesOn) {
   ::close(std::exchange(mice[0].own_end, -1));
   table.tick();
-  const auto notice = watcher.hear_a<wire::Notice>();
+  const auto notice = watcher.receive_a<wire::Notice>();
   ASSERT_TRUE(notice);
   EXPECT_EQ(notice->text, "mouse 1 unplugged: its rods are held; plug it in again");
   move(1, 100);
@@ -431,7 +431,7 @@ TEST(CabinetHaptics, AHitIsToldInItsTickAndNoneThatIsNot) {
   ASSERT_TRUE(host.join());
   for (const auto screen : {foosball::Screen::selection, foosball::Screen::play}) {
     for (std::uint8_t team = 0; team < foosball::kTeams; ++team)
-      host.say(wire::MatchRequest{number(wire::RequestKind::push), team, 0});
+      host.send(wire::MatchRequest{number(wire::RequestKind::push), team, 0});
     ASSERT_TRUE(table.tick_until([&] {
       controller.report(0);
       return table->match().view().screen == screen;

@@ -43,33 +43,39 @@ TEST(GameChoice, NumbersOutOfRangeHaveASentence) {
         game(kMatch, 0, 0, 3'600'001), game(kMatch, 0, 0, 0xFFFFFFFF), game(kMatch, 0, 0, 0, 6),
         game(kMatch, 0, 0, 0, 255), game(kMatch, 0, 0, 0, 2, 5), game(kMatch, 0, 0, 0, 0, 1),
         game(9), dated}) {
-    EXPECT_EQ(why_not(asked, kHome), wire::say<wire::Said::no_such_game>());
+    EXPECT_EQ(why_not(asked, kHome), wire::make_sentence<wire::SentenceId::no_such_game>());
   }
 }
 
 TEST(GameChoice, WhatTheModeDecidesCannotBeChosenWithIt) {
-  using wire::Said;
-  using wire::say;
-  EXPECT_EQ(why_not(game(kChallenge, 3), kHome), say<Said::challenge_is_set>());
-  EXPECT_EQ(why_not(game(kChallenge, 0, 0, 0, 4), kHome), say<Said::challenge_is_set>());
+  using wire::make_sentence;
+  using wire::SentenceId;
+  EXPECT_EQ(why_not(game(kChallenge, 3), kHome), make_sentence<SentenceId::challenge_is_set>());
+  EXPECT_EQ(why_not(game(kChallenge, 0, 0, 0, 4), kHome),
+            make_sentence<SentenceId::challenge_is_set>());
   wire::Game itsf = game(kChallenge);
   itsf.rule_set = number(wire::RuleSet::itsf);
-  EXPECT_EQ(why_not(itsf, kHome), say<Said::challenge_is_set>());
-  EXPECT_EQ(why_not(game(kTraining, 3), kHome), say<Said::training_has_no_end>());
-  EXPECT_EQ(why_not(game(kTraining, 0, 0, 60'000), kHome), say<Said::training_has_no_end>());
-  EXPECT_EQ(why_not(game(kLadder, 0, 0, 0, 3), kHome), say<Said::ladder_has_its_levels>());
+  EXPECT_EQ(why_not(itsf, kHome), make_sentence<SentenceId::challenge_is_set>());
+  EXPECT_EQ(why_not(game(kTraining, 3), kHome), make_sentence<SentenceId::training_has_no_end>());
+  EXPECT_EQ(why_not(game(kTraining, 0, 0, 60'000), kHome),
+            make_sentence<SentenceId::training_has_no_end>());
+  EXPECT_EQ(why_not(game(kLadder, 0, 0, 0, 3), kHome),
+            make_sentence<SentenceId::ladder_has_its_levels>());
 }
 
 TEST(GameChoice, AChallengeIsPlayedOnlyWhereItIsTheSameAsEverywhere) {
-  using wire::Said;
-  using wire::say;
+  using wire::make_sentence;
+  using wire::SentenceId;
   foosball::MatchDesc match;
   EXPECT_TRUE(why_not(game(kChallenge), site_of(match, true, false)).empty());
-  EXPECT_EQ(why_not(game(kChallenge), site_of(match, false, false)), say<Said::no_computer_here>());
-  EXPECT_EQ(why_not(game(kLadder), site_of(match, false, false)), say<Said::no_computer_here>());
+  EXPECT_EQ(why_not(game(kChallenge), site_of(match, false, false)),
+            make_sentence<SentenceId::no_computer_here>());
+  EXPECT_EQ(why_not(game(kLadder), site_of(match, false, false)),
+            make_sentence<SentenceId::no_computer_here>());
   EXPECT_TRUE(why_not(game(kTraining), site_of(match, false, false)).empty());
   match.layout = foosball::Layout::paper;
-  EXPECT_EQ(why_not(game(kChallenge), site_of(match, true, false)), say<Said::challenge_table>());
+  EXPECT_EQ(why_not(game(kChallenge), site_of(match, true, false)),
+            make_sentence<SentenceId::challenge_table>());
   EXPECT_TRUE(why_not(game(kLadder), site_of(match, true, false)).empty());
   match = {};
   match.characters.push_back(match.characters.front());
@@ -77,23 +83,25 @@ TEST(GameChoice, AChallengeIsPlayedOnlyWhereItIsTheSameAsEverywhere) {
       << "own ones come after";
   match.characters.front().body.mass *= 1.01;
   EXPECT_EQ(why_not(game(kChallenge), site_of(match, true, false)),
-            say<Said::challenge_characters>());
+            make_sentence<SentenceId::challenge_characters>());
   match = {};
   match.tuning.gravity = 9.0;
-  EXPECT_EQ(why_not(game(kChallenge), site_of(match, true, false)), say<Said::challenge_tuning>());
+  EXPECT_EQ(why_not(game(kChallenge), site_of(match, true, false)),
+            make_sentence<SentenceId::challenge_tuning>());
 }
 
 TEST(GameChoice, SidesAreChangedBetweenTheSetsOfACabinet) {
-  using wire::Said;
-  using wire::say;
+  using wire::make_sentence;
+  using wire::SentenceId;
   wire::Game asked = game(kMatch, 0, 3);
   asked.change_sides = true;
   const GameSite cabinet{.cabinet = true};
   EXPECT_TRUE(why_not(asked, cabinet).empty());
-  EXPECT_EQ(why_not(asked, kHome), say<Said::sides_at_a_cabinet>());
+  EXPECT_EQ(why_not(asked, kHome), make_sentence<SentenceId::sides_at_a_cabinet>());
   for (const std::uint8_t sets : {std::uint8_t{0}, std::uint8_t{1}}) {
     asked.sets = sets;
-    EXPECT_EQ(why_not(asked, cabinet), say<Said::sides_between_sets>()) << int{sets};
+    EXPECT_EQ(why_not(asked, cabinet), make_sentence<SentenceId::sides_between_sets>())
+        << int{sets};
   }
   asked.sets = 0;
   asked.rule_set = number(wire::RuleSet::itsf);

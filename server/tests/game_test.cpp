@@ -37,7 +37,7 @@ class GameTest : public testing::Test {
   }
   void request(ProbeClient& client, wire::RequestKind kind) {
     const auto before = table->counters().control.requests;
-    client.say(wire::MatchRequest{number(kind), 0, 0});
+    client.send(wire::MatchRequest{number(kind), 0, 0});
     ASSERT_TRUE(table.wait_until([&] { return table->counters().control.requests > before; }));
     table.tick(10);
   }
@@ -52,13 +52,13 @@ TEST_F(GameTest, AClientReachesTrainingAndLadderAndAllAreTold) {
   wire::Game training = of(wire::Mode::training);
   training.level = 4;
   training.style = 2;
-  host.say(training);
+  host.send(training);
   ASSERT_TRUE(reported(other, [&](const auto& g) { return g == training; }));
   EXPECT_EQ(view().mode, foosball::Mode::training);
   wire::Game ladder = of(wire::Mode::ladder);
   ladder.goals = 3;
   ladder.sets = 1;
-  host.say(ladder);
+  host.send(ladder);
   ASSERT_TRUE(reported(other, [&](const auto& g) { return g == ladder; }));
   EXPECT_EQ(view().mode, foosball::Mode::ladder);
   EXPECT_EQ(view().rules.goals_to_win, 3);
@@ -77,7 +77,7 @@ TEST_F(GameTest, InPlayItWaitsForARestartAndSaysSo) {
   wire::Game game = of(wire::Mode::match);
   game.goals = 2;
   game.level = 5;
-  host.say(game);
+  host.send(game);
   ASSERT_TRUE(
       reported(host, [](const auto& g) { return g.goals == 2 && g.level == 5 && g.waits; }));
   EXPECT_EQ(view().rules.goals_to_win, 5);
@@ -93,21 +93,21 @@ TEST_F(GameTest, OutOfRangeAndContradictingValuesAreRefusedWithASentence) {
   const wire::Game before = *host.game();
   wire::Game bad = of(wire::Mode::match);
   bad.goals = 100;
-  host.say(bad);
-  EXPECT_EQ(notice_of(host), wire::say<wire::Said::no_such_game>().text());
+  host.send(bad);
+  EXPECT_EQ(notice_of(host), wire::make_sentence<wire::SentenceId::no_such_game>().text());
   bad = of(wire::Mode::ladder);
   bad.level = 3;
-  host.say(bad);
-  EXPECT_EQ(notice_of(host), wire::say<wire::Said::ladder_has_its_levels>().text());
+  host.send(bad);
+  EXPECT_EQ(notice_of(host), wire::make_sentence<wire::SentenceId::ladder_has_its_levels>().text());
   bad = of(wire::Mode::challenge);
   bad.goals = 3;
-  host.say(bad);
-  EXPECT_EQ(notice_of(host), wire::say<wire::Said::challenge_is_set>().text());
+  host.send(bad);
+  EXPECT_EQ(notice_of(host), wire::make_sentence<wire::SentenceId::challenge_is_set>().text());
   table.tick(20);
   ASSERT_TRUE(host.catch_up());
   EXPECT_EQ(host.game(), before);
-  host.say(of(wire::Mode::training));
-  EXPECT_EQ(host.hear_a<wire::Notice>().value_or(wire::Notice{}).level,
+  host.send(of(wire::Mode::training));
+  EXPECT_EQ(host.receive_a<wire::Notice>().value_or(wire::Notice{}).level,
             wire::Notice::Level::cleared)
       << "what is taken leaves no refusal standing";
 }
@@ -115,23 +115,25 @@ TEST_F(GameTest, OutOfRangeAndContradictingValuesAreRefusedWithASentence) {
 TEST_F(GameTest, TheChallengeIsTodaysAndKeepsTheDefaultTuning) {
   ProbeClient host(table.port());
   ASSERT_TRUE(host.join(0));
-  host.say(wire::MatchRequest{number(wire::RequestKind::tune), 0, 0, 9.0});
+  host.send(wire::MatchRequest{number(wire::RequestKind::tune), 0, 0, 9.0});
   ASSERT_TRUE(table.tick_until(
       [&] { return host.catch_up() && host.tuning() && host.tuning()->values[0] == 9.0; }));
-  host.say(of(wire::Mode::challenge));
-  EXPECT_EQ(notice_of(host), wire::say<wire::Said::challenge_tuning>().text());
+  host.send(of(wire::Mode::challenge));
+  EXPECT_EQ(notice_of(host), wire::make_sentence<wire::SentenceId::challenge_tuning>().text());
   const double usual = foosball::Tuning{}.gravity;
-  host.say(wire::MatchRequest{number(wire::RequestKind::tune), 0, 0, usual});
+  host.send(wire::MatchRequest{number(wire::RequestKind::tune), 0, 0, usual});
   ASSERT_TRUE(
       table.tick_until([&] { return host.catch_up() && host.tuning()->values[0] == usual; }));
-  host.say(of(wire::Mode::challenge));
+  host.send(of(wire::Mode::challenge));
   const auto drawn = foosball::challenge_opponent(20261122);
   ASSERT_TRUE(reported(host, [&](const auto& g) { return g.date == 20261122; }));
   EXPECT_EQ(host.game()->level, drawn.level);
   EXPECT_EQ(view().challenge, 20261122u);
-  host.say(wire::MatchRequest{number(wire::RequestKind::tune), 0, 0, 9.0});
-  EXPECT_TRUE(table.tick_until(
-      [&] { return notice_of(host) == wire::say<wire::Said::challenge_keeps_tuning>().text(); }));
+  host.send(wire::MatchRequest{number(wire::RequestKind::tune), 0, 0, 9.0});
+  EXPECT_TRUE(table.tick_until([&] {
+    return notice_of(host) ==
+           wire::make_sentence<wire::SentenceId::challenge_keeps_tuning>().text();
+  }));
   table.tick(20);
   EXPECT_EQ(view().tuning.gravity, usual);
 }
@@ -142,8 +144,8 @@ TEST_F(GameTest, AChangeOfSidesIsForACabinet) {
   wire::Game game = of(wire::Mode::match);
   game.sets = 3;
   game.change_sides = true;
-  host.say(game);
-  EXPECT_EQ(notice_of(host), wire::say<wire::Said::sides_at_a_cabinet>().text());
+  host.send(game);
+  EXPECT_EQ(notice_of(host), wire::make_sentence<wire::SentenceId::sides_at_a_cabinet>().text());
 }
 
 // A server that runs past midnight.
@@ -163,7 +165,7 @@ class Midnight : public testing::Test {
 TEST_F(Midnight, BringsTheNextDaysChallengeToTheMatchesThatBeginAfterIt) {
   ProbeClient player(table.port());
   ASSERT_TRUE(player.join(0));
-  player.say(wire::MatchRequest{number(wire::RequestKind::push), 0, 0});
+  player.send(wire::MatchRequest{number(wire::RequestKind::push), 0, 0});
   const auto& view = table->match().view();
   ASSERT_TRUE(table.tick_until([&] { return view.screen == foosball::Screen::play; }));
   day = 23;
@@ -171,7 +173,7 @@ TEST_F(Midnight, BringsTheNextDaysChallengeToTheMatchesThatBeginAfterIt) {
       [&] { return player.catch_up() && player.game() && player.game()->date == 20261123; }));
   EXPECT_TRUE(player.game()->waits);
   EXPECT_EQ(view.challenge, 20261122u) << "the match in hand stays that of its day";
-  player.say(wire::MatchRequest{number(wire::RequestKind::restart), 0, 0});
+  player.send(wire::MatchRequest{number(wire::RequestKind::restart), 0, 0});
   ASSERT_TRUE(table.tick_until([&] { return view.screen == foosball::Screen::logo; }));
   ASSERT_TRUE(table.tick_until([&] { return player.catch_up() && !player.game()->waits; }));
   EXPECT_EQ(view.challenge, 20261123u);
@@ -189,10 +191,10 @@ TEST_F(GivenDay, StaysAndIsWhatAHostChooses) {
   day = 23;
   ProbeClient host(table.port());
   ASSERT_TRUE(host.join(0));
-  host.say(of(wire::Mode::match));
+  host.send(of(wire::Mode::match));
   ASSERT_TRUE(receives_game(table, host,
                             [](const auto& g) { return g.mode == number(wire::Mode::match); }));
-  host.say(of(wire::Mode::challenge));
+  host.send(of(wire::Mode::challenge));
   ASSERT_TRUE(receives_game(table, host,
                             [](const auto& g) { return g.mode == number(wire::Mode::challenge); }));
   EXPECT_EQ(host.game()->date, 20261122u);
@@ -218,7 +220,7 @@ TEST(Challenge, TheComputerBeginsEveryTryOfADayInTheSameState) {
     player.send_input(hand);
   };
   const auto ask = [&](wire::RequestKind kind) {
-    player.say(wire::MatchRequest{number(kind), 0, 0});
+    player.send(wire::MatchRequest{number(kind), 0, 0});
     const auto wanted =
         kind == wire::RequestKind::push ? foosball::Screen::play : foosball::Screen::logo;
     ASSERT_TRUE(table.tick_until([&] { return table->match().view().screen == wanted; }));
@@ -261,14 +263,15 @@ TEST(GameFromAfar, AWatcherAndAPlayerAreRefusedAndAHostIsNot) {
   ASSERT_TRUE(player.prove("correct horse"));
   ASSERT_TRUE(player.join(0));
   for (ProbeClient* client : {&watcher, &player}) {
-    client->say(of(wire::Mode::training));
-    EXPECT_EQ(notice_of(*client), wire::say<wire::Said::only_host_chooses>().text());
+    client->send(of(wire::Mode::training));
+    EXPECT_EQ(notice_of(*client),
+              wire::make_sentence<wire::SentenceId::only_host_chooses>().text());
   }
   table.tick(20);
   EXPECT_EQ(table->match().view().mode, foosball::Mode::match);
   ASSERT_TRUE(host.prove("battery staple", wire::Role::host));
   ASSERT_TRUE(host.join());
-  host.say(of(wire::Mode::training));
+  host.send(of(wire::Mode::training));
   EXPECT_TRUE(
       table.tick_until([&] { return table->match().view().mode == foosball::Mode::training; }));
 }
@@ -281,20 +284,20 @@ TEST_F(GameTest, ARecordingOfChangedGamesReplaysToTheBit) {
     wire::Game game = of(wire::Mode::match);
     game.goals = 1;
     game.match_ms = 60'000;
-    host.say(game);
+    host.send(game);
     ASSERT_TRUE(reported(host, [](const auto& g) { return g.goals == 1; }));
     request(host, wire::RequestKind::push);
     request(host, wire::RequestKind::push);
     ASSERT_TRUE(table.tick_until([&] { return view().screen == foosball::Screen::play; }));
     table.tick(1200);
-    host.say(of(wire::Mode::challenge));
+    host.send(of(wire::Mode::challenge));
     ASSERT_TRUE(reported(host, [](const auto& g) { return g.waits; }));
     request(host, wire::RequestKind::restart);
     request(host, wire::RequestKind::push);
     ASSERT_EQ(view().mode, foosball::Mode::challenge);
     table.tick(1500);
   }
-  table->finish(wire::say<wire::Said::server_ends>());
+  table->finish(wire::make_sentence<wire::SentenceId::server_ends>());
   auto playback = Playback::open(path);
   ASSERT_TRUE(playback) << playback.error();
   Lockstep replay([&](ServerOptions& o) { o.replay = std::move(*playback); });
@@ -306,8 +309,8 @@ TEST_F(GameTest, ARecordingOfChangedGamesReplaysToTheBit) {
   EXPECT_EQ(replay->match().state_hash(), table->match().state_hash());
   ASSERT_TRUE(watcher.catch_up());
   EXPECT_EQ(watcher.game()->date, 20261122u);
-  watcher.say(of(wire::Mode::training));
-  EXPECT_EQ(notice_of(watcher), wire::say<wire::Said::recording_plays>().text());
+  watcher.send(of(wire::Mode::training));
+  EXPECT_EQ(notice_of(watcher), wire::make_sentence<wire::SentenceId::recording_plays>().text());
 }
 
 }  // namespace

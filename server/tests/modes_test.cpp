@@ -59,7 +59,7 @@ TEST(Absence, AMatchAgainstTheComputerReturnsToTheLogo) {
   ASSERT_TRUE(player.join(0));
   for (const auto& request : {wire::MatchRequest{0, 0, 0}, wire::MatchRequest{0, 0, 0}}) {
     const auto before = table->counters().control.requests;
-    player.say(request);
+    player.send(request);
     ASSERT_TRUE(table.wait_until([&] { return table->counters().control.requests > before; }));
     table.tick(10);
   }

@@ -35,13 +35,13 @@ wire::Roster roster(std::vector<wire::Seat> seats) {
 class PhoneAtATable : public testing::TestWithParam<foosball::Layout> {
  protected:
   void let_in(RodSet rods = 0, std::uint8_t team = wire::kWatchOnly) {
-    guest.hear(wire::PhoneRequest(wire::PhoneHello{}));
+    guest.handle(wire::PhoneRequest(wire::PhoneHello{}));
     wire::Welcome welcome;
     welcome.session = 11;
     welcome.token = 22;
     welcome.client = 7;
-    guest.hear(wire::ControlMessage(welcome));
-    guest.hear(wire::ControlMessage(roster({{7, "Ann", team, rods, 1, false}})));
+    guest.handle(wire::ControlMessage(welcome));
+    guest.handle(wire::ControlMessage(roster({{7, "Ann", team, rods, 1, false}})));
   }
   PhoneGuest guest{GetParam()};
 };
@@ -64,7 +64,7 @@ TEST_P(PhoneAtATable, TheFourPairsAreTheEightRodsEachOfOneTeam) {
 }
 
 TEST_P(PhoneAtATable, SaysHelloAsAWatcherWithTheTicketThatItHas) {
-  const auto out = guest.hear(wire::PhoneRequest(wire::PhoneHello{11, 22, "Ann"}));
+  const auto out = guest.handle(wire::PhoneRequest(wire::PhoneHello{11, 22, "Ann"}));
   const auto* hello = only<wire::Hello>(out.to_control);
   ASSERT_TRUE(hello);
   EXPECT_EQ(hello->name, "Ann");
@@ -76,15 +76,15 @@ TEST_P(PhoneAtATable, SaysHelloAsAWatcherWithTheTicketThatItHas) {
 }
 
 TEST_P(PhoneAtATable, IsToldOfPairsThatNobodyElseHas) {
-  guest.hear(wire::PhoneRequest(wire::PhoneHello{}));
+  guest.handle(wire::PhoneRequest(wire::PhoneHello{}));
   wire::Welcome welcome;
   welcome.client = 7;
   welcome.session = 11;
   welcome.token = 22;
-  guest.hear(wire::ControlMessage(welcome));
+  guest.handle(wire::ControlMessage(welcome));
   const RodSet one_rod =
       static_cast<RodSet>(1u << rods_of_pair(GetParam(), 1, RodPair::attack).by_x[0]);
-  const auto out = guest.hear(wire::ControlMessage(
+  const auto out = guest.handle(wire::ControlMessage(
       roster({{3, "Ben", 1, one_rod, 1, false}, {7, "Ann", wire::kWatchOnly, 0, 0, false}})));
   const auto* state = only<wire::PhoneState>(out.to_phone);
   ASSERT_TRUE(state);
@@ -95,8 +95,8 @@ TEST_P(PhoneAtATable, IsToldOfPairsThatNobodyElseHas) {
   EXPECT_EQ(state->ticket, 22u);
   // An equal roster sends nothing.
   EXPECT_TRUE(guest
-                  .hear(wire::ControlMessage(roster({{3, "Ben", 1, one_rod, 1, false},
-                                                     {7, "Ann", wire::kWatchOnly, 0, 0, false}})))
+                  .handle(wire::ControlMessage(roster({{3, "Ben", 1, one_rod, 1, false},
+                                                       {7, "Ann", wire::kWatchOnly, 0, 0, false}})))
                   .to_phone.empty());
 }
 
@@ -110,7 +110,7 @@ TEST_P(PhoneAtATable, DrivesTheTwoRodsThatItHasAndNoOther) {
       wire::PhoneInput input{.sequence = 1};
       input.rods[0] = {true, 0.01f, 1.0, 0.1f, 2.0f};
       input.rods[1] = {true, -0.02f, -3.0, -0.2f, -4.0f};
-      const auto out = guest.hear(wire::PhoneRequest(input));
+      const auto out = guest.handle(wire::PhoneRequest(input));
       ASSERT_TRUE(out.input);
       EXPECT_EQ(out.input->client, 7u);
       for (int rod = 0; rod < foosball::kRods; ++rod) {
@@ -127,38 +127,38 @@ TEST_P(PhoneAtATable, DrivesTheTwoRodsThatItHasAndNoOther) {
 
 TEST_P(PhoneAtATable, WithoutRodsItDrivesNothing) {
   let_in();
-  EXPECT_FALSE(guest.hear(wire::PhoneRequest(wire::PhoneInput{.sequence = 1})).input);
+  EXPECT_FALSE(guest.handle(wire::PhoneRequest(wire::PhoneInput{.sequence = 1})).input);
 }
 
 TEST_P(PhoneAtATable, AnOlderInputIsDropped) {
   let_in(rods_of_pair(GetParam(), 0, RodPair::attack).rods, 0);
-  EXPECT_TRUE(guest.hear(wire::PhoneRequest(wire::PhoneInput{.sequence = 0xFFFFFFFF})).input);
-  EXPECT_FALSE(guest.hear(wire::PhoneRequest(wire::PhoneInput{.sequence = 0xFFFFFFFF})).input);
-  const auto wrapped = guest.hear(wire::PhoneRequest(wire::PhoneInput{.sequence = 1}));
+  EXPECT_TRUE(guest.handle(wire::PhoneRequest(wire::PhoneInput{.sequence = 0xFFFFFFFF})).input);
+  EXPECT_FALSE(guest.handle(wire::PhoneRequest(wire::PhoneInput{.sequence = 0xFFFFFFFF})).input);
+  const auto wrapped = guest.handle(wire::PhoneRequest(wire::PhoneInput{.sequence = 1}));
   ASSERT_TRUE(wrapped.input);
   EXPECT_EQ(wrapped.input->input.sequence, 2u);
 }
 
 TEST_P(PhoneAtATable, AClaimIsOfThePairsRodsAndNoneGivesUp) {
-  EXPECT_TRUE(PhoneGuest(GetParam()).hear(claim(0, RodPair::attack)).end) << "before the hello";
+  EXPECT_TRUE(PhoneGuest(GetParam()).handle(claim(0, RodPair::attack)).end) << "before the hello";
   let_in();
-  const auto asked = guest.hear(claim(1, RodPair::defence));
+  const auto asked = guest.handle(claim(1, RodPair::defence));
   const auto* claimed = only<wire::Claim>(asked.to_control);
   ASSERT_TRUE(claimed);
   EXPECT_EQ(claimed->team, 1);
   EXPECT_EQ(claimed->rods, rods_of_pair(GetParam(), 1, RodPair::defence).rods);
-  const auto given = guest.hear(claim(1, RodPair::none));
+  const auto given = guest.handle(claim(1, RodPair::none));
   ASSERT_TRUE(only<wire::Claim>(given.to_control));
   EXPECT_EQ(only<wire::Claim>(given.to_control)->rods, 0);
 }
 
 TEST_P(PhoneAtATable, ASecondHelloARefusalAndAGoodbyeEndIt) {
   let_in();
-  EXPECT_TRUE(guest.hear(wire::PhoneRequest(wire::PhoneHello{})).end);
+  EXPECT_TRUE(guest.handle(wire::PhoneRequest(wire::PhoneHello{})).end);
   for (const wire::ControlMessage& message :
        {wire::ControlMessage(wire::Refusal{wire::Refusal::Code::not_allowed, "no"}),
         wire::ControlMessage(wire::Bye{"no"})}) {
-    const auto out = guest.hear(message);
+    const auto out = guest.handle(message);
     EXPECT_TRUE(out.end);
     const auto* notice = only<wire::PhoneNotice>(out.to_phone);
     ASSERT_TRUE(notice);

@@ -55,14 +55,14 @@ class PhoneProbe {
   // Upgrades, sends a hello, and returns the state in reply.
   std::optional<wire::PhoneState> join(const std::string& name = "Ann",
                                        const wire::PhoneState& before = {}) {
-    if (!upgrade() || !say(wire::PhoneHello{before.session, before.ticket, name})) return {};
-    return hear_a<wire::PhoneState>();
+    if (!upgrade() || !send(wire::PhoneHello{before.session, before.ticket, name})) return {};
+    return receive_a<wire::PhoneState>();
   }
   std::optional<wire::PhoneState> claim(int team, wire::RodPair pair) {
-    if (!say(wire::PhoneClaim{static_cast<std::uint8_t>(team), number(pair)})) return {};
-    return hear_a<wire::PhoneState>();
+    if (!send(wire::PhoneClaim{static_cast<std::uint8_t>(team), number(pair)})) return {};
+    return receive_a<wire::PhoneState>();
   }
-  bool say(const wire::PhoneRequest& request) {
+  bool send(const wire::PhoneRequest& request) {
     std::vector<std::byte> bytes(wire::kMaxPhoneRequest);
     bytes.resize(wire::encode_phone(request, bytes));
     return send(bytes);
@@ -84,12 +84,12 @@ class PhoneProbe {
 
   // The next message of this type; discards others. Nothing if none arrives or the line is closed.
   template <class Message>
-  std::optional<Message> hear_a() {
+  std::optional<Message> receive_a() {
     while (true) {
-      run([&] { return !heard_.empty() || closed_; });
-      if (heard_.empty()) return {};
-      const wire::PhoneReply reply = std::move(heard_.front());
-      heard_.pop_front();
+      run([&] { return !received_.empty() || closed_; });
+      if (received_.empty()) return {};
+      const wire::PhoneReply reply = std::move(received_.front());
+      received_.pop_front();
       if (const auto* wanted = std::get_if<Message>(&reply)) return *wanted;
     }
   }
@@ -97,7 +97,7 @@ class PhoneProbe {
   bool has_heard_a() {
     io_.restart();
     io_.poll();
-    for (const auto& reply : heard_)
+    for (const auto& reply : received_)
       if (std::holds_alternative<Message>(reply)) return true;
     return false;
   }
@@ -140,7 +140,7 @@ class PhoneProbe {
       const bool good = wire::decode_phone(
           std::span(static_cast<const std::byte*>(data.data()), data.size()), reply);
       EXPECT_TRUE(good) << "the server sent what is no message";
-      if (good) heard_.push_back(std::move(reply));
+      if (good) received_.push_back(std::move(reply));
       buffer_.clear();
       read_next();
     });
@@ -150,7 +150,7 @@ class PhoneProbe {
   boost::beast::websocket::stream<boost::beast::tcp_stream> socket_{io_};
   boost::beast::flat_buffer buffer_;
   std::string host_, path_;
-  std::deque<wire::PhoneReply> heard_;
+  std::deque<wire::PhoneReply> received_;
   bool connected_ = false, closed_ = false;
 };
 

@@ -69,7 +69,7 @@ TEST_F(PhoneTest, MovesTwoRodsAndNoOther) {
   input.rods[1] = {true, -0.03f, -0.5, 0.0f, 0.0f};
   ASSERT_TRUE(table.tick_until([&] {
     ++input.sequence;
-    EXPECT_TRUE(phone.say(input));
+    EXPECT_TRUE(phone.send(input));
     return std::abs(slide(rods.by_x[0]) - 0.04) < 2e-3 &&
            std::abs(slide(rods.by_x[1]) + 0.03) < 2e-3 &&
            std::abs(angle(rods.by_x[0]) - 0.7) < 0.05 && std::abs(angle(rods.by_x[1]) + 0.5) < 0.05;
@@ -89,7 +89,7 @@ TEST_F(PhoneTest, AnInputIsInTheMatchAtTheTickAfterItCame) {
   const int rod = pair(0, RodPair::attack).by_x[0];
   wire::PhoneInput input{.sequence = 1};
   input.rods[0] = {true, 0.05f, 0.0, 0.0f, 0.0f};
-  ASSERT_TRUE(phone.say(input));
+  ASSERT_TRUE(phone.send(input));
   ASSERT_TRUE(table.wait_until([&] { return phones().inputs == 1; }));
   const double before = slide(rod);
   table.tick();
@@ -109,10 +109,10 @@ TEST_F(PhoneTest, IsInTheRosterAndIsPutOutByTheHost) {
   EXPECT_EQ(seat.rods, pair(0, RodPair::defence).rods);
   EXPECT_EQ(seat.role, number(wire::Role::player))
       << "never the host, though it is at this machine";
-  ASSERT_TRUE(host.say(wire::Kick{seat.client}));
+  ASSERT_TRUE(host.send(wire::Kick{seat.client}));
   std::optional<wire::PhoneNotice> notice;
   do {
-    notice = phone.hear_a<wire::PhoneNotice>();
+    notice = phone.receive_a<wire::PhoneNotice>();
     ASSERT_TRUE(notice);
   } while (notice->level != number(wire::PhoneNotice::Level::end));
   EXPECT_NE(notice->text.find("removed you"), std::string::npos) << notice->text;
@@ -127,8 +127,8 @@ TEST_F(PhoneTest, OfTwoPhonesTheSecondIsToldWhatIsTakenAndWhy) {
   const auto state = ben.join("Ben");
   ASSERT_TRUE(state);
   EXPECT_EQ(state->free, 0b1110);
-  ben.say(wire::PhoneClaim{0, number(RodPair::defence)});
-  const auto notice = ben.hear_a<wire::PhoneNotice>();
+  ben.send(wire::PhoneClaim{0, number(RodPair::defence)});
+  const auto notice = ben.receive_a<wire::PhoneNotice>();
   ASSERT_TRUE(notice);
   EXPECT_NE(notice->text.find("taken"), std::string::npos) << notice->text;
   EXPECT_TRUE(ben.claim(0, RodPair::attack));
@@ -162,7 +162,7 @@ TEST_F(KeptSeats, APhoneThatWasLostHasItsRodsAgainWithItsTicket) {
   input.rods[0] = {true, 0.05f, 0.0, 0.0f, 0.0f};
   EXPECT_TRUE(table.tick_until([&] {
     ++input.sequence;
-    return phone.say(input) && slide(rod) > 0.04;
+    return phone.send(input) && slide(rod) > 0.04;
   }));
 }
 
@@ -180,17 +180,17 @@ TEST_F(KeptSeats, APageThatIsClosedOnPurposeGivesItsRodsUp) {
 TEST_F(PhoneTest, IsToldWhyTheServerEnds) {
   PhoneProbe phone(url);
   ASSERT_TRUE(phone.join());
-  table->finish(wire::say<wire::Said::time_is_over>());
-  const auto notice = phone.hear_a<wire::PhoneNotice>();
+  table->finish(wire::make_sentence<wire::SentenceId::time_is_over>());
+  const auto notice = phone.receive_a<wire::PhoneNotice>();
   ASSERT_TRUE(notice);
-  EXPECT_EQ(notice->text, wire::say<wire::Said::time_is_over>().text());
+  EXPECT_EQ(notice->text, wire::make_sentence<wire::SentenceId::time_is_over>().text());
   EXPECT_EQ(notice->level, number(wire::PhoneNotice::Level::end));
 }
 
 TEST_F(PhoneTest, PlayersAreToldWhereAndWatchersAreNot) {
   ProbeClient host(table.port());
   ASSERT_TRUE(host.join());
-  const auto phones = host.hear_a<wire::Phones>();
+  const auto phones = host.receive_a<wire::Phones>();
   ASSERT_TRUE(phones);
   EXPECT_EQ(phones->url, url);
   EXPECT_LE(url.size(), wire::kMaxUrl);
@@ -201,8 +201,8 @@ TEST(NoPhones, NobodyIsToldOfAPortThatIsNotOpen) {
   EXPECT_EQ(table->phones(), "");
   ProbeClient host(table.port());
   ASSERT_TRUE(host.join());
-  ASSERT_TRUE(host.say(wire::Ping{1}));
-  EXPECT_TRUE(host.hear_a<wire::Pong>());
+  ASSERT_TRUE(host.send(wire::Ping{1}));
+  EXPECT_TRUE(host.receive_a<wire::Pong>());
 }
 
 // --- haptics
@@ -220,7 +220,7 @@ TEST(PhonePulses, AHitIsToldInItsTickToThePhoneThatHasTheRod) {
   ASSERT_TRUE(host.join());
   for (const auto screen : {foosball::Screen::selection, foosball::Screen::play}) {
     for (std::uint8_t team = 0; team < foosball::kTeams; ++team)
-      host.say(wire::MatchRequest{number(wire::RequestKind::push), team, 0});
+      host.send(wire::MatchRequest{number(wire::RequestKind::push), team, 0});
     ASSERT_TRUE(table.tick_until([&] { return table->match().view().screen == screen; }));
   }
   const RodPairOf mine = rods_of_pair(table->match().view().layout, 0, RodPair::attack);
@@ -233,7 +233,7 @@ TEST(PhonePulses, AHitIsToldInItsTickToThePhoneThatHasTheRod) {
     const double t = 1e-6 * static_cast<double>(table.now_us());
     for (wire::PhoneRod& rod : input.rods)
       rod = {true, static_cast<float>(0.08 * std::sin(3.0 * t)), 1.2 * std::sin(25.0 * t), 0, 0};
-    EXPECT_TRUE(phone.say(input));
+    EXPECT_TRUE(phone.send(input));
     // The previous tick.
     for (const foosball::Event& event : table->match().events()) {
       const bool felt = event.kind == foosball::EventKind::man_hit &&
@@ -247,7 +247,7 @@ TEST(PhonePulses, AHitIsToldInItsTickToThePhoneThatHasTheRod) {
   }));
   EXPECT_EQ(behind, 0);
   EXPECT_GE(hits, 3) << "each pulse is of a hit of the tick that it was told in";
-  const auto pulse = phone.hear_a<wire::PhonePulse>();
+  const auto pulse = phone.receive_a<wire::PhonePulse>();
   ASSERT_TRUE(pulse);
   EXPECT_LT(pulse->rod, 2);
   EXPECT_GT(pulse->strength, 0);
@@ -272,7 +272,7 @@ class Stranger {
            static_cast<ssize_t>(bytes.size());
   }
   // Everything received until the server closes.
-  std::string hear_out(int patience_ms = 10'000) {
+  std::string drain(int patience_ms = 10'000) {
     std::string all;
     std::array<char, 4096> buffer;
     while (wait_readable(fd_.get(), patience_ms)) {
@@ -303,7 +303,7 @@ TEST_F(PhoneTest, ServesThePageToWhoKnowsTheToken) {
   for (const std::string& target : {path, path + "/"}) {
     Stranger visitor(url);
     ASSERT_TRUE(visitor.send(get(target)));
-    const std::string answer = visitor.hear_out();
+    const std::string answer = visitor.drain();
     EXPECT_TRUE(answer.starts_with("HTTP/1.1 200 OK\r\n"));
     EXPECT_NE(answer.find("Content-Security-Policy: default-src 'none'"), std::string::npos);
     EXPECT_TRUE(answer.ends_with("</html>\n"));
@@ -324,7 +324,7 @@ TEST_F(PhoneTest, WithoutTheTokenThereIsASentenceNeverLongerThanTheRequest) {
       Stranger stranger(url);
       const std::string request = get(target, padding);
       ASSERT_TRUE(stranger.send(request));
-      const std::string answer = stranger.hear_out();
+      const std::string answer = stranger.drain();
       EXPECT_TRUE(stranger.closed());
       EXPECT_LE(answer.size(), request.size());
       EXPECT_EQ(answer.find("<html"), std::string::npos);
@@ -348,11 +348,11 @@ TEST_F(PhoneTest, OtherMethodsThanGetAreRefusedWithTheTokenToo) {
     stranger.send(std::string(method) + " " + path +
                   " HTTP/1.1\r\nHost: x\r\nContent-Length: 0\r\n" +
                   "X-Pad: " + std::string(200, 'a') + "\r\n\r\n");
-    EXPECT_FALSE(stranger.hear_out().starts_with("HTTP/1.1 200")) << method;
+    EXPECT_FALSE(stranger.drain().starts_with("HTTP/1.1 200")) << method;
   }
   Stranger sender(url);
   sender.send("GET " + path + " HTTP/1.1\r\nHost: x\r\nContent-Length: 1000000\r\n\r\n");
-  EXPECT_EQ(sender.hear_out(), "") << "a body";
+  EXPECT_EQ(sender.drain(), "") << "a body";
   EXPECT_EQ(phones().pages, 0u);
 }
 
@@ -379,7 +379,7 @@ TEST_F(PhoneTest, NoBytesEndMoreThanTheirOwnConnection) {
     ASSERT_TRUE(stranger.connected());
     stranger.send(bytes);
     ::shutdown(stranger.fd(), SHUT_WR);
-    stranger.hear_out();
+    stranger.drain();
     EXPECT_TRUE(stranger.closed());
   }
   PhoneProbe phone(url);
@@ -451,7 +451,7 @@ TEST_F(Hurried, ASlowLorisIsShownOutInTime) {
   while (!wait_readable(loris.fd(), 10) && sent < request.size()) {
     if (!loris.send(request.substr(sent++, 1))) break;
   }
-  loris.hear_out();
+  loris.drain();
   const std::int64_t took = os::monotonic_us() - began;
   EXPECT_LT(sent, request.size());
   EXPECT_GE(took, 350'000);
@@ -511,16 +511,16 @@ TEST_F(FewPhones, OfManyThatAreOpenBeforeTheFirstHelloNoMoreGetIn) {
   }
   int inside = 0;
   for (const auto& phone : crowd) {
-    ASSERT_TRUE(phone->say(wire::PhoneHello{{}, {}, "Ann"}));
+    ASSERT_TRUE(phone->send(wire::PhoneHello{{}, {}, "Ann"}));
     if (inside < 2) {
-      ASSERT_TRUE(phone->hear_a<wire::PhoneState>());
+      ASSERT_TRUE(phone->receive_a<wire::PhoneState>());
       ++inside;
       continue;
     }
-    const auto notice = phone->hear_a<wire::PhoneNotice>();
+    const auto notice = phone->receive_a<wire::PhoneNotice>();
     ASSERT_TRUE(notice);
     EXPECT_EQ(notice->level, number(wire::PhoneNotice::Level::end));
-    EXPECT_EQ(notice->text, wire::say<wire::Said::server_full>().text());
+    EXPECT_EQ(notice->text, wire::make_sentence<wire::SentenceId::server_full>().text());
     EXPECT_TRUE(phone->sees_close());
   }
 }
@@ -540,7 +540,7 @@ TEST_F(PacedPhones, AFloodOfInputsIsReadAtItsPace) {
   ASSERT_TRUE(phone.join());
   ASSERT_TRUE(phone.claim(0, RodPair::attack));
   const std::int64_t began = os::monotonic_us();
-  for (std::uint32_t i = 1; i <= 60; ++i) ASSERT_TRUE(phone.say(wire::PhoneInput{.sequence = i}));
+  for (std::uint32_t i = 1; i <= 60; ++i) ASSERT_TRUE(phone.send(wire::PhoneInput{.sequence = i}));
   ASSERT_TRUE(table.wait_until([&] { return phones().inputs == 60; }));
   EXPECT_GE(os::monotonic_us() - began, 700'000);
   EXPECT_EQ(phones().inputs_dropped, 0u);

@@ -218,7 +218,7 @@ TEST(ServerProgram, EndsCleanlyOnSigtermWithASummaryAndItsFigures) {
   ASSERT_TRUE(client.join());
   ASSERT_TRUE(client.snapshot());
   server->kill(SIGTERM);
-  EXPECT_TRUE(client.hear_a<wire::Bye>());
+  EXPECT_TRUE(client.receive_a<wire::Bye>());
   EXPECT_EQ(server->wait(), 0) << server->output();
   for (const char* line : {"score ", "ticks ", "lateness ", "tick cost ", "sending ", "snapshots ",
                            "device     serial:/dev/no-such-tty: 0 frames"}) {
@@ -255,7 +255,7 @@ TEST(ServerProgram, AfterAStallAPlayerGetsItsTeamThoughItsGivenUpAttemptsWaitBef
   const auto before = player.join(0);
   ASSERT_TRUE(before);
   ASSERT_TRUE(server->suspend());
-  player.say(wire::Ping{1});
+  player.send(wire::Ping{1});
   player.leave();
   for (int attempt = 0; attempt < 10; ++attempt) {
     ProbeClient ghost(server.port());
@@ -263,15 +263,15 @@ TEST(ServerProgram, AfterAStallAPlayerGetsItsTeamThoughItsGivenUpAttemptsWaitBef
     wire::Hello hello = ghost.hello(0);
     hello.session = before->session;
     hello.ticket = before->token;
-    ghost.say(hello);
+    ghost.send(hello);
   }
   ProbeClient again(server.port());
   wire::Hello hello = again.hello(0);
   hello.session = before->session;
   hello.ticket = before->token;
-  ASSERT_TRUE(again.say(hello));
+  ASSERT_TRUE(again.send(hello));
   server->kill(SIGCONT);
-  const auto answer = again.hear();
+  const auto answer = again.receive();
   ASSERT_TRUE(answer);
   EXPECT_TRUE(std::holds_alternative<wire::Welcome>(*answer)) << server->output();
 }

@@ -42,7 +42,7 @@ class QuestionnaireTest : public testing::Test {
     };
     for (int i = 0; i < 2; ++i) {
       const auto before = table->counters().control.requests;
-      player.say(wire::MatchRequest{number(wire::RequestKind::push), 0, 0});
+      player.send(wire::MatchRequest{number(wire::RequestKind::push), 0, 0});
       if (!played_until([&] { return table->counters().control.requests > before; })) return false;
       table.tick(3);
     }
@@ -65,19 +65,19 @@ TEST_F(QuestionnaireTest, WhoHasPlayedIsAskedAndTheAnswersAreKeptWithTheMatch) {
     ASSERT_TRUE(watcher.join());
     for (std::uint32_t match = 1; match <= 2; ++match) {
       ASSERT_TRUE(play_to_the_end(table, player, *seat));
-      const auto asked = player.hear_a<wire::Questionnaire>();
+      const auto asked = player.receive_a<wire::Questionnaire>();
       ASSERT_TRUE(asked);
       EXPECT_EQ(asked->match, match);
       EXPECT_EQ(asked->rods, rods_of_team(foosball::Layout::tournament, 0));
-      if (match == 2) player.say(wire::Answers{match, asked->rods, kScores});
+      if (match == 2) player.send(wire::Answers{match, asked->rods, kScores});
       ASSERT_TRUE(
           table.tick_until([&] { return table->match().view().screen == foosball::Screen::logo; }));
     }
     ASSERT_TRUE(table.tick_until([&] { return table->counters().answers_kept == 1; }));
-    EXPECT_FALSE(watcher.hear_a<wire::Questionnaire>(50)) << "a watcher has not played";
+    EXPECT_FALSE(watcher.receive_a<wire::Questionnaire>(50)) << "a watcher has not played";
     for (ProbeClient* client : {&player, &watcher}) {
       const auto& report = client->report();
-      ASSERT_TRUE(table.tick_until([&] { return client->hear(1), report.has_value(); }))
+      ASSERT_TRUE(table.tick_until([&] { return client->receive(1), report.has_value(); }))
           << "all see the result";
       EXPECT_LE(report->match, 2u);
       EXPECT_EQ(report->fame.size(), 2u);
@@ -100,13 +100,13 @@ TEST_F(QuestionnaireTest, ForgedAndRepeatedAnswersAreRefusedAndSaidSo) {
     const auto seat = player.join(0);
     ASSERT_TRUE(seat);
     ASSERT_TRUE(watcher.join());
-    player.say(wire::Answers{1, rods, kScores});
+    player.send(wire::Answers{1, rods, kScores});
     EXPECT_NE(notice_of(player).find("not the one"), std::string::npos) << "before any match";
     ASSERT_TRUE(play_to_the_end(table, player, *seat));
-    ASSERT_TRUE(player.hear_a<wire::Questionnaire>());
+    ASSERT_TRUE(player.receive_a<wire::Questionnaire>());
     const auto refused = [&](ProbeClient& client, const wire::Answers& answers) {
-      client.say(answers);
-      const auto notice = client.hear_a<wire::Notice>();
+      client.send(answers);
+      const auto notice = client.receive_a<wire::Notice>();
       return notice && notice->topic == wire::kAnswersTopic;
     };
     EXPECT_TRUE(refused(watcher, {1, rods, kScores})) << "of others' rods";
@@ -115,8 +115,8 @@ TEST_F(QuestionnaireTest, ForgedAndRepeatedAnswersAreRefusedAndSaidSo) {
     EXPECT_TRUE(refused(player, {1, other, kScores})) << "of the computer's rods";
     EXPECT_TRUE(refused(player, {1, RodSet(rods | other), kScores}));
     EXPECT_TRUE(refused(player, {1, rods, {}})) << "nothing was answered";
-    player.say(wire::Answers{1, one, kScores});
-    player.say(wire::Answers{1, rest, kScores});  // two people at one client
+    player.send(wire::Answers{1, one, kScores});
+    player.send(wire::Answers{1, rest, kScores});  // two people at one client
     EXPECT_TRUE(refused(player, {1, one, kScores})) << "twice";
     EXPECT_TRUE(refused(player, {1, rods, kScores})) << "twice";
     ASSERT_TRUE(table.tick_until([&] { return table->counters().answers_kept == 2; }));
@@ -131,12 +131,12 @@ TEST_F(QuestionnaireTest, AnswersThatAreNoneEndTheConnection) {
   const auto seat = player.join(0);
   ASSERT_TRUE(seat);
   ASSERT_TRUE(play_to_the_end(table, player, *seat));
-  const auto asked = player.hear_a<wire::Questionnaire>();
+  const auto asked = player.receive_a<wire::Questionnaire>();
   ASSERT_TRUE(asked);
   wire::Answers forged{asked->match, asked->rods, kScores};
   forged.scores[3] = wire::kMaxScore + 1;
-  player.say(forged);
-  const auto refusal = player.hear_a<wire::Refusal>();
+  player.send(forged);
+  const auto refusal = player.receive_a<wire::Refusal>();
   ASSERT_TRUE(refusal);
   EXPECT_EQ(refusal->code, Code::bad_message);
   EXPECT_TRUE(player.sees_close());
@@ -155,7 +155,7 @@ TEST_F(QuestionnaireTest, NobodyIsAskedWithoutAFileOrWhereItIsTurnedOff) {
     ASSERT_TRUE(seat);
     ASSERT_TRUE(play_to_the_end(table, player, *seat));
     table.tick(5);
-    EXPECT_FALSE(player.hear_a<wire::Questionnaire>(50)) << file;
+    EXPECT_FALSE(player.receive_a<wire::Questionnaire>(50)) << file;
   }
 }
 
@@ -169,7 +169,7 @@ TEST_F(QuestionnaireTest, TheResultNamesAllPeopleAtOneWindow) {
     wire::Names names{"Ann", {}};
     names.players[static_cast<std::size_t>(
         foosball::rods_of_team(foosball::table_spec(foosball::MatchDesc{}.layout), 0)[3])] = "Ben";
-    window.say(names);
+    window.send(names);
     ASSERT_TRUE(window.catch_up());
     ASSERT_TRUE(play_to_the_end(table, window, *seat));
     table->finish(wire::Sentence::untranslated("done"));
@@ -195,7 +195,7 @@ TEST_F(QuestionnaireTest, AMatchThatIsShownIsNotKeptAndNobodyIsAsked) {
     return table->match().view().attract && table->match().view().screen == foosball::Screen::end;
   }));
   table.tick(5);
-  EXPECT_FALSE(player.hear_a<wire::Questionnaire>(50));
+  EXPECT_FALSE(player.receive_a<wire::Questionnaire>(50));
   table->finish(wire::Sentence::untranslated("done"));
   EXPECT_EQ(table->counters().results_kept, 0u);
 }

@@ -71,7 +71,7 @@ Recorded record(int ticks) {
         return c.requests + c.requests_dropped;  // in case ticks run too fast
       };
       const std::uint64_t before = asked();
-      player.say(
+      player.send(
           wire::MatchRequest{static_cast<std::uint8_t>(foosball::Command::Kind::push), 0, 0});
       EXPECT_TRUE(table.wait_until([&] { return asked() > before; }));
     }
@@ -132,8 +132,8 @@ TEST(Recording, ServesAReplayAsIfLive) {
   Lockstep table([&](ServerOptions& o) { o.replay = Playback::open(live.path).value(); });
   ProbeClient watcher(table.port()), player(table.port());
   ASSERT_TRUE(watcher.join());
-  player.say(player.hello(0));
-  EXPECT_EQ(player.hear_a<wire::Refusal>().value_or(wire::Refusal{}).code,
+  player.send(player.hello(0));
+  EXPECT_EQ(player.receive_a<wire::Refusal>().value_or(wire::Refusal{}).code,
             wire::Refusal::Code::team_taken);
   table.tick();
   const auto first = watcher.snapshot();
@@ -293,7 +293,7 @@ TEST(Recording, GoesOnPlayingWhenTheDiskIsFull) {
   ASSERT_TRUE(watcher.join());
   ASSERT_TRUE(table.tick_until([&] { return !table->journal_problem().empty(); }));
   table.tick();
-  const auto notice = watcher.hear_a<wire::Notice>();
+  const auto notice = watcher.receive_a<wire::Notice>();
   ASSERT_TRUE(notice);
   EXPECT_NE(notice->text.find("ended early: No space left"), std::string::npos);
   const std::uint64_t before = table->counters().ticks;
@@ -358,7 +358,7 @@ TEST(Results, ThatCannotBeKeptAreToldAndStopNothing) {
   ASSERT_TRUE(watcher.join());
   ASSERT_TRUE(table.tick_until([&] { return !table->results_problem().empty(); }));
   table.tick(3);
-  const auto notice = watcher.hear_a<wire::Notice>();
+  const auto notice = watcher.receive_a<wire::Notice>();
   ASSERT_TRUE(notice);
   EXPECT_NE(notice->text.find("/nowhere/results.sqlite"), std::string::npos);
   const std::uint64_t before = table->counters().ticks;

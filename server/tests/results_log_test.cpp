@@ -57,9 +57,9 @@ TEST(ResultsLog, TellsOnceThatTheFileIsDamagedAndTakesItWhenItIsMendedWithWhatWa
   wire::Sentence reported;
   while (!log.problem_changed(reported) && std::chrono::steady_clock::now() < until) {
   }
-  EXPECT_EQ(reported,
-            wire::say<wire::Said::results_not_kept>(wire::say<wire::Said::results_problem>(
-                path, wire::say<wire::Said::results_no_database>())))
+  EXPECT_EQ(reported, wire::make_sentence<wire::SentenceId::results_not_kept>(
+                          wire::make_sentence<wire::SentenceId::results_problem>(
+                              path, wire::make_sentence<wire::SentenceId::results_no_database>())))
       << reported.text() << ": clients know the store's sentence";
   EXPECT_FALSE(log.problem_changed(reported));
   log.add(won());

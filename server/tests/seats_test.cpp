@@ -267,7 +267,7 @@ struct DeskTest : testing::Test {
     }
     return text;
   }
-  void hear(std::uint32_t client, RodSet rods) {
+  void receive(std::uint32_t client, RodSet rods) {
     wire::InputDatagram in;
     in.sequence = ++sequence;
     for (auto& rod : in.rods) rod = {true, 0.0f, 0.0, 0.0f, 0.0f};
@@ -297,9 +297,9 @@ TEST_F(DeskTest, TheComputerHasATeamUntilAPersonHasARodOfIt) {
   drivers();
   EXPECT_EQ(drivers(), of(all0, 'C'));
   const RodSet one = RodSet(all0 & -all0), rest = RodSet(all0 & ~one);
-  hear(1, one);
+  receive(1, one);
   EXPECT_EQ(drivers(), of(one, 'c')) << "the others of the team stand";
-  hear(2, rest);
+  receive(2, rest);
   EXPECT_EQ(drivers(), of(all0, 'c'));
   desk.seat(1, 0, 0);
   EXPECT_EQ(drivers(), of(rest, 'c'));
@@ -311,7 +311,7 @@ TEST_F(FillingDesk, TheComputerFillsATeamIfTheHostSaysSo) {
   const RodSet all0 = rods_of_team(foosball::MatchDesc{}.layout, 0);
   const RodSet one = RodSet(all0 & -all0);
   drivers();
-  hear(1, one);
+  receive(1, one);
   const std::string who = drivers();
   for (std::size_t rod = 0; rod < 8; ++rod) {
     EXPECT_EQ(who[rod], (one >> rod & 1) ? 'c' : (all0 >> rod & 1) ? 'C' : '-');
@@ -339,7 +339,7 @@ void DeskTest::expect_no_choice_by_the_computer() {
 
 TEST_F(FillingDesk, TheComputerThatFillsLeavesTheChoiceOfACharacterToThePerson) {
   const RodSet all0 = rods_of_team(foosball::MatchDesc{}.layout, 0);
-  hear(1, RodSet(all0 & -all0));
+  receive(1, RodSet(all0 & -all0));
   drivers();
   expect_no_choice_by_the_computer();
 }
@@ -382,7 +382,7 @@ TEST(ComputerSource, HasOnlyTheRodsThatItPlays) {
 }
 
 TEST_F(DeskTest, EightClientsMayHaveARodEach) {
-  for (std::uint32_t client = 1; client <= 8; ++client) hear(client, RodSet(1u << (client - 1)));
+  for (std::uint32_t client = 1; client <= 8; ++client) receive(client, RodSet(1u << (client - 1)));
   EXPECT_EQ(drivers(), "cccccccc");
   EXPECT_EQ(desk.seat(9, 0, 0), nullptr);
   EXPECT_EQ(desk.remote(9), nullptr);

@@ -27,18 +27,18 @@ class StandIn : public testing::Test {
     return client.join(hello);
   }
   void begin_match(ProbeClient& pusher, std::uint8_t team = 1) {
-    pusher.say(wire::MatchRequest{number(wire::RequestKind::push), team, 0});
+    pusher.send(wire::MatchRequest{number(wire::RequestKind::push), team, 0});
     ASSERT_TRUE(table.tick_until(
         [&] { return table->match().view().screen == foosball::Screen::selection; }, 5000));
   }
   void request(ProbeClient& client, const wire::MatchRequest& asked) {
     const std::uint64_t before = table->counters().control.requests;
-    client.say(asked);
+    client.send(asked);
     ASSERT_TRUE(table.wait_until([&] { return table->counters().control.requests > before; }));
     table.tick(2);
   }
   void claim(ProbeClient& client, const wire::Claim& asked) {
-    client.say(asked);
+    client.send(asked);
     ASSERT_TRUE(client.catch_up());
     table.tick(3);
   }
@@ -52,21 +52,21 @@ class StandIn : public testing::Test {
     Hand hand{&client, {.session = seat.session, .token = seat.token, .sequence = 0}};
     for (wire::InputRod& rod : hand.input.rods) rod = {true, 0.0f, 0.0, 0.0f, 0.0f};
     hands.push_back(hand);
-    hear_hands();
+    receive_hands();
   }
   void lets_go(const ProbeClient& client) {
     std::erase_if(hands, [&](const Hand& hand) { return hand.client == &client; });
   }
-  void hear_hands() {
-    const std::uint64_t heard = table->counters().input.accepted;
+  void receive_hands() {
+    const std::uint64_t received = table->counters().input.accepted;
     for (Hand& hand : hands) {
       ++hand.input.sequence;
       if (hand.moves)
         for (wire::InputRod& rod : hand.input.rods) rod.slide = 0.01f - rod.slide;
       ASSERT_TRUE(hand.client->send_input(hand.input));
     }
-    ASSERT_TRUE(
-        table.tick_until([&] { return table->counters().input.accepted == heard + hands.size(); }));
+    ASSERT_TRUE(table.tick_until(
+        [&] { return table->counters().input.accepted == received + hands.size(); }));
   }
   // Ann has team 0, Bob team 1, and both send. Returns her Welcome; none if it failed.
   auto play_both(ProbeClient& ann, ProbeClient& bob) {
@@ -83,7 +83,7 @@ class StandIn : public testing::Test {
   void pass(std::int64_t us) {
     for (constexpr std::int64_t kEveryUs = 100'000; us > 0; us -= kEveryUs) {
       table.tick(static_cast<int>(std::min(us, kEveryUs) / 1000));
-      hear_hands();
+      receive_hands();
     }
   }
   std::uint8_t source(ProbeClient& at, int rod) {
@@ -173,7 +173,7 @@ TEST_F(StandIn, OffersALeaversRodsToTheTeamMateFirst) {
   EXPECT_TRUE(
       logged("reserved for the team for 10 s, then played by the computer: rods 1 for Ann"));
   EXPECT_EQ(source(carl, goalie), kNone);
-  bob.say(wire::Claim{all0});
+  bob.send(wire::Claim{all0});
   ASSERT_TRUE(bob.catch_up());
   table.tick(2);
   EXPECT_TRUE(logged("no rods are offered any more"));
@@ -263,7 +263,7 @@ TEST_F(StandIn, OffersTheRodsThatAreGivenUpToTheTeamMateFirst) {
   plays(bob, *mate);
   plays(carl, *opponent);
   begin_match(carl);
-  ann.say(wire::Claim{0, wire::kWatchOnly});
+  ann.send(wire::Claim{0, wire::kWatchOnly});
   EXPECT_TRUE(
       logged("reserved for the team for 10 s, then played by the computer: rods 1 for Ann"));
   EXPECT_EQ(source(carl, goalie), kNone);
@@ -301,7 +301,7 @@ TEST_F(StandIn, PlaysForAClientThatFellSilentThoughItsConnectionStands) {
   pass(RodDesk::kStandInAfterUs + 10'000);
   EXPECT_EQ(source(bob, goalie), kComputer);
   hands.push_back(hand);
-  hear_hands();
+  receive_hands();
   EXPECT_EQ(source(bob, goalie), kClient) << "heard again, it has its rods in that tick";
 }
 
@@ -312,7 +312,7 @@ TEST_F(StandIn, PlaysForOneWhoIsThereAndMovesNothingInPlay) {
   begin_match(bob);
   for (ProbeClient* client : {&ann, &bob}) {
     const auto team = static_cast<std::uint8_t>(client == &ann ? 0 : 1);
-    client->say(wire::MatchRequest{number(wire::RequestKind::push), team, 0});
+    client->send(wire::MatchRequest{number(wire::RequestKind::push), team, 0});
   }
   ASSERT_TRUE(
       table.tick_until([&] { return table->match().view().screen == foosball::Screen::play; }));
@@ -340,10 +340,10 @@ TEST_F(Alone, AGapInTheOnlyPlayersLineCostsNoGoals) {
   ASSERT_TRUE(seat);
   plays(ann, *seat);
   begin_match(ann, 0);
-  ann.say(wire::MatchRequest{number(wire::RequestKind::push), 0, 0});
+  ann.send(wire::MatchRequest{number(wire::RequestKind::push), 0, 0});
   ASSERT_TRUE(
       table.tick_until([&] { return table->match().view().screen == foosball::Screen::play; }));
-  hear_hands();
+  receive_hands();
   const Hand hand = hands.front();
   lets_go(ann);
   pass(RodDesk::kStandInAfterUs / 2);
@@ -368,10 +368,10 @@ TEST_F(Alone, APausePlayersAskedForOutlastsTheirSilence) {
   ASSERT_TRUE(seat);
   plays(ann, *seat);
   begin_match(ann, 0);
-  ann.say(wire::MatchRequest{number(wire::RequestKind::push), 0, 0});
+  ann.send(wire::MatchRequest{number(wire::RequestKind::push), 0, 0});
   ASSERT_TRUE(
       table.tick_until([&] { return table->match().view().screen == foosball::Screen::play; }));
-  hear_hands();
+  receive_hands();
   // A reconnection before the silence, and during it.
   for (const bool silent_first : {false, true}) {
     const Hand hand = hands.front();
@@ -401,7 +401,7 @@ TEST_F(Alone, NobodyIsHeardSoNobodyGoesOn) {
   request(ann, {number(wire::RequestKind::push), 0, 0});
   ASSERT_TRUE(
       table.tick_until([&] { return table->match().view().screen == foosball::Screen::play; }));
-  hear_hands();
+  receive_hands();
   lets_go(ann);
   pass(RodDesk::kStandInAfterUs + 100'000);
   request(ann, {number(wire::RequestKind::pause), 0, 0});
@@ -433,7 +433,7 @@ class StandInResults : public StandIn {
     begin_match(carl);
     for (ProbeClient* one_of : {&bob, &carl}) {
       const auto team = static_cast<std::uint8_t>(one_of == &bob ? 0 : 1);
-      one_of->say(wire::MatchRequest{number(wire::RequestKind::push), team, 0});
+      one_of->send(wire::MatchRequest{number(wire::RequestKind::push), team, 0});
     }
     ASSERT_TRUE(
         table.tick_until([&] { return table->match().view().screen == foosball::Screen::play; }));
@@ -491,7 +491,7 @@ TEST_F(StandInResultsOfGuests, AreNoDefeatForWhoIsPutOut) {
   ASSERT_TRUE(ann.prove("open sesame") && bob.prove("open sesame"));
   ASSERT_TRUE(carl.prove("mine", wire::Role::host));
   begin_three();
-  carl.say(wire::Kick{ann_id});
+  carl.send(wire::Kick{ann_id});
   ASSERT_TRUE(table.tick_until([&] { return table->clients() == 2; }));
   lets_go(ann);
   ASSERT_TRUE(end());

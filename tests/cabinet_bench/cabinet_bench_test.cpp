@@ -180,7 +180,7 @@ struct Books {
       frame.present = present;
       frame.time_us = static_cast<std::uint32_t>(now_us);
       ++frame.sequence;
-      ledger.heard(frame, now_us);
+      ledger.record(frame, now_us);
       frame.quality = 0;
     }
   }

@@ -106,15 +106,15 @@ class Workshop {
     table_.move(poses);
     table_.pass(controller_);
     for (const Packet& packet : controller_.take_packets()) {
-      frames_.take(packet.bytes, [this](const wire::DeviceFrame& frame) { hear(frame); });
+      frames_.take(packet.bytes, [this](const wire::DeviceFrame& frame) { receive(frame); });
     }
   }
-  void hear(const wire::DeviceFrame& frame) {
+  void receive(const wire::DeviceFrame& frame) {
     const auto counts = [](std::uint16_t from, std::uint16_t to) {
       return static_cast<std::int16_t>(static_cast<std::uint16_t>(to - from));
     };
     for (std::size_t i = 0; i < places_.size(); ++i) {
-      places_[i]->session.hear(frame);
+      places_[i]->session.update(frame);
       if (!last_) continue;
       places_[i]->hand.increments.push_back(
           {counts(last_->slide[i], frame.slide[i]), counts(last_->spin[i], frame.spin[i]),

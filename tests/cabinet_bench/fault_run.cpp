@@ -56,7 +56,7 @@ FaultResult run_faults(Controller& controller, const FaultOptions& options) {
     for (int rod = 0; rod < cabinet::kRods; ++rod) ledger.told(rod, controller.take_told(rod));
     for (const Packet& packet : controller.take_packets()) {
       frames.take(packet.bytes,
-                  [&](const wire::DeviceFrame& frame) { ledger.heard(frame, packet.time_us); });
+                  [&](const wire::DeviceFrame& frame) { ledger.record(frame, packet.time_us); });
     }
   }
   result.totals = ledger.totals();

@@ -21,7 +21,7 @@ void Ledger::told(int rod, const std::vector<Told>& told) {
   r.told.insert(r.told.end(), told.begin(), told.end());
 }
 
-void Ledger::heard(const wire::DeviceFrame& frame, std::int64_t now_us) {
+void Ledger::record(const wire::DeviceFrame& frame, std::int64_t now_us) {
   ++totals_.frames;
   note_faults(frame, now_us);
   for (int rod = 0; rod < cabinet::kRods; ++rod) judge(rod, frame, now_us);

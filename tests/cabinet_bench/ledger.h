@@ -29,7 +29,7 @@ class Ledger {
   };
 
   void told(int rod, const std::vector<Told>& told);
-  void heard(const wire::DeviceFrame& frame, std::int64_t now_us);
+  void record(const wire::DeviceFrame& frame, std::int64_t now_us);
   const Totals& totals() const { return totals_; }
   const std::vector<std::string>& violations() const { return violations_; }
 

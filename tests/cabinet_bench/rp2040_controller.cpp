@@ -88,22 +88,22 @@ class Script {
  private:
   std::string answer() {
     for (;;) {
-      const std::size_t end = heard_.find('\n');
+      const std::size_t end = received_.find('\n');
       if (end != std::string::npos) {
-        std::string line = heard_.substr(0, end);
-        heard_.erase(0, end + 1);
+        std::string line = received_.substr(0, end);
+        received_.erase(0, end + 1);
         return line;
       }
       char piece[65536];
       const ssize_t got = ::read(from_.get(), piece, sizeof piece);
       if (got <= 0) throw std::runtime_error("the simulator of the RP2040 has ended");
-      heard_.append(piece, static_cast<std::size_t>(got));
+      received_.append(piece, static_cast<std::size_t>(got));
     }
   }
 
   pid_t pid_ = -1;
   os::FileDescriptor to_, from_;
-  std::string heard_;
+  std::string received_;
 };
 
 class Rp2040Controller final : public Controller {

@@ -26,8 +26,8 @@
 #include "os/time_of_day.h"
 #include "render/translate.h"
 #include "session.h"
+#include "text.h"
 #include "view.h"
-#include "words.h"
 
 namespace {
 
@@ -104,7 +104,7 @@ class Run {
   }
   void step() {
     session_.line_is(listener_.state(), listener_.error());
-    for (const wire::DeviceFrame& frame : listener_.take()) session_.hear(frame);
+    for (const wire::DeviceFrame& frame : listener_.take()) session_.update(frame);
     keep();
   }
   // Stores each rod as soon as it is fitted, so that an aborted calibration keeps the finished
@@ -149,16 +149,16 @@ class Terminal {
  private:
   void tell() {
     Session& s = run_.session();
-    std::string now = rod_words(run_.view().layout, s.rod()) + "  ";
+    std::string now = rod_text(run_.view().layout, s.rod()) + "  ";
     if (s.state(s.rod()) == RodState::guided)
       now += std::to_string(s.guide().step() + 1) + "/" +
              std::to_string(cabinet::CalibrationGuide::steps()) + "  ";
-    now += request_words(s);
-    if (const std::string advice = advice_words(s); !advice.empty()) now += "  " + advice;
+    now += request_text(s);
+    if (const std::string advice = advice_text(s); !advice.empty()) now += "  " + advice;
     if (now != printed_) std::printf("%s\n", now.c_str());
     const bool fits = s.state(s.rod()) == RodState::fitted;
     if (now != printed_ && fits)
-      for (const std::string& line : fit_words(*s.fit())) std::printf("    %s\n", line.c_str());
+      for (const std::string& line : fit_text(*s.fit())) std::printf("    %s\n", line.c_str());
     if (now != printed_ && fits && !run_.view().problem.empty())
       std::printf("%s\n", run_.view().problem.c_str());
     std::fflush(stdout);

@@ -60,13 +60,13 @@ class Program {
   // By now, or within 10 ms.
   bool has_said(const std::string& text) {
     pollfd ready{words_, POLLIN, 0};
-    if (poll(&ready, 1, 10) > 0) hear();
+    if (poll(&ready, 1, 10) > 0) read_output();
     return said_.find(text) != std::string::npos;
   }
   // After the text found last.
   bool says(const std::string& text) {
     while (said_.find(text, found_) == std::string::npos)
-      if (!hear()) return false;
+      if (!read_output()) return false;
     found_ = said_.find(text, found_) + text.size();
     return true;
   }
@@ -82,11 +82,11 @@ class Program {
  private:
   // False: the output continues for longer than the time limit.
   bool says_its_last() {
-    while (hear()) {
+    while (read_output()) {
     }
     return ended_;
   }
-  bool hear() {
+  bool read_output() {
     pollfd ready{words_, POLLIN, 0};
     char bytes[4096];
     if (poll(&ready, 1, 20'000) <= 0) return false;

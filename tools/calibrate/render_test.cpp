@@ -33,14 +33,14 @@ class Moments {
     Person person(guide, rod, options);
     SimulatedDevice device;
     session_.line_is(cabinet::DeviceState::live, 0);
-    session_.hear(device.frame(5'000));
+    session_.update(device.frame(5'000));
     int step = -1;
     person.on_counts = [&](const cabinet::CountIncrement& c) {
       device.slide[0] += c.slide;
       device.spin[0] += c.spin;
       wire::DeviceFrame frame = device.frame(5'000);
       frame.index = c.mark ? 1 : 0;
-      session_.hear(frame);
+      session_.update(frame);
       const bool half_way = guide.step() != step && !guide.finished() && guide.progress() > 0.5;
       if (!half_way) return;
       step = guide.step();
@@ -52,7 +52,7 @@ class Moments {
     session_.back();
     for (int i = 0; i < 40; ++i) {
       device.slide[6] += 7;
-      session_.hear(device.frame(5'000));
+      session_.update(device.frame(5'000));
     }
     look_(session_);  // another rod moves
   }

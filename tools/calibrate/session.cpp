@@ -45,24 +45,24 @@ void Session::line_is(cabinet::DeviceState state, int error) {
 }
 
 // After a restart of the controller or an absence of a sensor, the motion meanwhile is lost.
-void Session::hear(const wire::DeviceFrame& frame) {
+void Session::update(const wire::DeviceFrame& frame) {
   ++frames_;
-  if (heard_) {
+  if (received_) {
     const auto elapsed = static_cast<std::int32_t>(frame.time_us - last_.time_us);
     const bool answered = (last_.present & frame.present) >> rod() & 1;
     const bool follows = elapsed > 0 && elapsed <= kLongestGapUs;
-    if (follows) hear_increments(frame, elapsed * 1e-6);
+    if (follows) add_increments(frame, elapsed * 1e-6);
     if ((!follows || !answered) && states_[index(rod())] == RodState::guided && guide_.step() > 0) {
       begin_rod();
       interrupted_ = true;
     }
   }
   last_ = frame;
-  heard_ = true;
+  received_ = true;
   if (states_[index(rod())] == RodState::guided && guide_.finished()) fit_run();
 }
 
-void Session::hear_increments(const wire::DeviceFrame& frame, double seconds) {
+void Session::add_increments(const wire::DeviceFrame& frame, double seconds) {
   seconds_ += seconds;
   for (int r = 0; r < cabinet::kRods; ++r) {
     if (((last_.present & frame.present) >> r & 1) == 0) continue;

@@ -39,7 +39,7 @@ class Session {
  public:
   explicit Session(const SessionOptions& options);
 
-  void hear(const wire::DeviceFrame& frame);
+  void update(const wire::DeviceFrame& frame);
   // Sets the state of the controller's line. error: errno of an attempt to open it.
   void line_is(cabinet::DeviceState state, int error);
   cabinet::DeviceState line() const { return line_; }
@@ -66,7 +66,7 @@ class Session {
   // Increases with each successful fit: there is something to store.
   int kept() const { return kept_; }
 
-  bool sensor_answers() const { return heard_ && (last_.present >> rod() & 1) != 0; }
+  bool sensor_answers() const { return received_ && (last_.present >> rod() & 1) != 0; }
   // The rod that moves instead of this one, or -1.
   int other_rod_moves() const;
   const std::deque<TracePoint>& trace() const { return trace_; }  // of this rod, over kTraceSeconds
@@ -77,7 +77,7 @@ class Session {
  private:
   static std::size_t index(int rod) { return static_cast<std::size_t>(rod); }
   void begin_rod();
-  void hear_increments(const wire::DeviceFrame& frame, double seconds);
+  void add_increments(const wire::DeviceFrame& frame, double seconds);
   void fit_run();
 
   foosball::Layout layout_;
@@ -93,7 +93,7 @@ class Session {
   wire::DeviceFrame last_{};
   cabinet::DeviceState line_ = cabinet::DeviceState::missing;
   int line_error_ = 0;
-  bool heard_ = false, interrupted_ = false;
+  bool received_ = false, interrupted_ = false;
   std::uint64_t frames_ = 0;
   double seconds_ = 0;
   std::deque<TracePoint> trace_;

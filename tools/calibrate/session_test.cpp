@@ -7,7 +7,7 @@
 
 #include "simulated_device.h"
 #include "simulated_person.h"
-#include "words.h"
+#include "text.h"
 
 namespace calibrate {
 namespace {
@@ -44,7 +44,7 @@ struct Table {
     wire::DeviceFrame frame =
         device.frame(static_cast<std::uint32_t>(std::lround(c.seconds * 1e6f)));
     if (mark) frame.index = static_cast<std::uint8_t>(1 << rod);
-    session.hear(frame);
+    session.update(frame);
   }
   void rest(double seconds) {
     for (int i = 0; i < seconds / 0.005; ++i) send(0, {0, 0, 0.005f});
@@ -70,7 +70,7 @@ TEST(CalibrationSession, LeadsThroughAllRodsAndKeepsWhatTheirSensorsCount) {
     table.calibrate(rod, mounts[rod]);
     ASSERT_EQ(table.session.state(rod), RodState::fitted) << rod << table.session.problem();
     EXPECT_EQ(table.session.kept(), rod + 1);
-    EXPECT_EQ(fit_words(*table.session.fit()).size(), 7u);
+    EXPECT_EQ(fit_text(*table.session.fit()).size(), 7u);
     table.session.confirm();
   }
   EXPECT_TRUE(table.session.all_fitted());
@@ -99,7 +99,7 @@ TEST(CalibrationSession, FindsTheIndexMarkOfARodThatHasOne) {
       EXPECT_NEAR(index->angle, 0.6, 0.03);
     }
     EXPECT_FALSE(table.session.calibration().rods[3].index);
-    const std::vector<std::string> words = fit_words(*table.session.fit());
+    const std::vector<std::string> words = fit_text(*table.session.fit());
     EXPECT_EQ(words.size(), 8u);
     EXPECT_NE(words[6].find(firm ? "index mark" : "its passes differ"), std::string::npos);
   }
@@ -137,7 +137,7 @@ TEST(CalibrationSession, ARunThatDoesNotFitIsRefusedAndBegunAnew) {
     table.session.confirm();
   ASSERT_EQ(table.session.state(0), RodState::refused);
   EXPECT_EQ(table.session.kept(), 0);
-  EXPECT_NE(request_words(table.session).find("The calibration run"), std::string::npos);
+  EXPECT_NE(request_text(table.session).find("The calibration run"), std::string::npos);
   table.session.confirm();
   EXPECT_EQ(table.session.state(0), RodState::guided);
   EXPECT_EQ(table.session.guide().step(), 0);
@@ -147,22 +147,22 @@ TEST(CalibrationSession, ARunThatDoesNotFitIsRefusedAndBegunAnew) {
 
 TEST(CalibrationSession, SaysWhichRodMovesAndWhichSensorIsSilent) {
   Table table;
-  EXPECT_NE(advice_words(table.session).find("is not connected"), std::string::npos);
+  EXPECT_NE(advice_text(table.session).find("is not connected"), std::string::npos);
   table.session.line_is(cabinet::DeviceState::refused, EBUSY);
-  EXPECT_NE(advice_words(table.session).find("Another program"), std::string::npos);
+  EXPECT_NE(advice_text(table.session).find("Another program"), std::string::npos);
   table.session.line_is(cabinet::DeviceState::garbled, 0);
-  EXPECT_NE(advice_words(table.session).find("no valid frames"), std::string::npos);
+  EXPECT_NE(advice_text(table.session).find("no valid frames"), std::string::npos);
   table.session.line_is(cabinet::DeviceState::live, 0);
   table.device.present = 0xFE;
   table.rest(0.1);
-  EXPECT_NE(advice_words(table.session).find("does not answer"), std::string::npos);
+  EXPECT_NE(advice_text(table.session).find("does not answer"), std::string::npos);
   table.device.present = 0xFF;
   table.rest(0.1);
-  EXPECT_EQ(advice_words(table.session), "");
+  EXPECT_EQ(advice_text(table.session), "");
   for (int i = 0; i < 40; ++i) table.send(6, {5, 0, 0.005f});
-  EXPECT_NE(advice_words(table.session).find("Rod 7 moves"), std::string::npos);
+  EXPECT_NE(advice_text(table.session).find("Rod 7 moves"), std::string::npos);
   table.rest(5);
-  EXPECT_EQ(advice_words(table.session), "");
+  EXPECT_EQ(advice_text(table.session), "");
 }
 
 // Its counts, clock and sequence restart at 0, which is no motion.
@@ -186,7 +186,7 @@ TEST(CalibrationSession, AControllerThatIsRestartedStartsTheRodAgain) {
     table.rest(0.1);
     EXPECT_TRUE(table.session.interrupted());
     EXPECT_EQ(table.session.guide().step(), 0);
-    EXPECT_NE(advice_words(table.session).find("start this rod again"), std::string::npos);
+    EXPECT_NE(advice_text(table.session).find("start this rod again"), std::string::npos);
     table.session.confirm();
     EXPECT_FALSE(table.session.interrupted());
   }

@@ -5,7 +5,7 @@
 
 #include "render/hud_screens.h"
 #include "render/translate.h"
-#include "words.h"
+#include "text.h"
 
 namespace calibrate {
 namespace {
@@ -120,13 +120,13 @@ void draw_session(client::UiBatch& ui, const Session& session, const ViewState& 
                   const glm::ivec2& screen) {
   const client::HudRegion region{glm::vec2(0.0f), glm::vec2(screen)};
   const HudPen pen = HudPen(ui, region, true).fitting(kWide + 20.0f, 700.0f);
-  pen.text(rod_words(state.layout, session.rod()), {Face::bold, 30.0f, 0.0f, Align::centre},
+  pen.text(rod_text(state.layout, session.rod()), {Face::bold, 30.0f, 0.0f, Align::centre},
            {0.0f, 48.0f}, kBright);
   draw_rods(pen, session, 66.0f);
   const bool guided = session.state(session.rod()) == RodState::guided;
   const Colour asked = session.state(session.rod()) == RodState::refused ? kBad : kBright;
-  float at = paragraph(pen, request_words(session), 26.0f, 110.0f, asked, Face::bold);
-  const std::string advice = advice_words(session);
+  float at = paragraph(pen, request_text(session), 26.0f, 110.0f, asked, Face::bold);
+  const std::string advice = advice_text(session);
   if (!advice.empty()) at = paragraph(pen, advice, 20.0f, at + 4.0f, kSpin);
   at = std::max(at + 16.0f, 250.0f);
   if (guided) {
@@ -141,7 +141,7 @@ void draw_session(client::UiBatch& ui, const Session& session, const ViewState& 
   if (const auto& fit = session.fit(); fit && !guided) {
     draw_residuals(pen, *fit, at, at + 130.0f);
     at += 152.0f;
-    const std::vector<std::string> lines = fit_words(*fit);
+    const std::vector<std::string> lines = fit_text(*fit);
     for (const std::string& line : lines) {
       pen.text(line, {Face::regular, 15.0f, 0.0f, Align::left}, {-kWide + 10.0f, at}, kDim);
       at += 20.0f;

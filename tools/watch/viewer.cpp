@@ -62,8 +62,8 @@ glm::vec2 pointer_at(GLFWwindow* window, double x, double y) {
   return {x * pixels_wide / std::max(wide, 1), y * pixels_high / std::max(high, 1)};
 }
 
-void listen_to(GLFWwindow* window, Events& heard) {
-  glfwSetWindowUserPointer(window, &heard);
+void listen_to(GLFWwindow* window, Events& input) {
+  glfwSetWindowUserPointer(window, &input);
   glfwSetKeyCallback(window, [](GLFWwindow* of, int key, int, int action, int mods) {
     if (action != GLFW_RELEASE) events_of(of).keys.push_back({key, (mods & GLFW_MOD_SHIFT) != 0});
   });

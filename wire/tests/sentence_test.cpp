@@ -11,13 +11,15 @@ namespace wire {
 namespace {
 
 TEST(Sentence, HasItsWordsInTheirPlaces) {
-  EXPECT_EQ(say<Said::player_lost>("Ann", "1 and 2", 30).text(),
+  EXPECT_EQ(make_sentence<SentenceId::player_lost>("Ann", "1 and 2", 30).text(),
             "Ann was lost: rods 1 and 2 are reserved for 30 s");
-  EXPECT_EQ(say<Said::player_lost>("%2", std::string("%1"), std::uint8_t{3}).text(),
+  EXPECT_EQ(make_sentence<SentenceId::player_lost>("%2", std::string("%1"), std::uint8_t{3}).text(),
             "%2 was lost: rods %1 are reserved for 3 s")
       << "a stranger's words are no form";
-  EXPECT_EQ(say<Said::computer_plays>(say<Said::rods_for>("3", "Bob")).text(),
-            "the computer plays rods 3 for Bob");
+  EXPECT_EQ(
+      make_sentence<SentenceId::computer_plays>(make_sentence<SentenceId::rods_for>("3", "Bob"))
+          .text(),
+      "the computer plays rods 3 for Bob");
 }
 
 // A client identifies the values by their order; a truncated form would lose some.

@@ -10,7 +10,7 @@ function say(word, text = '') {
 
 function* lines() {
   const bytes = Buffer.alloc(256);
-  let heard = '';
+  let received = '';
   for (;;) {
     let got;
     try {
@@ -20,8 +20,8 @@ function* lines() {
       throw error;
     }
     if (got === 0) return;
-    heard += bytes.toString('utf8', 0, got);
-    for (let at; (at = heard.indexOf('\n')) >= 0; heard = heard.slice(at + 1)) yield heard.slice(0, at);
+    received += bytes.toString('utf8', 0, got);
+    for (let at; (at = received.indexOf('\n')) >= 0; received = received.slice(at + 1)) yield received.slice(0, at);
   }
 }
 

@@ -39,7 +39,7 @@ class DevicesMenu {
 
   // Call each frame while the page is shown. True: send a request to the server.
   bool ask(std::int64_t now_us);
-  void hear(const wire::Devices& reported);
+  void update(const wire::Devices& reported);
   // Sets the joined session, and whether this client is its host.
   void follow(std::uint64_t session, bool host);
 

@@ -23,8 +23,8 @@ class GameMenu {
 
   // Takes the game that the server sent in this session; none: nothing yet. refused: why the server
   // rejected the last request, or empty.
-  void hear(std::uint64_t session, const std::optional<wire::Game>& reported, bool may_change,
-            const std::string& refused);
+  void update(std::uint64_t session, const std::optional<wire::Game>& reported, bool may_change,
+              const std::string& refused);
   int rows() const;
   MenuPage page(int chosen) const;
   // True: end the current match, because another game is waiting.

@@ -29,8 +29,8 @@ class TuningMenu {
 
   // Takes the tuning that the server sent in this session; none: nothing yet. Requests of another
   // session are dropped: a server that restarts has its own values.
-  void hear(std::uint64_t session, const std::optional<foosball::Tuning>& reported,
-            bool may_change);
+  void update(std::uint64_t session, const std::optional<foosball::Tuning>& reported,
+              bool may_change);
   void find_profiles();  // reads the directory again, for new files
   int rows() const;
   MenuPage page(int chosen) const;

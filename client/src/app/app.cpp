@@ -173,7 +173,7 @@ void App::log_when_synchronised(std::int64_t now) {
   awaiting_since_ = 0;
 }
 
-void App::hear(std::int64_t now) {
+void App::receive(std::int64_t now) {
   follow_connection();
   follow_roster();
   follow_phones();
@@ -207,7 +207,7 @@ void App::take_input(std::int64_t now) {
   if (replay_ && (events.push || events.pad_push)) reel_.skip();
   if (crew_) drive_rods(menu, now);
   window_->forget_input();
-  hear_of_pads();
+  report_pads();
 }
 
 void App::drive_rods(bool menu, std::int64_t now) {
@@ -405,7 +405,7 @@ void App::await_first_snapshot() {
   constexpr double kLook = 0.002;
   for (double waited = 0.0; waited < kPatience && !sample_.any; waited += kLook) {
     window_->wait(kLook);
-    hear(os::monotonic_us());
+    receive(os::monotonic_us());
   }
 }
 
@@ -423,7 +423,7 @@ int App::loop() {
     before = now;
     seconds_ = 1e-6 * static_cast<double>(now - began);
     meter_.begin(now);
-    hear(now);
+    receive(now);
     const std::int64_t input_us = os::monotonic_us();
     take_input(input_us);
     predict(input_us);

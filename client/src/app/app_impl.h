@@ -57,7 +57,7 @@ class App {
   void watch_recordings();
   void follow_watching();
   void turn_view();
-  void hear(std::int64_t now);
+  void receive(std::int64_t now);
   void follow_connection();
   void follow_roster();
   void learn_names();
@@ -75,7 +75,7 @@ class App {
   void tune(std::int64_t now);
   void choose_game(std::int64_t now);
   void watch_devices(std::int64_t now);
-  void hear_of_pads();
+  void report_pads();
   void tell(std::vector<std::string> lines);
   void shake_pads();
   void follow_phones();

@@ -177,9 +177,9 @@ void App::turn_view() {
 void App::tune(std::int64_t now) {
   if (!crew_ || status_.link != Link::joined) return;
   const auto reported = connection_->tuning();
-  menu_.tuning().hear(crew_->session(),
-                      reported ? std::optional(tuning_of(*reported)) : std::nullopt,
-                      status_.welcome.role == number(wire::Role::host));
+  menu_.tuning().update(crew_->session(),
+                        reported ? std::optional(tuning_of(*reported)) : std::nullopt,
+                        status_.welcome.role == number(wire::Role::host));
   for (const wire::MatchRequest& request : menu_.tuning().requests(now))
     connection_->request(crew_->session(), request);
 }
@@ -189,8 +189,8 @@ void App::choose_game(std::int64_t now) {
   std::string refused;
   for (const wire::Notice& notice : connection_->notices())
     if (notice.topic == wire::kGameAnswerTopic) refused = notice.text;
-  menu_.game().hear(crew_->session(), connection_->game(),
-                    status_.welcome.role == number(wire::Role::host), refused);
+  menu_.game().update(crew_->session(), connection_->game(),
+                      status_.welcome.role == number(wire::Role::host), refused);
   if (const auto game = menu_.game().ask(now)) connection_->choose(crew_->session(), *game);
 }
 
@@ -198,12 +198,12 @@ void App::watch_devices(std::int64_t now) {
   if (!crew_ || status_.link != Link::joined) return;
   DevicesMenu& devices = menu_.devices();
   devices.follow(crew_->session(), status_.welcome.role == number(wire::Role::host));
-  if (const auto reported = connection_->take_devices()) devices.hear(*reported);
+  if (const auto reported = connection_->take_devices()) devices.update(*reported);
   if (menu_.shows(Menu::Page::controllers) && devices.ask(now))
     connection_->ask_devices(crew_->session());
 }
 
-void App::hear_of_pads() {
+void App::report_pads() {
   if (auto news = window_->take_news(); !news.empty()) {
     for (const std::string& line : news) log_info(line);
     tell(std::move(news));

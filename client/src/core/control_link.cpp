@@ -344,8 +344,8 @@ bool ControlLink::handle(const wire::ControlMessage& message, std::int64_t now_u
 }
 
 void ControlLink::on_welcome(const wire::Welcome& welcome, std::int64_t now_us) {
-  const auto heard = listener_.join(welcome, server_, os::local_address(tcp_.get()));
-  if (!heard) return drop(heard.error(), now_us, true);
+  const auto joined = listener_.join(welcome, server_, os::local_address(tcp_.get()));
+  if (!joined) return drop(joined.error(), now_us, true);
   stage_ = Stage::joined;
   joined_at_us_ = now_us;
   const std::lock_guard lock(mutex_);

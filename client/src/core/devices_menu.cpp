@@ -58,7 +58,7 @@ bool DevicesMenu::ask(std::int64_t now_us) {
   return true;
 }
 
-void DevicesMenu::hear(const wire::Devices& reported) {
+void DevicesMenu::update(const wire::Devices& reported) {
   waits_ = false;
   answered_ = true;
   devices_.resize(reported.devices.size());

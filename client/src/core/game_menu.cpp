@@ -94,8 +94,8 @@ std::string minutes_text(std::uint32_t ms) {
 
 }  // namespace
 
-void GameMenu::hear(std::uint64_t session, const std::optional<wire::Game>& reported,
-                    bool may_change, const std::string& refused) {
+void GameMenu::update(std::uint64_t session, const std::optional<wire::Game>& reported,
+                      bool may_change, const std::string& refused) {
   if (session != session_) kept_ = {};
   if (session != session_ || !may_change || !reported) asking_ = false;
   session_ = session;

@@ -69,10 +69,10 @@ bool read_word(std::string_view text, const std::array<const char*, N>& words, E
   return true;
 }
 
-constexpr std::array<const char*, 3> kQualityWords{"auto", "low", "high"};
-constexpr std::array<const char*, kViews> kViewWords{"seat", "above", "follow", "spectator"};
-constexpr std::array<const char*, kRodsShown> kRodsWords{"table", "yes", "no"};
-constexpr std::array<const char*, kLanguages> kLanguageWords{"auto", "en", "ko", "de"};
+constexpr std::array<const char*, 3> kQualityValues{"auto", "low", "high"};
+constexpr std::array<const char*, kViews> kViewValues{"seat", "above", "follow", "spectator"};
+constexpr std::array<const char*, kRodsShown> kRodsValues{"table", "yes", "no"};
+constexpr std::array<const char*, kLanguages> kLanguageValues{"auto", "en", "ko", "de"};
 
 bool read_keys(std::string_view text, std::array<int, 2>& keys) {
   std::array<int, 2> read{};
@@ -108,7 +108,7 @@ std::string read_setting(std::string_view name, std::string_view value, Settings
   const auto flag = [&](bool& into) { return read_flag(value, into) ? "" : "yes or no"; };
   if (name == "volume") return read_float(value, 0, 1, s.volume) ? "" : "a number from 0 to 1";
   if (name == "quality")
-    return read_word(value, kQualityWords, s.quality) ? "" : "auto, low or high";
+    return read_word(value, kQualityValues, s.quality) ? "" : "auto, low or high";
   if (name == "text_scale")
     return read_float(value, kTextScale[0], kTextScale[1], s.text_scale)
                ? ""
@@ -117,10 +117,10 @@ std::string read_setting(std::string_view name, std::string_view value, Settings
   if (name == "reduced_shake") return flag(s.reduced_shake);
   if (name == "distinct_teams") return flag(s.distinct_teams);
   if (name == "language")
-    return read_word(value, kLanguageWords, s.language) ? "" : "auto, en, ko or de";
+    return read_word(value, kLanguageValues, s.language) ? "" : "auto, en, ko or de";
   if (name == "view")
-    return read_word(value, kViewWords, s.view) ? "" : "seat, above, follow or spectator";
-  if (name == "rods") return read_word(value, kRodsWords, s.rods) ? "" : "table, yes or no";
+    return read_word(value, kViewValues, s.view) ? "" : "seat, above, follow or spectator";
+  if (name == "rods") return read_word(value, kRodsValues, s.rods) ? "" : "table, yes or no";
   if (name == "hide_rods") {  // written by versions with only two choices
     bool hide = false;
     if (!read_flag(value, hide)) return "yes or no";
@@ -244,14 +244,14 @@ std::string format_settings(const Settings& s) {
   const auto yes_no = [](bool on) { return on ? "yes" : "no"; };
   out << "# Space Foosball: settings of the renderer, one a line. The game writes this file.\n";
   out << "volume = " << s.volume << "\n";
-  out << "quality = " << kQualityWords[static_cast<std::size_t>(s.quality)] << "\n";
+  out << "quality = " << kQualityValues[static_cast<std::size_t>(s.quality)] << "\n";
   out << "text_scale = " << s.text_scale << "\n";
   out << "reduced_flashes = " << yes_no(s.reduced_flashes) << "\n";
   out << "reduced_shake = " << yes_no(s.reduced_shake) << "\n";
   out << "distinct_teams = " << yes_no(s.distinct_teams) << "\n";
-  out << "language = " << kLanguageWords[static_cast<std::size_t>(s.language)] << "\n";
-  out << "view = " << kViewWords[static_cast<std::size_t>(s.view)] << "\n";
-  out << "rods = " << kRodsWords[static_cast<std::size_t>(s.rods)] << "\n";
+  out << "language = " << kLanguageValues[static_cast<std::size_t>(s.language)] << "\n";
+  out << "view = " << kViewValues[static_cast<std::size_t>(s.view)] << "\n";
+  out << "rods = " << kRodsValues[static_cast<std::size_t>(s.rods)] << "\n";
   out << "automatic_rod = " << yes_no(s.automatic_rod) << "\n";
   out << "goalie_follows = " << yes_no(s.goalie_follows) << "\n";
   out << "aim = " << yes_no(s.aim) << "\n";

@@ -51,7 +51,7 @@ tl::expected<void, std::string> SnapshotListener::join(const wire::Welcome& welc
   multicast_ = std::move(group);
   os::SocketAddress inputs = server;
   inputs.set_port(welcome.udp_port);
-  if (!hear_only(unicast_, inputs)) {
+  if (!accept_only_from(unicast_, inputs)) {
     return tl::unexpected("There is no route to the server's UDP port " + os::to_text(inputs) +
                           ": check this machine's network.");
   }

@@ -91,7 +91,7 @@ tl::expected<UdpSocket, std::string> open_udp(const os::SocketAddress& address) 
   return udp;
 }
 
-bool hear_only(const UdpSocket& udp, const os::SocketAddress& from) {
+bool accept_only_from(const UdpSocket& udp, const os::SocketAddress& from) {
   return ::connect(udp.fd.get(), from.generic(), from.size()) == 0;
 }
 

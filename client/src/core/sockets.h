@@ -43,7 +43,7 @@ os::SocketAddress own_address_for(const os::SocketAddress& server);
 tl::expected<UdpSocket, std::string> open_udp(const os::SocketAddress& address);
 // Connects the socket: from now on the kernel drops datagrams from other addresses and ports. May
 // be called again.
-bool hear_only(const UdpSocket& udp, const os::SocketAddress& from);
+bool accept_only_from(const UdpSocket& udp, const os::SocketAddress& from);
 // A socket that receives the multicast group, on the interface with the address `here`.
 tl::expected<UdpSocket, std::string> open_multicast(const std::string& group, std::uint16_t port,
                                                     const os::SocketAddress& here);

@@ -79,8 +79,8 @@ TuningMenu::TuningMenu(std::string directory) : directory_(std::move(directory))
   find_profiles();
 }
 
-void TuningMenu::hear(std::uint64_t session, const std::optional<foosball::Tuning>& reported,
-                      bool may_change) {
+void TuningMenu::update(std::uint64_t session, const std::optional<foosball::Tuning>& reported,
+                        bool may_change) {
   if (session != session_ || !may_change) wants_ = {};
   session_ = session;
   reported_ = reported;

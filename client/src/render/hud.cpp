@@ -8,7 +8,7 @@
 
 #include "foosball/table.h"
 #include "render/hud_screens.h"
-#include "render/match_words.h"
+#include "render/match_text.h"
 #include "render/scene.h"
 #include "render/sentences.h"
 #include "render/table_mesh.h"
@@ -314,10 +314,10 @@ void draw_match(const HudPen& pen, const HudState& hud, const glm::ivec2& screen
     case ScreenKind::play:
       break;
     case ScreenKind::ceremony:
-      draw_ceremony(pen, state, ceremony_words(hud), hud.replay, hud.still, above);
+      draw_ceremony(pen, state, ceremony_text(hud), hud.replay, hud.still, above);
       break;
     case ScreenKind::end:
-      draw_end(pen, state, end_words(hud, pen.left_is_team_0 ? 0 : 1), hud.statistics, hud.report,
+      draw_end(pen, state, end_text(hud, pen.left_is_team_0 ? 0 : 1), hud.statistics, hud.report,
                room);
       break;
   }

@@ -10,7 +10,7 @@
 #include "foosball/table.h"
 #include "foosball/tuning.h"
 #include "render/hud.h"
-#include "render/match_words.h"
+#include "render/match_text.h"
 #include "render/sentences.h"
 #include "render/translate.h"
 
@@ -375,7 +375,7 @@ void draw_selection(const HudPen& whole, const wire::Snapshot& state,
   }
 }
 
-void draw_ceremony(const HudPen& whole, const wire::Snapshot& state, const CeremonyWords& words,
+void draw_ceremony(const HudPen& whole, const wire::Snapshot& state, const CeremonyText& text,
                    bool replay, bool still, bool at_the_bottom) {
   const HudPen pen = whole.fitting(430.0f, 180.0f);
   const float grow = still ? 0.0f : 0.25f * std::exp(-7.0f * state.screen_seconds);
@@ -385,12 +385,12 @@ void draw_ceremony(const HudPen& whole, const wire::Snapshot& state, const Cerem
             {0.25f * ink.r, 0.25f * ink.g, 0.25f * ink.b, 0.80f});
   for (const float y : {top, top + high - 4.0f})
     pen.panel({-pen.half_width, y}, {pen.half_width, y + 4.0f}, 0.0f, ink);
-  pen.text(words.call, {Face::bold, 52.0f * (1.0f + grow), 0.14f, Align::right},
+  pen.text(text.call, {Face::bold, 52.0f * (1.0f + grow), 0.14f, Align::right},
            {-20.0f, top + 58.0f}, ink, 0.8f, 380.0f);
-  pen.text(words.line, {Face::bold, 22.0f, 0.02f, Align::left}, {10.0f, top + 34.0f}, kInk, 0.8f,
+  pen.text(text.line, {Face::bold, 22.0f, 0.02f, Align::left}, {10.0f, top + 34.0f}, kInk, 0.8f,
            400.0f);
-  pen.text(words.detail, {Face::regular, 18.0f, 0.0f, Align::left}, {10.0f, top + 62.0f}, kInk,
-           0.8f, 400.0f);
+  pen.text(text.detail, {Face::regular, 18.0f, 0.0f, Align::left}, {10.0f, top + 62.0f}, kInk, 0.8f,
+           400.0f);
   if (!replay) return;
   const float y = at_the_bottom ? top - 42.0f : top + high + 10.0f;
   pen.panel({-pen.half_width + 16.0f, y}, {-pen.half_width + 236.0f, y + 32.0f}, 8.0f, kPanel);
@@ -508,13 +508,13 @@ void draw_fame(const HudPen& whole, std::span<const wire::Fame> fame, float y) {
   }
 }
 
-void draw_end(const HudPen& whole, const wire::Snapshot& state, const EndWords& words,
+void draw_end(const HudPen& whole, const wire::Snapshot& state, const EndText& text,
               const std::array<TeamStatistics, 2>& statistics, const wire::Report* report,
               float room) {
   const auto team = static_cast<std::size_t>(state.last_scorer == 1);
   std::vector<EndRow> rows = end_rows(statistics);
   if (report != nullptr) take_report(rows, *report);
-  const float details = 26.0f * static_cast<float>(words.details.size());
+  const float details = 26.0f * static_cast<float>(text.details.size());
   constexpr float kHalf = 310.0f, kAround = 24.0f;
   const auto height_of = [&] { return 210.0f + details + 28.0f * static_cast<float>(rows.size()); };
   const auto fitted = [&] {
@@ -527,18 +527,18 @@ void draw_end(const HudPen& whole, const wire::Snapshot& state, const EndWords& 
   pen.panel({-half, top}, {half, top + height}, 20.0f, {0.03f, 0.045f, 0.07f, 0.86f});
   const bool drawn = state.score[0] == state.score[1];
   pen.panel({-half, top}, {half, top + height}, 20.0f, drawn ? kFaint : kTeamInk[team], 2.0f);
-  pen.text(words.title, {Face::bold, 50.0f, 0.04f, Align::centre}, {0.0f, top + 62.0f},
+  pen.text(text.title, {Face::bold, 50.0f, 0.04f, Align::centre}, {0.0f, top + 62.0f},
            drawn ? kInk : kTeamInk[team], 0.8f, 2.0f * half - 40.0f);
   const std::size_t left = pen.left_is_team_0 ? 0 : 1, right = 1 - left;
   const std::string result =
-      std::to_string(words.result[left]) + " : " + std::to_string(words.result[right]);
+      std::to_string(text.result[left]) + " : " + std::to_string(text.result[right]);
   pen.text(result, {Face::bold, 44.0f, 0.05f, Align::centre}, {0.0f, top + 116.0f}, kInk);
   for (const auto& [at, of] : {std::pair(-1.0f, left), std::pair(1.0f, right)}) {
     pen.text(team_with_mark(static_cast<int>(of)), {Face::bold, 19.0f, 0.04f, Align::centre},
              {at * 200.0f, top + 112.0f}, kTeamInk[of], 0.55f, 190.0f);
   }
   float y = top + 148.0f;
-  for (const std::string& detail : words.details) {
+  for (const std::string& detail : text.details) {
     pen.text(detail, {Face::bold, 18.0f, 0.02f, Align::centre}, {0.0f, y}, kWarning, 0.55f,
              2.0f * half - 40.0f);
     y += 26.0f;
@@ -551,7 +551,7 @@ void draw_end(const HudPen& whole, const wire::Snapshot& state, const EndWords& 
     pen.text(row.values[right], {Face::bold, 17.0f, 0.0f, Align::centre}, {200.0f, y}, kInk);
     y += 28.0f;
   }
-  pen.text(words.call, {Face::regular, 17.0f, 0.0f, Align::centre}, {0.0f, top + height - 20.0f},
+  pen.text(text.call, {Face::regular, 17.0f, 0.0f, Align::centre}, {0.0f, top + height - 20.0f},
            kFaint, 0.55f, 2.0f * half - 40.0f);
 }
 

@@ -15,8 +15,8 @@
 
 namespace client {
 
-struct CeremonyWords;  // render/match_words.h
-struct EndWords;
+struct CeremonyText;  // render/match_text.h
+struct EndText;
 
 inline const Colour kInk{0.90f, 0.94f, 0.98f, 1.0f};
 inline const Colour kFaint{0.66f, 0.73f, 0.80f, 0.95f};
@@ -79,11 +79,11 @@ void draw_selection(const HudPen& pen, const wire::Snapshot& state,
 // Half width of its title, and its bottom.
 glm::vec2 selection_title_size(const HudPen& pen);
 // A band at the upper or the lower edge: the field stays visible.
-void draw_ceremony(const HudPen& pen, const wire::Snapshot& state, const CeremonyWords& words,
+void draw_ceremony(const HudPen& pen, const wire::Snapshot& state, const CeremonyText& text,
                    bool replay, bool still, bool at_the_bottom);
 // report: as stored, or null: use what was observed here. room: height from the top down; if it is
 // small, fewer statistics are shown.
-void draw_end(const HudPen& pen, const wire::Snapshot& state, const EndWords& words,
+void draw_end(const HudPen& pen, const wire::Snapshot& state, const EndText& text,
               const std::array<TeamStatistics, 2>& statistics, const wire::Report* report,
               float room);
 // y: its upper edge. fame_height(): its height for this number of players.

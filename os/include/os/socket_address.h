@@ -37,9 +37,9 @@ class SocketAddress {
   // machine.
   std::string network() const;
   // Key of an owner who may have several addresses, for instance for one vote each: the network. If
-  // the network is also that of heard_at, the local address that received the peer (a neighbour on
+  // the network is also that of `local`, the address that received the peer (a neighbour on
   // the LAN), the machine.
-  std::string owner(const SocketAddress& heard_at) const;
+  std::string owner(const SocketAddress& local) const;
   std::string host() const;  // "127.0.0.1", "::1"
 
   const sockaddr_in& ipv4() const { return v4_; }   // precondition: !is_ipv6()

@@ -124,14 +124,14 @@ namespace wire {
 // clang-format on
 
 #define WIRE_NAME(name, form) name,
-enum class Said : std::uint8_t { WIRE_SENTENCES(WIRE_NAME) };
+enum class SentenceId : std::uint8_t { WIRE_SENTENCES(WIRE_NAME) };
 #undef WIRE_NAME
 #define WIRE_FORM(name, form) form,
 inline constexpr std::array kSentences{WIRE_SENTENCES(WIRE_FORM)};
 #undef WIRE_FORM
 
 // Number of placeholders of the form.
-constexpr int places_of(std::string_view form) {
+constexpr int count_placeholders(std::string_view form) {
   int places = 0;
   for (const char c : form) places += c == '%' ? 1 : 0;
   return places;
@@ -148,8 +148,8 @@ class Sentence {
   bool operator==(const Sentence&) const = default;
 
  private:
-  template <Said said, class... Words>
-  friend Sentence say(const Words&... words);
+  template <SentenceId id, class... Words>
+  friend Sentence make_sentence(const Words&... words);
   static Sentence filled(std::string_view form, std::initializer_list<std::string> words);
   static std::string word(const Sentence& sentence) { return sentence.text_; }
   static std::string word(std::string_view text) { return std::string(text); }
@@ -159,10 +159,10 @@ class Sentence {
 };
 
 // Fills the placeholders in order: texts, integers or sentences.
-template <Said said, class... Words>
-Sentence say(const Words&... words) {
-  constexpr std::string_view form = kSentences[static_cast<std::size_t>(said)];
-  static_assert(places_of(form) == sizeof...(Words), "a word for each place of the form");
+template <SentenceId id, class... Words>
+Sentence make_sentence(const Words&... words) {
+  constexpr std::string_view form = kSentences[static_cast<std::size_t>(id)];
+  static_assert(count_placeholders(form) == sizeof...(Words), "a word for each place of the form");
   return Sentence::filled(form, {Sentence::word(words)...});
 }
 

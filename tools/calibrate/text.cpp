@@ -1,4 +1,4 @@
-#include "words.h"
+#include "text.h"
 
 #include <algorithm>
 #include <array>
@@ -103,7 +103,7 @@ std::string row(const char* name, double value, double deviation, const char* un
 
 }  // namespace
 
-std::string rod_words(foosball::Layout layout, int rod) {
+std::string rod_text(foosball::Layout layout, int rod) {
   const foosball::TableSpec& table = foosball::table_spec(layout);
   const foosball::RodSpec& spec = table.rods[static_cast<std::size_t>(rod)];
   constexpr std::array<const char*, 4> kLines{N_("goalkeeper"), N_("defence"), N_("midfield"),
@@ -113,7 +113,7 @@ std::string rod_words(foosball::Layout layout, int rod) {
   return text + ", " + tr(spec.team == 0 ? N_("orange") : N_("blue"));
 }
 
-std::string request_words(const Session& session) {
+std::string request_text(const Session& session) {
   switch (session.state(session.rod())) {
     case RodState::refused:
       return session.problem() + " " + tr(N_("Press Enter to start this rod again."));
@@ -129,7 +129,7 @@ std::string request_words(const Session& session) {
   return with(tr(sentence(asked)), std::to_string(asked.times));
 }
 
-std::string advice_words(const Session& session) {
+std::string advice_text(const Session& session) {
   if (const char* line = line_sentence(session); *line != '\0') return tr(line);
   if (!session.sensor_answers())
     return tr(N_("The sensor of this rod does not answer: look at its cable."));
@@ -143,7 +143,7 @@ std::string advice_words(const Session& session) {
   return *text == '\0' ? "" : tr(text);
 }
 
-std::vector<std::string> fit_words(const cabinet::RodFit& fit) {
+std::vector<std::string> fit_text(const cabinet::RodFit& fit) {
   const cabinet::RodCalibration& c = fit.calibration;
   const auto& d = fit.deviation;
   // Of the larger component of each pair: a sensor may be mounted at any angle.

@@ -9,7 +9,7 @@
 #include "client/menu.h"
 #include "render/hud.h"
 #include "render/hud_replay.h"
-#include "render/match_words.h"
+#include "render/match_text.h"
 #include "render/table_mesh.h"
 #include "render/translate.h"
 #include "render_rig.h"
@@ -20,9 +20,9 @@ namespace client {
 namespace {
 
 // The text is the same at every quality.
-class RenderedWords : public RenderTest {};
+class RenderedText : public RenderTest {};
 
-TEST_P(RenderedWords, ScoreAndMessagesAreWritten) {
+TEST_P(RenderedText, ScoreAndMessagesAreWritten) {
   wire::Snapshot state = scripted_play(0.35), next = state;
   next.score[0] = 8;
   const glm::ivec2 left_figure{kSize.x / 2 - 40, 34}, right_figure{kSize.x / 2 + 40, 34};
@@ -41,7 +41,7 @@ TEST_P(RenderedWords, ScoreAndMessagesAreWritten) {
   EXPECT_GT(changed(scored, lost, {kSize.x / 2, static_cast<int>(0.42f * kSize.y)}, 60), 2000);
 }
 
-TEST_P(RenderedWords, OnlyWhoHasJoinedToWatchIsSaidToWatch) {
+TEST_P(RenderedText, OnlyWhoHasJoinedToWatchIsSaidToWatch) {
   const wire::Snapshot state = scripted_play(0.35);
   HudState refused;
   refused.connection_message = "The physics server at 127.0.0.1:7531 refuses";
@@ -51,7 +51,7 @@ TEST_P(RenderedWords, OnlyWhoHasJoinedToWatchIsSaidToWatch) {
   EXPECT_EQ(changed(plain, draw(state, refused), corner, 20), 0);
 }
 
-TEST_P(RenderedWords, EveryScreenHasItsWords) {
+TEST_P(RenderedText, EveryScreenHasItsWords) {
   for (std::uint8_t screen = 0; screen < 5; ++screen) {
     wire::Snapshot state = scripted_play(0.35);
     state.screen = screen;
@@ -61,7 +61,7 @@ TEST_P(RenderedWords, EveryScreenHasItsWords) {
   }
 }
 
-TEST_P(RenderedWords, APlayerIsToldTheKeysWhereAChoiceIsToBeMadeAndWhenAskingForThem) {
+TEST_P(RenderedText, APlayerIsToldTheKeysWhereAChoiceIsToBeMadeAndWhenAskingForThem) {
   const auto words = [&](const wire::Snapshot& state, int viewer_team, bool asked) {
     HudState hud;
     hud.viewer_team = viewer_team;
@@ -92,13 +92,14 @@ MenuPage menu_page(Menu::Page page) {
   static Crew crew(1, 0, foosball::Layout::tournament, 1);
   static Settings settings;
   Menu menu("/nowhere");
-  menu.tuning().hear(1, foosball::Tuning{}, true);
+  menu.tuning().update(1, foosball::Tuning{}, true);
   wire::Game game;
   game.waits = true;
   menu.devices().follow(1, true);
-  menu.devices().hear(scripted_devices(1.0));
-  menu.devices().hear(scripted_devices(1.5));
-  menu.game().hear(1, game, true, wire::say<wire::Said::challenge_characters>().text());
+  menu.devices().update(scripted_devices(1.0));
+  menu.devices().update(scripted_devices(1.5));
+  menu.game().update(1, game, true,
+                     wire::make_sentence<wire::SentenceId::challenge_characters>().text());
   menu.toggle(page);
   const Menu::Context context{settings, seats, &crew};
   menu.step({.down = page == Menu::Page::tuning ? 28 : 1}, 0, context);
@@ -127,7 +128,7 @@ void tell_all_rules(wire::Snapshot& state, HudState& hud, int which) {
 
 // Every screen, in windows of every shape, in each language, at the largest text: nothing extends
 // beyond an edge (except for the soft rim of a letter).
-TEST_P(RenderedWords, NothingWrittenIsCutInAnyWindow) {
+TEST_P(RenderedText, NothingWrittenIsCutInAnyWindow) {
   constexpr float kRim = 6.0f;  // [px]
   for (const char* language : {"en", "de", "ko"}) {
     use_language(language, CLIENT_CATALOGUES);
@@ -178,7 +179,7 @@ TEST_P(RenderedWords, NothingWrittenIsCutInAnyWindow) {
 
 // The possession clock takes no more space than the board. In the view from the seat, neither they
 // nor the lines that stay below them hide any possible position of the ball.
-TEST_P(RenderedWords, TheClockOfPossessionAndAGoldenGoalHideNoBall) {
+TEST_P(RenderedText, TheClockOfPossessionAndAGoldenGoalHideNoBall) {
   const auto& table = foosball::table_spec(foosball::Layout::tournament);
   UiBatch words = UiBatch::create(Font::load().value()).value();
   for (const glm::ivec2 size :
@@ -230,7 +231,7 @@ std::vector<glm::ivec2> added(const draw::Image& before, const draw::Image& afte
 
 // Hints, notices and keys are drawn beside the board, never over it, and in the view from above
 // never over the centre of the table.
-TEST_P(RenderedWords, NothingIsWrittenThroughTheScoreNorFromAboveOverTheGoals) {
+TEST_P(RenderedText, NothingIsWrittenThroughTheScoreNorFromAboveOverTheGoals) {
   for (const char* language : {"en", "de", "ko"}) {
     use_language(language, CLIENT_CATALOGUES);
     UiBatch words = UiBatch::create(Font::load({}, catalogue_file()).value()).value();
@@ -274,7 +275,7 @@ TEST_P(RenderedWords, NothingIsWrittenThroughTheScoreNorFromAboveOverTheGoals) {
 }
 
 // At the largest text too; in tall windows the lists use the height.
-TEST_P(RenderedWords, TheKeysOfTheSelectionCoverNobodysChoice) {
+TEST_P(RenderedText, TheKeysOfTheSelectionCoverNobodysChoice) {
   wire::Snapshot state = scripted_play(1.0), ready = state;
   state.screen = ready.screen = number(wire::Screen::selection);
   state.confirmed = {false, false};
@@ -304,7 +305,7 @@ TEST_P(RenderedWords, TheKeysOfTheSelectionCoverNobodysChoice) {
   use_language("en", CLIENT_CATALOGUES);
 }
 
-TEST_P(RenderedWords, TheKeysCanBeReadInANarrowWindow) {
+TEST_P(RenderedText, TheKeysCanBeReadInANarrowWindow) {
   constexpr glm::ivec2 kNarrow{480, 540};
   const wire::Snapshot state = scripted_play(0.35);
   for (const char* language : {"en", "ko"}) {
@@ -327,7 +328,7 @@ TEST_P(RenderedWords, TheKeysCanBeReadInANarrowWindow) {
   use_language("en", CLIENT_CATALOGUES);
 }
 
-TEST_P(RenderedWords, NoBoardPeeksOutBehindAMenuAndOneNoticeAtMostLiesOverTheFieldFromAbove) {
+TEST_P(RenderedText, NoBoardPeeksOutBehindAMenuAndOneNoticeAtMostLiesOverTheFieldFromAbove) {
   const wire::Snapshot state = scripted_play(0.35);
   wire::Snapshot scored = state;
   scored.score = {7, 8};
@@ -346,7 +347,7 @@ TEST_P(RenderedWords, NoBoardPeeksOutBehindAMenuAndOneNoticeAtMostLiesOverTheFie
 }
 
 // Along the vertical centre line of the picture, the result and the questions are separate.
-TEST_P(RenderedWords, TheQuestionnaireLeavesTheResultFree) {
+TEST_P(RenderedText, TheQuestionnaireLeavesTheResultFree) {
   wire::Snapshot state = scripted_play(0.35);
   state.screen = number(wire::Screen::end);
   UiBatch words = UiBatch::create(Font::load().value()).value();
@@ -374,7 +375,7 @@ TEST_P(RenderedWords, TheQuestionnaireLeavesTheResultFree) {
 
 // Names of any length, in a narrow window: letters as high as those of 11 pixels, and nothing over
 // the date, the mark of a kept recording, or the window's edge.
-TEST_P(RenderedWords, NamesInTheListOfRecordingsAreReadableAndStayInTheirPlace) {
+TEST_P(RenderedText, NamesInTheListOfRecordingsAreReadableAndStayInTheirPlace) {
   UiBatch words = UiBatch::create(Font::load().value()).value();
   ReplayList list;
   list.rows.resize(1);
@@ -415,7 +416,7 @@ TEST_P(RenderedWords, NamesInTheListOfRecordingsAreReadableAndStayInTheirPlace) 
   }
 }
 
-TEST_P(RenderedWords, ARodIsSaidToBeHeldLegiblyAndNeverInARecording) {
+TEST_P(RenderedText, ARodIsSaidToBeHeldLegiblyAndNeverInARecording) {
   wire::Snapshot state = scripted_play(0.35), held = state, recorded = state;
   held.rods[3].status = recorded.rods[3].status = number(wire::RodStatus::held);
   recorded.rods[3].source = number(wire::RodSource::replay);
@@ -435,7 +436,7 @@ TEST_P(RenderedWords, ARodIsSaidToBeHeldLegiblyAndNeverInARecording) {
 }
 
 // The default for the paper's layout: there is no handle to mark.
-TEST_P(RenderedWords, WhereNoRodsAreDrawnNoHandleIsMarked) {
+TEST_P(RenderedText, WhereNoRodsAreDrawnNoHandleIsMarked) {
   const wire::Snapshot state = scripted_play(0.35, foosball::Layout::paper);
   const auto& table = foosball::table_spec(foosball::Layout::paper);
   const glm::ivec2 handle =
@@ -448,7 +449,7 @@ TEST_P(RenderedWords, WhereNoRodsAreDrawnNoHandleIsMarked) {
   EXPECT_GT(changed(written(state, plain), written(state, marked), handle, 12), 40);
 }
 
-INSTANTIATE_TEST_SUITE_P(LowQuality, RenderedWords, ::testing::Values(draw::Quality::low));
+INSTANTIATE_TEST_SUITE_P(LowQuality, RenderedText, ::testing::Values(draw::Quality::low));
 
 }  // namespace
 }  // namespace client

@@ -1,4 +1,4 @@
-#include "render/match_words.h"
+#include "render/match_text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -151,7 +151,7 @@ std::string rules_line(const HudState& hud) {
 }
 
 // The end of a set names its winner; if the ball is in no goal, the time has ended it.
-CeremonyWords ceremony_words(const HudState& hud) {
+CeremonyText ceremony_text(const HudState& hud) {
   const wire::Snapshot& state = *hud.state;
   const std::size_t winner = state.last_scorer == 1 ? 1 : 0;
   const std::string name = team_with_mark(state.last_scorer);
@@ -161,55 +161,55 @@ CeremonyWords ceremony_words(const HudState& hud) {
                 pair_text(state.sets, winner, " : ")};
   }
   const GoalStory& goal = hud.goal;
-  CeremonyWords words;
-  words.call = goal.own_goal ? tr("OWN GOAL") : state.golden_goal ? tr("GOLDEN GOAL") : tr("GOAL");
+  CeremonyText text;
+  text.call = goal.own_goal ? tr("OWN GOAL") : state.golden_goal ? tr("GOLDEN GOAL") : tr("GOAL");
   if (hud.set_over) {
-    words.line = filled(tr("Goal and set for %1"), {name});
+    text.line = filled(tr("Goal and set for %1"), {name});
   } else {
-    words.line = std::string(tr("Goal for")) + " " + name;
+    text.line = std::string(tr("Goal for")) + " " + name;
     // (5) The side that conceded.
     if (!shows(state, wire::Mode::training))
-      words.line += "  -  " + serve_text(1 - static_cast<int>(winner));
+      text.line += "  -  " + serve_text(1 - static_cast<int>(winner));
   }
   if (goal.scorer_rod >= 0) {
     char speed[32];
     std::snprintf(speed, sizeof speed, ", %.1f m/s", static_cast<double>(goal.speed));
     const std::size_t of = goal.own_goal ? 1 - winner : winner;
-    words.detail = team_with_mark(static_cast<int>(of)) + ", " +
-                   line_name(state.layout, goal.scorer_rod) + " " +
-                   std::to_string(goal.scorer_man + 1) + speed;
+    text.detail = team_with_mark(static_cast<int>(of)) + ", " +
+                  line_name(state.layout, goal.scorer_rod) + " " +
+                  std::to_string(goal.scorer_man + 1) + speed;
   }
-  return words;
+  return text;
 }
 
-EndWords end_words(const HudState& hud, std::size_t left) {
+EndText end_text(const HudState& hud, std::size_t left) {
   const wire::Snapshot& state = *hud.state;
   const bool drawn = state.score[0] == state.score[1];  // only if the time was over
-  EndWords words;
-  words.title = drawn ? tr("A DRAW") : team_with_mark(state.last_scorer) + " " + tr("WINS");
-  words.call = tr("push a rod to play again");
+  EndText text;
+  text.title = drawn ? tr("A DRAW") : team_with_mark(state.last_scorer) + " " + tr("WINS");
+  text.call = tr("push a rod to play again");
   const bool in_sets = state.sets[0] + state.sets[1] > 1;
   for (std::size_t team = 0; team < 2; ++team)
-    words.result[team] = in_sets ? state.sets[team] : state.score[team];
+    text.result[team] = in_sets ? state.sets[team] : state.score[team];
   if (in_sets) {
     std::vector<std::string> sets;
     for (const std::array<int, 2>& set : hud.sets) sets.push_back(pair_text(set, left, ":"));
     // A client that joined late has not observed all of them.
     const bool all = sets.size() == static_cast<std::size_t>(state.sets[0] + state.sets[1]);
-    words.details.push_back(all ? std::string(tr("sets")) + "  " + joined(sets, "   ")
-                                : std::string(tr("last set")) + " " +
-                                      pair_text(state.score, left, ":"));
+    text.details.push_back(all ? std::string(tr("sets")) + "  " + joined(sets, "   ")
+                               : std::string(tr("last set")) + " " +
+                                     pair_text(state.score, left, ":"));
   }
-  if (!has_climbed(state)) return words;
+  if (!has_climbed(state)) return text;
   if (state.rung + 1 < foosball::kLadderRungs) {
-    words.call =
+    text.call =
         tr("push a rod for the next rung") + std::string(": ") + opponent_text(state.rung + 1);
   } else {
-    words.title = tr("CHAMPION OF THE LADDER");
-    words.details.push_back(
+    text.title = tr("CHAMPION OF THE LADDER");
+    text.details.push_back(
         filled(tr("%1 has beaten every opponent"), {team_with_mark(state.last_scorer)}));
   }
-  return words;
+  return text;
 }
 
 std::array<std::string, 2> mode_lines(const wire::Snapshot& state, std::size_t left) {

@@ -1,5 +1,5 @@
 // The texts for the rules' decisions, from snapshots and stories, without a window.
-#include "render/match_words.h"
+#include "render/match_text.h"
 
 #include <gtest/gtest.h>
 
@@ -39,7 +39,7 @@ wire::Snapshot held_by(int rod, float seconds, wire::RuleSet rules) {
 
 // --- the clock of possession ---------------------------------------------------------------------
 
-TEST(MatchWords, TheClockOfPossessionCountsDownTheLastFiveSeconds) {
+TEST(MatchText, TheClockOfPossessionCountsDownTheLastFiveSeconds) {
   const auto arcade = [](int rod, float seconds) {
     return possession_clock(held_by(rod, seconds, wire::RuleSet::arcade));
   };
@@ -55,7 +55,7 @@ TEST(MatchWords, TheClockOfPossessionCountsDownTheLastFiveSeconds) {
   EXPECT_EQ(arcade(0, 14.2f)->seconds, 1) << "the goalie";
 }
 
-TEST(MatchWords, ByTheTournamentsRulesTheClockIsAlwaysTold) {
+TEST(MatchText, ByTheTournamentsRulesTheClockIsAlwaysTold) {
   const auto clock = possession_clock(held_by(kFirstAttack, 0.5f, wire::RuleSet::itsf));
   ASSERT_TRUE(clock);
   EXPECT_EQ(clock->seconds, 15);
@@ -63,7 +63,7 @@ TEST(MatchWords, ByTheTournamentsRulesTheClockIsAlwaysTold) {
   EXPECT_TRUE(possession_clock(held_by(kFirstAttack, 11.0f, wire::RuleSet::itsf))->hurries);
 }
 
-TEST(MatchWords, NoClockRunsWhereNobodyHasTheBall) {
+TEST(MatchText, NoClockRunsWhereNobodyHasTheBall) {
   const wire::Snapshot held = held_by(kFirstMidfield, 8.0f, wire::RuleSet::itsf);
   ASSERT_TRUE(possession_clock(held));
   wire::Snapshot state = held;
@@ -87,7 +87,7 @@ TEST(MatchWords, NoClockRunsWhereNobodyHasTheBall) {
 
 // --- the line of the rules -----------------------------------------------------------------------
 
-TEST(MatchWords, TheServeIsToldBeforeItAndAWhileAfter) {
+TEST(MatchText, TheServeIsToldBeforeItAndAWhileAfter) {
   Shown shown;
   shown.state.next_server = 1;
   EXPECT_EQ(rules_line(shown.hud), "");
@@ -103,7 +103,7 @@ TEST(MatchWords, TheServeIsToldBeforeItAndAWhileAfter) {
   EXPECT_EQ(rules_line(shown.hud), "Foul: ● ORION, held too long  -  Serve: ▲ VEGA");
 }
 
-TEST(MatchWords, AGoldenGoalIsToldWhileTheNextOneDecides) {
+TEST(MatchText, AGoldenGoalIsToldWhileTheNextOneDecides) {
   Shown shown;
   shown.state.golden_goal = true;
   EXPECT_EQ(rules_line(shown.hud), "golden goal: the next one decides");
@@ -112,7 +112,7 @@ TEST(MatchWords, AGoldenGoalIsToldWhileTheNextOneDecides) {
   EXPECT_EQ(rules_line(shown.hud), "Time-out: ● ORION 12 s");
 }
 
-TEST(MatchWords, TrainingTellsTheShotBesideAnyFoulAndNoServe) {
+TEST(MatchText, TrainingTellsTheShotBesideAnyFoulAndNoServe) {
   Shown shown;
   shown.state.mode = number(wire::Mode::training);
   shown.state.last_shot = {0, 5, 1, 7.25f, 0.1745f};
@@ -130,65 +130,65 @@ TEST(MatchWords, TrainingTellsTheShotBesideAnyFoulAndNoServe) {
 
 // --- ceremonies ----------------------------------------------------------------------------------
 
-TEST(MatchWords, AGoalNamesItsScorerAndWhoServesNext) {
+TEST(MatchText, AGoalNamesItsScorerAndWhoServesNext) {
   Shown shown;
   shown.stop(wire::Screen::ceremony, true);
   shown.state.last_scorer = 0;
   shown.hud.goal = {.team = 0, .scorer_rod = 5, .scorer_man = 1, .speed = 7.4f};
-  const CeremonyWords words = ceremony_words(shown.hud);
-  EXPECT_EQ(words.call, "GOAL");
-  EXPECT_EQ(words.line, "Goal for ● ORION  -  Serve: ▲ VEGA");
-  EXPECT_EQ(words.detail, "● ORION, Attack 2, 7.4 m/s");
+  const CeremonyText text = ceremony_text(shown.hud);
+  EXPECT_EQ(text.call, "GOAL");
+  EXPECT_EQ(text.line, "Goal for ● ORION  -  Serve: ▲ VEGA");
+  EXPECT_EQ(text.detail, "● ORION, Attack 2, 7.4 m/s");
 }
 
-TEST(MatchWords, ASetThatEndsOnTheClockIsNoGoal) {
+TEST(MatchText, ASetThatEndsOnTheClockIsNoGoal) {
   Shown shown;
   shown.stop(wire::Screen::ceremony, false);
   shown.state.last_scorer = 1;
   shown.state.score = {1, 2};
   shown.state.sets = {1, 1};
   shown.hud.goal = {.team = 0, .scorer_rod = 5, .scorer_man = 1, .speed = 7.4f};  // an earlier one
-  const CeremonyWords words = ceremony_words(shown.hud);
-  EXPECT_EQ(words.call, "TIME");
-  EXPECT_EQ(words.line, "Set for ▲ VEGA");
-  EXPECT_EQ(words.detail, "2 : 1, sets 1 : 1");
+  const CeremonyText text = ceremony_text(shown.hud);
+  EXPECT_EQ(text.call, "TIME");
+  EXPECT_EQ(text.line, "Set for ▲ VEGA");
+  EXPECT_EQ(text.detail, "2 : 1, sets 1 : 1");
 }
 
-TEST(MatchWords, AGoalThatWinsASetSaysSo) {
+TEST(MatchText, AGoalThatWinsASetSaysSo) {
   Shown shown;
   shown.stop(wire::Screen::ceremony, true);
   shown.state.last_scorer = 1;
   shown.hud.set_over = true;
-  EXPECT_EQ(ceremony_words(shown.hud).line, "Goal and set for ▲ VEGA");
-  EXPECT_EQ(ceremony_words(shown.hud).call, "GOAL");
+  EXPECT_EQ(ceremony_text(shown.hud).line, "Goal and set for ▲ VEGA");
+  EXPECT_EQ(ceremony_text(shown.hud).call, "GOAL");
   shown.state.golden_goal = true;
-  EXPECT_EQ(ceremony_words(shown.hud).call, "GOLDEN GOAL");
+  EXPECT_EQ(ceremony_text(shown.hud).call, "GOLDEN GOAL");
 }
 
 // --- the end of a match --------------------------------------------------------------------------
 
-TEST(MatchWords, AMatchOfSetsIsToldInSetsWithTheGoalsOfEach) {
+TEST(MatchText, AMatchOfSetsIsToldInSetsWithTheGoalsOfEach) {
   Shown shown;
   shown.stop(wire::Screen::end, true);
   shown.state.last_scorer = 0;
   shown.state.score = {5, 3};
   shown.state.sets = {3, 1};
   shown.hud.sets = {{5, 4}, {2, 5}, {5, 1}, {5, 3}};
-  EndWords words = end_words(shown.hud, 0);
-  EXPECT_EQ(words.title, "● ORION WINS");
-  EXPECT_EQ(words.result, (std::array<int, 2>{3, 1}));
-  EXPECT_EQ(words.details, std::vector<std::string>{"sets  5:4   2:5   5:1   5:3"});
-  EXPECT_EQ(end_words(shown.hud, 1).details,
+  EndText text = end_text(shown.hud, 0);
+  EXPECT_EQ(text.title, "● ORION WINS");
+  EXPECT_EQ(text.result, (std::array<int, 2>{3, 1}));
+  EXPECT_EQ(text.details, std::vector<std::string>{"sets  5:4   2:5   5:1   5:3"});
+  EXPECT_EQ(end_text(shown.hud, 1).details,
             std::vector<std::string>{"sets  4:5   5:2   1:5   3:5"});
   shown.hud.sets = {{5, 1}, {5, 3}};  // joined late
-  EXPECT_EQ(end_words(shown.hud, 0).details, std::vector<std::string>{"last set 5:3"});
+  EXPECT_EQ(end_text(shown.hud, 0).details, std::vector<std::string>{"last set 5:3"});
   shown.state.sets = {1, 0};
-  words = end_words(shown.hud, 0);
-  EXPECT_EQ(words.result, (std::array<int, 2>{5, 3})) << "one set: its goals";
-  EXPECT_TRUE(words.details.empty());
+  text = end_text(shown.hud, 0);
+  EXPECT_EQ(text.result, (std::array<int, 2>{5, 3})) << "one set: its goals";
+  EXPECT_TRUE(text.details.empty());
 }
 
-TEST(MatchWords, TheLadderNamesRungOpponentNextRungAndChampion) {
+TEST(MatchText, TheLadderNamesRungOpponentNextRungAndChampion) {
   Shown shown;
   shown.state.mode = number(wire::Mode::ladder);
   shown.state.computer = {false, true};
@@ -197,21 +197,21 @@ TEST(MatchWords, TheLadderNamesRungOpponentNextRungAndChampion) {
             (std::array<std::string, 2>{"Rung 3 of 5", "level 3, passer"}));
   shown.stop(wire::Screen::end, true);
   shown.state.sets = {1, 0};
-  EXPECT_EQ(end_words(shown.hud, 0).call, "push a rod for the next rung: level 4, passer");
+  EXPECT_EQ(end_text(shown.hud, 0).call, "push a rod for the next rung: level 4, passer");
   shown.state.sets = {0, 1};
   shown.state.last_scorer = 1;
-  EXPECT_EQ(end_words(shown.hud, 0).call, "push a rod to play again") << "lost";
+  EXPECT_EQ(end_text(shown.hud, 0).call, "push a rod to play again") << "lost";
   shown.state.computer = {true, false};
   shown.state.rung = 4;
-  const EndWords top = end_words(shown.hud, 0);
+  const EndText top = end_text(shown.hud, 0);
   EXPECT_EQ(top.title, "CHAMPION OF THE LADDER");
   EXPECT_EQ(top.details, std::vector<std::string>{"▲ VEGA has beaten every opponent"});
   shown.state.attract = true;
   EXPECT_EQ(mode_lines(shown.state, 0)[0], "") << "computers show a match, nobody climbs";
-  EXPECT_EQ(end_words(shown.hud, 0).title, "▲ VEGA WINS");
+  EXPECT_EQ(end_text(shown.hud, 0).title, "▲ VEGA WINS");
 }
 
-TEST(MatchWords, AChallengeTellsWhatIsLeftAndThePoints) {
+TEST(MatchText, AChallengeTellsWhatIsLeftAndThePoints) {
   Shown shown;
   shown.state.mode = number(wire::Mode::challenge);
   shown.state.timed = true;
@@ -222,11 +222,11 @@ TEST(MatchWords, AChallengeTellsWhatIsLeftAndThePoints) {
   EXPECT_EQ(mode_lines(shown.state, 1)[1], "1:12 left, goals 1 : 2");
 }
 
-TEST(MatchWords, AreInThePersonsLanguage) {
+TEST(MatchText, AreInThePersonsLanguage) {
   use_language("de", CLIENT_CATALOGUES);
   Shown shown;
   shown.stop(wire::Screen::ceremony, false);
-  EXPECT_EQ(ceremony_words(shown.hud).call, "ZEIT");
+  EXPECT_EQ(ceremony_text(shown.hud).call, "ZEIT");
   use_language("ko", CLIENT_CATALOGUES);
   shown.state.mode = number(wire::Mode::ladder);
   shown.state.rung = 2;

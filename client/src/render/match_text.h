@@ -30,21 +30,21 @@ std::optional<PossessionClock> possession_clock(const wire::Snapshot& state);
 // training the last shot. Empty: nothing.
 std::string rules_line(const HudState& hud);
 
-struct CeremonyWords {
+struct CeremonyText {
   std::string call;    // why the play stopped
   std::string line;    // which team it is for
   std::string detail;  // who did it, or the state of the match
 };
-CeremonyWords ceremony_words(const HudState& hud);
+CeremonyText ceremony_text(const HudState& hud);
 
-struct EndWords {
+struct EndText {
   std::string title;
   std::array<int, 2> result{};       // by team: sets if there were several, else goals
   std::vector<std::string> details;  // one line each
   std::string call;                  // what a push starts
 };
 // In each pair of numbers, the one of team `left` is first.
-EndWords end_words(const HudState& hud, std::size_t left);
+EndText end_text(const HudState& hud, std::size_t left);
 
 // On the ladder "Rung 3 of 5" and "level 3, passer"; in a challenge its name and state; empty:
 // neither.

@@ -8,12 +8,12 @@
 
 namespace calibrate {
 
-std::string rod_words(foosball::Layout layout, int rod);  // "Rod 3: midfield of team 1"
+std::string rod_text(foosball::Layout layout, int rod);  // "Rod 3: midfield of team 1"
 // What to do now: the guide's step, or after a successful or failed fit.
-std::string request_words(const Session& session);
+std::string request_text(const Session& session);
 // What blocks the progress; empty: nothing.
-std::string advice_words(const Session& session);
+std::string advice_text(const Session& session);
 // The coefficients with their standard deviations, and the residuals; one line each.
-std::vector<std::string> fit_words(const cabinet::RodFit& fit);
+std::vector<std::string> fit_text(const cabinet::RodFit& fit);
 
 }  // namespace calibrate
