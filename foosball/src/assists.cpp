@@ -78,10 +78,10 @@ double Assists::reach_of(const CharacterBody& body) const {
 double Assists::time_to_act(int rod, const Ball& ball, double reach) const {
   const double ahead = ball.x - rod_x(rod);
   const double beyond = std::fabs(ahead) - reach;
-  const double closing = ahead > 0.0 ? -ball.vx : ball.vx;
-  if (beyond <= 0.0) return closing < -kComes ? std::max(0.0, -0.1 * closing) : 0.0;
-  if (closing > kComes) return beyond / closing;
-  return beyond / kStray + (closing < -kComes ? kPassed : 0.0);
+  const double approach_speed = ahead > 0.0 ? -ball.vx : ball.vx;
+  if (beyond <= 0.0) return approach_speed < -kComes ? std::max(0.0, -0.1 * approach_speed) : 0.0;
+  if (approach_speed > kComes) return beyond / approach_speed;
+  return beyond / kStray + (approach_speed < -kComes ? kPassed : 0.0);
 }
 
 int Assists::rod_to_take(const AssistView& view, const AssistHand& hand, int now) const {
@@ -120,9 +120,9 @@ double Assists::slide_for(int rod, double y, double from) const {
   const RodSpec& spec = table_->rods[rod];
   double best = from, min = 1e9;
   for (int man = 0; man < spec.men; ++man) {
-    const double wanted = y - man_offset(spec, man);
-    const double slide = std::clamp(wanted, -spec.slide_limit, spec.slide_limit);
-    const double cost = 10.0 * std::fabs(wanted - slide) + std::fabs(slide - from);
+    const double target = y - man_offset(spec, man);
+    const double slide = std::clamp(target, -spec.slide_limit, spec.slide_limit);
+    const double cost = 10.0 * std::fabs(target - slide) + std::fabs(slide - from);
     if (cost >= min) continue;
     min = cost;
     best = slide;

@@ -158,9 +158,9 @@ double RodTactics::slide_for(const TableSpec& table, double y) const {
   double best = slide_.position();
   double min = 1e9;
   for (int man = 0; man < rod.men; ++man) {
-    const double wanted = y - man_offset(rod, man);
-    const double slide = std::clamp(wanted, -rod.slide_limit, rod.slide_limit);
-    const double cost = 10.0 * std::fabs(wanted - slide) + std::fabs(slide - slide_.position());
+    const double target = y - man_offset(rod, man);
+    const double slide = std::clamp(target, -rod.slide_limit, rod.slide_limit);
+    const double cost = 10.0 * std::fabs(target - slide) + std::fabs(slide - slide_.position());
     if (cost < min) {
       min = cost;
       best = slide;

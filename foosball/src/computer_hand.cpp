@@ -20,9 +20,9 @@ void HandAxis::swing(double goal, const AxisLimits& limits) {
   accelerate(std::copysign(limits.rate, goal - position_), limits);
 }
 
-void HandAxis::accelerate(double wanted_rate, const AxisLimits& limits) {
+void HandAxis::accelerate(double target_rate, const AxisLimits& limits) {
   const double max = limits.acceleration * kTick;
-  rate_ += std::clamp(wanted_rate - rate_, -max, max);
+  rate_ += std::clamp(target_rate - rate_, -max, max);
   position_ += rate_ * kTick;
 }
 

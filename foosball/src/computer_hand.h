@@ -26,7 +26,7 @@ class HandAxis {
   void brake(const AxisLimits& limits) { accelerate(0.0, limits); }
 
  private:
-  void accelerate(double wanted_rate, const AxisLimits& limits);
+  void accelerate(double target_rate, const AxisLimits& limits);
   double position_ = 0.0, rate_ = 0.0;
 };
 

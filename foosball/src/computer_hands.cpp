@@ -48,10 +48,10 @@ void ComputerHands::send(int line, const std::array<bool, 4>& busy, int other) {
     Hand& hand = hands_[h];
     const bool needed = hand.line != kNone && ((count_ > 1 && hand.line == other) ||
                                                busy[static_cast<std::size_t>(hand.line)]);
-    const int way = hand.line == kNone ? 10 : std::abs(hand.line - line);
-    if (needed || way >= nearest) continue;
+    const int distance = hand.line == kNone ? 10 : std::abs(hand.line - line);
+    if (needed || distance >= nearest) continue;
     best = &hand;
-    nearest = way;
+    nearest = distance;
   }
   if (best != nullptr) *best = {line, travel_};
 }

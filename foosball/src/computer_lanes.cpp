@@ -24,21 +24,21 @@ LanePassage pass_men(const TableSpec& table, const Sighting& now, const LaneView
   for (int k = 0; k < kRods; ++k) {
     const int rod = view.team == 0 ? k : kRods - 1 - k;
     const RodSpec& spec = table.rods[rod];
-    const double way = attack_sign(view.team) * spec.x - now.ball.x;
-    if (rod == view.from_rod || way < 0.04 || way > run) continue;
+    const double distance = attack_sign(view.team) * spec.x - now.ball.x;
+    if (rod == view.from_rod || distance < 0.04 || distance > run) continue;
     const bool up = !view.hops && std::fabs(within_half_turn(now.swing[rod])) > kFeetUp;
     if (up && spec.team == view.team) continue;
-    const double y = y_after(table, now.ball.y, slope, way);
-    double gap = 1.0;
+    const double y = y_after(table, now.ball.y, slope, distance);
+    double clearance = 1.0;
     for (int man = 0; man < spec.men; ++man) {
-      gap = std::min(gap, std::fabs(man_offset(spec, man) + now.slide[rod] - y));
+      clearance = std::min(clearance, std::fabs(man_offset(spec, man) + now.slide[rod] - y));
     }
-    gap -= view.half_foot[spec.team] + table.ball_radius;
-    double free = within(gap, 0.004 + view.slope_error * way);
+    clearance -= view.half_foot[spec.team] + table.ball_radius;
+    double free = within(clearance, 0.004 + view.slope_error * distance);
     if (up) free += view.feet_stay_up * (1.0 - free);
     const double blocked = passage.free * (1.0 - free);
     // The nearer the man, the faster and the less expected the rebound.
-    const double near = std::clamp(1.0 - way / 0.5, 0.0, 1.0);
+    const double near = std::clamp(1.0 - distance / 0.5, 0.0, 1.0);
     const double to_own_goal = now.ball.x + goal_line;
     const double danger = std::clamp(1.2 - to_own_goal, 0.1, 1.0);
     passage.cost -= view.risk_cost * blocked * (0.05 + 0.25 * near * danger);

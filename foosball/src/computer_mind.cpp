@@ -77,7 +77,7 @@ void ComputerMind::play(const Sighting& seen, const Tuning& tuning, bool own_ser
   hands_.pass_time();
   std::array<bool, 4> busy{};
   for (int line = 0; line < 4; ++line) busy[static_cast<std::size_t>(line)] = rods_[line].busy();
-  const Lines lines = own_lines(wanted_lines(now));
+  const Lines lines = controlled_lines(target_lines(now));
   hands_.want(lines[0], lines[1], busy);
   for (int line = 0; line < 4; ++line) {
     ComputerRod& rod = rods_[static_cast<std::size_t>(line)];
@@ -140,7 +140,7 @@ void ComputerMind::note_strokes(const Sighting& now) {
 }
 
 // The two most important lines.
-ComputerMind::Lines ComputerMind::wanted_lines(const Sighting& now) const {
+ComputerMind::Lines ComputerMind::target_lines(const Sighting& now) const {
   if (!now.ball_in_play) {
     return own_serve_ ? Lines{kMidfield, kDefence} : Lines{kDefence, kGoalie};
   }
@@ -174,13 +174,13 @@ ComputerMind::Lines ComputerMind::wanted_lines(const Sighting& now) const {
 }
 
 // The requested lines that it may hold. A team mate's line is replaced by the nearest own one.
-ComputerMind::Lines ComputerMind::own_lines(const Lines& wanted) const {
+ComputerMind::Lines ComputerMind::controlled_lines(const Lines& target) const {
   Lines own{ComputerHands::kNone, ComputerHands::kNone};
   std::size_t count = 0;
-  for (const int line : wanted) {
+  for (const int line : target) {
     if (may_hold(line)) own[count++] = line;
   }
-  for (const int missing : wanted) {
+  for (const int missing : target) {
     if (may_hold(missing)) continue;
     int nearest = ComputerHands::kNone;
     for (int line = 0; line < 4; ++line) {
@@ -197,12 +197,13 @@ ComputerMind::Lines ComputerMind::own_lines(const Lines& wanted) const {
 // Where a man should stand: in the path of an approaching ball, otherwise where he covers the goal
 // (goalie, defence) or level with the ball.
 double ComputerMind::guard_y(int line, const Sighting& now) const {
-  const double way = now.ball.x - rods_[static_cast<std::size_t>(line)].x();
+  const double distance = now.ball.x - rods_[static_cast<std::size_t>(line)].x();
   const double vx = now.velocity.x;
   const bool from_front =
-      (vx < -t_.judgment.guard_path || (vx < -0.08 && way < 0.15 && line == kGoalie)) && way > 0.0;
-  if (from_front) return y_after(*table_, now.ball.y, now.velocity.y, way / -vx);
-  if (line == kMidfield || line == kAttack || way < 0.0) return now.ball.y;
+      (vx < -t_.judgment.guard_path || (vx < -0.08 && distance < 0.15 && line == kGoalie)) &&
+      distance > 0.0;
+  if (from_front) return y_after(*table_, now.ball.y, now.velocity.y, distance / -vx);
+  if (line == kMidfield || line == kAttack || distance < 0.0) return now.ball.y;
   return cover_y(line, now);
 }
 

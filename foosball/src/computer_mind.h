@@ -45,8 +45,8 @@ class ComputerMind {
   bool is_fresh_serve(const Sighting& now);
   void note_strokes(const Sighting& now);
   void guess_ball(Sighting& now, const Tuning& tuning, const std::optional<BallGuess>& forecast);
-  Lines wanted_lines(const Sighting& now) const;
-  Lines own_lines(const Lines& wanted) const;
+  Lines target_lines(const Sighting& now) const;
+  Lines controlled_lines(const Lines& target) const;
   double guard_y(int line, const Sighting& now) const;
   double cover_y(int line, const Sighting& now) const;
   double beside_mate(int line, const Sighting& now) const;

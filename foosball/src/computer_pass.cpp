@@ -25,9 +25,9 @@ PassPlan pass_along(const TableSpec& table, const Sighting& now, const PassView&
   double nearest = 1e9;
   for (int man = 0; man < to.men; ++man) {
     const double slide = y - man_offset(to, man);
-    const double way = std::fabs(slide - now.slide[static_cast<std::size_t>(view.to_rod)]);
-    if (std::fabs(slide) > to.slide_limit || way >= nearest) continue;
-    nearest = way;
+    const double distance = std::fabs(slide - now.slide[static_cast<std::size_t>(view.to_rod)]);
+    if (std::fabs(slide) > to.slide_limit || distance >= nearest) continue;
+    nearest = distance;
     plan.man = man;
   }
   if (plan.man < 0) return plan;

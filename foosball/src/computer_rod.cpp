@@ -135,9 +135,9 @@ double ComputerRod::slide_for(double y, int* man_out) const {
   double best = slide_.position();
   double min = 1e9;
   for (int man = 0; man < spec().men; ++man) {
-    const double wanted = y - man_offset(spec(), man);
-    const double slide = std::clamp(wanted, -spec().slide_limit, spec().slide_limit);
-    const double cost = 10.0 * std::fabs(wanted - slide) + std::fabs(slide - slide_.position());
+    const double target = y - man_offset(spec(), man);
+    const double slide = std::clamp(target, -spec().slide_limit, spec().slide_limit);
+    const double cost = 10.0 * std::fabs(target - slide) + std::fabs(slide - slide_.position());
     if (cost >= min) continue;
     min = cost;
     best = slide;
@@ -201,8 +201,8 @@ bool ComputerRod::ball_in_sweep(double goal, const Sighting& now) const {
   const double front = foot(swing_.position()) + 0.012;
   const double back = foot(goal) - table_->ball_radius - 0.012;
   for (const double lead : {0.0, 0.03, 0.06}) {  // [s]
-    const double way = ahead(now) + lead * now.velocity.x;
-    if (way > front || way < back) continue;
+    const double distance = ahead(now) + lead * now.velocity.x;
+    if (distance > front || distance < back) continue;
     const double y = y_after(*table_, now.ball.y, now.velocity.y, lead);
     for (int man = 0; man < spec().men; ++man) {
       if (std::fabs(man_y(man) - y) < clear(now)) return true;

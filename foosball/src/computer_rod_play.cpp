@@ -52,12 +52,12 @@ double ComputerRod::approach() const {
 }
 
 bool ComputerRod::can_control(const Sighting& now) const {
-  const double way = ahead(now);
+  const double distance = ahead(now);
   const double speed = vp::norm(now.velocity);
   if (now.ball.z > 2.5 * table_->ball_radius || speed > judgment_.tame_speed) return false;
   if (now.velocity.x < -approach()) return false;
   const double from = speed < kResting ? kScoopFrom : kFrom;
-  if (way <= from || way >= kTo) return false;
+  if (distance <= from || distance >= kTo) return false;
   int man = 0;
   const double slide = slide_for(now.ball.y, &man);
   return std::fabs(man_offset(spec(), man) + slide - now.ball.y) < 0.02;
@@ -78,10 +78,10 @@ void ComputerRod::begin_control(const Sighting& now, const Temperament& t, Rando
 }
 
 bool ComputerRod::lost(const Sighting& now) const {
-  const double way = ahead(now);
+  const double distance = ahead(now);
   const bool rolls_home = spec().line == Line::goalie && now.velocity.x < -judgment_.stop_first;
-  if (rolls_home && (way < 0.0 || !over_)) return true;
-  return !now.ball_in_play || way < kScoopFrom - 0.01 || way > kTo + 0.012 ||
+  if (rolls_home && (distance < 0.0 || !over_)) return true;
+  return !now.ball_in_play || distance < kScoopFrom - 0.01 || distance > kTo + 0.012 ||
          vp::norm(now.velocity) > 1.5 * judgment_.tame_speed;
 }
 

@@ -20,7 +20,7 @@ void push(HandAxis& slide, double seconds) {
 
 void ComputerScreens::see(const MatchView& view, double swing, Random& random) {
   if (screen_ != view.screen && view.screen == Screen::selection) {
-    wanted_character_ = random.below(view.characters);
+    target_character_ = random.below(view.characters);
     spin_to_ = swing;
   }
   screen_ = view.screen;
@@ -49,7 +49,7 @@ void ComputerScreens::work_selection(const MatchView& view, HandAxis& slide, Han
     slide.move(0.0, kCalmSlide);
     return;
   }
-  if (view.character[team_] == wanted_character_) {
+  if (view.character[team_] == target_character_) {
     return push(slide, view.screen_seconds - kLookAround);
   }
   const bool settled = std::fabs(swing.position() - spin_to_) < 0.01;

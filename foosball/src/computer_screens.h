@@ -30,7 +30,7 @@ class ComputerScreens {
   int team_;
   bool opens_match_;
   Screen screen_ = Screen::logo;
-  int wanted_character_ = 0;
+  int target_character_ = 0;
   double spin_to_ = 0.0;
 };
 

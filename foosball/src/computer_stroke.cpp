@@ -36,10 +36,10 @@ double contact_swing(const TableSpec& table, const Foot& foot, double ahead) {
 double stroke_time(double from, double contact, const AxisLimits& stroke) {
   constexpr double kLag = 0.0013;  // [s]: a tick until the hand moves, and the foot's delay
   constexpr double kEarly = 0.04;  // [rad]: the ball leaves before the contact swing is reached
-  const double way = std::max(0.0, contact - kEarly - from);
+  const double distance = std::max(0.0, contact - kEarly - from);
   const double gathering = 0.5 * stroke.rate * stroke.rate / stroke.acceleration;
-  if (way < gathering) return kLag + std::sqrt(2.0 * way / stroke.acceleration);
-  return kLag + stroke.rate / stroke.acceleration + (way - gathering) / stroke.rate;
+  if (distance < gathering) return kLag + std::sqrt(2.0 * distance / stroke.acceleration);
+  return kLag + stroke.rate / stroke.acceleration + (distance - gathering) / stroke.rate;
 }
 
 bool lifts_ball(const Foot& foot, const TableSpec& table, const Meeting& meeting) {

@@ -15,7 +15,7 @@ std::string number(double value) {
   return {text, end};
 }
 
-auto refuse(std::string sentence) {
+auto invalid(std::string sentence) {
   return tl::unexpected(vp::Error{vp::Errc::invalid_argument, std::move(sentence)});
 }
 
@@ -43,18 +43,18 @@ vp::Expected<Judgment> with_changes(const Judgment& base, std::string_view chang
     const std::size_t equals = one.find('=');
     const int index = judgment_index(one.substr(0, equals));
     if (equals == std::string_view::npos || index < 0) {
-      return refuse(quoted(one) +
-                    " is no value of a computer player's judgment: write NAME=NUMBER,...; "
-                    "space-foosball-match --list-judgment 5 shows the names");
+      return invalid(quoted(one) +
+                     " is no value of a computer player's judgment: write NAME=NUMBER,...; "
+                     "space-foosball-match --list-judgment 5 shows the names");
     }
     const JudgmentField& field = kJudgmentFields[static_cast<std::size_t>(index)];
     double value = 0.0;
     if (!read_number(one.substr(equals + 1), value) || !in_range(field, value)) {
-      return refuse(quoted(one) + ": " + field.name + " must be a number from " +
-                    number(field.min) + " to " + number(field.max));
+      return invalid(quoted(one) + ": " + field.name + " must be a number from " +
+                     number(field.min) + " to " + number(field.max));
     }
     if (given[static_cast<std::size_t>(index)]) {
-      return refuse(std::string(field.name) + " is given twice: give it once");
+      return invalid(std::string(field.name) + " is given twice: give it once");
     }
     given[static_cast<std::size_t>(index)] = true;
     judgment.*field.value = value;

@@ -60,7 +60,7 @@ struct Match::Impl {
   void serve_from(int rod, double delay, int man = -1);
   void serve_again();
   void put_in_play();
-  bool find_place(int rod, int man, vp::Vec3& place);
+  bool find_position(int rod, int man, vp::Vec3& position);
 
   // match_screens.cpp
   void run_screen();

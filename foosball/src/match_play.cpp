@@ -50,7 +50,7 @@ void Match::Impl::watch_ball(const vp::Vec3& velocity_before) {
 void Match::Impl::note_contacts(const vp::Vec3& velocity_before) {
   // A ball pressed against an object has repeated contact events; they are not hits.
   const vp::Vec3 change = world->ball().velocity - velocity_before;
-  const bool felt = state.tuning.ball_mass * vp::norm(change) >= kMinHit;
+  const bool perceptible = state.tuning.ball_mass * vp::norm(change) >= kMinHit;
   for (const vp::ContactEvent& event : world->contacts()) {
     const BallContact contact = ball_contact(event);
     const Tag& other = contact.other;
@@ -61,7 +61,7 @@ void Match::Impl::note_contacts(const vp::Vec3& velocity_before) {
                          contact.kind != vp::ContactEvent::Kind::end);
       note_touch(other.rod, other.man);
     }
-    if (!felt || contact.kind != vp::ContactEvent::Kind::hit) continue;
+    if (!perceptible || contact.kind != vp::ContactEvent::Kind::hit) continue;
     const EventKind kind = man                             ? EventKind::man_hit
                            : other.what == Tag::What::wall ? EventKind::wall_hit
                                                            : EventKind::field_hit;
@@ -276,13 +276,13 @@ void Match::Impl::put_in_play() {
   const RodSpec& rod = table().rods[state.serve_rod];
   const int man = state.serve_man >= 0 && state.serve_man < rod.men ? state.serve_man
                                                                     : middle_man(state.serve_rod);
-  vp::Vec3 place;
-  if (!find_place(state.serve_rod, man, place)) {
+  vp::Vec3 position;
+  if (!find_position(state.serve_rod, man, position)) {
     if (++state.serve_waits < to_ticks(kServeWait)) return;
     foul(Foul::serve, rod.team);
     return serve_from(rod_of(opponent(rod.team), Line::midfield), kServeDelay);
   }
-  world->set_ball(place, vp::Vec3{});
+  world->set_ball(position, vp::Vec3{});
   state.ball_in_play = true;
   state.ball_parked = false;
   state.ball_in_goal = false;
@@ -295,15 +295,15 @@ void Match::Impl::put_in_play() {
   state.touch_of = {};
   state.shot_pending = false;
   state.review_ticks = 0;
-  state.watch.reset(place);
+  state.watch.reset(position);
   emit(Event{.kind = EventKind::serve,
              .team = static_cast<std::uint8_t>(rod.team),
              .rod = static_cast<std::uint8_t>(state.serve_rod),
              .man = static_cast<std::uint8_t>(man),
-             .point = place});
+             .point = position});
 }
 
-bool Match::Impl::find_place(int rod_index, int man, vp::Vec3& place) {
+bool Match::Impl::find_position(int rod_index, int man, vp::Vec3& position) {
   const RodSpec& rod = table().rods[rod_index];
   // Offsets to try: first further from the rod, then to the side.
   constexpr double kFurther[] = {0.0, 0.008, 0.016};
@@ -315,10 +315,10 @@ bool Match::Impl::find_place(int rod_index, int man, vp::Vec3& place) {
   for (const double beside : kBeside) {
     for (const double further : kFurther) {
       const double ahead = first + std::copysign(further, first);
-      place = {rod.x + forward * ahead, man_offset(rod, man) + slide + forward * beside,
-               table().ball_radius};
+      position = {rod.x + forward * ahead, man_offset(rod, man) + slide + forward * beside,
+                  table().ball_radius};
       const double to_wall = 0.5 * table().width - table().ball_radius - 0.002;
-      if (std::fabs(place.y) <= to_wall && world->free_for_ball(place)) return true;
+      if (std::fabs(position.y) <= to_wall && world->free_for_ball(position)) return true;
     }
   }
   return false;

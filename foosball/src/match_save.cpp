@@ -47,7 +47,7 @@ bool consistent(const MatchDesc& desc, const MatchState& s) {
   return ok && man_of(s.serve_rod, s.serve_man) && man_of(s.feed_rod, s.feed_man);
 }
 
-tl::unexpected<vp::Error> refuse(const char* why) {
+tl::unexpected<vp::Error> invalid(const char* why) {
   return tl::unexpected(vp::Error{vp::Errc::bad_data, why});
 }
 
@@ -69,22 +69,22 @@ vp::Expected<void> load_match(const MatchDesc& desc, std::span<const std::byte> 
   MatchState saved;
   visit_head(reader, magic, characters, saved_desc, saved);
   if (!reader.ok() || magic != kMagic) {
-    return refuse("These bytes are not a saved match of this version.");
+    return invalid("These bytes are not a saved match of this version.");
   }
   if (saved_desc.layout != desc.layout || saved_desc.mode != desc.mode ||
       !(saved_desc.rules == desc.rules) || characters != digest(desc.characters)) {
-    return refuse(
+    return invalid(
         "The saved match has another table, mode, other rules or characters; create the match with "
         "those.");
   }
   for (const auto& chosen : {saved.character, saved.built}) {
     for (const int character : chosen) {
       if (character >= static_cast<int>(desc.characters.size())) {
-        return refuse("The saved match has a character that is none.");
+        return invalid("The saved match has a character that is none.");
       }
     }
   }
-  if (!consistent(desc, saved)) return refuse("No match can be in the state that was saved.");
+  if (!consistent(desc, saved)) return invalid("No match can be in the state that was saved.");
   if (saved.built == state.built && saved.first == state.first && saved.tuning == world->tuning()) {
     if (auto result = world->restore(reader.rest()); !result) return result;
   } else {

@@ -21,9 +21,9 @@ bool can_reach(const TableSpec& table, int rod, const CharacterBody& c, const vp
   if (in_plane > squared(foot + r)) return false;
   // The nearest man, at the slide that brings him closest to the ball.
   const double beside = std::fabs(ball.y - man_offset(spec, man_nearest(spec, ball.y)));
-  const double gap = std::max(0.0, beside - spec.slide_limit - 0.5 * c.foot_width);
-  if (gap >= r) return false;
-  return in_plane <= squared(foot + std::sqrt(r * r - gap * gap));
+  const double clearance = std::max(0.0, beside - spec.slide_limit - 0.5 * c.foot_width);
+  if (clearance >= r) return false;
+  return in_plane <= squared(foot + std::sqrt(r * r - clearance * clearance));
 }
 
 std::uint8_t rods_in_reach(const TableSpec& table, const TeamBodies& bodies, const vp::Vec3& ball) {

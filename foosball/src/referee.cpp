@@ -21,7 +21,7 @@ bool in_goal(const TableSpec& table, const vp::Vec3& ball) {
 }
 
 // The goalie's rod and the defence count as one area of possession (24).
-int place_of(const RodSpec& rod) {
+int area_of(const RodSpec& rod) {
   const Line line = rod.line == Line::goalie ? Line::defence : rod.line;
   return rod.team * 4 + static_cast<int>(line);
 }
@@ -95,7 +95,7 @@ BallWatch::Verdict BallWatch::update(const TableSpec& table, const Rules& rules,
   if (in_reach_) {
     const int rod = nearest_in_reach(table, sight.rods_in_reach, sight.ball.x);
     const bool advanced =
-        rod_ == kRods || left_ || place_of(table.rods[rod]) != place_of(table.rods[rod_]);
+        rod_ == kRods || left_ || area_of(table.rods[rod]) != area_of(table.rods[rod_]);
     if (advanced) ticks_possessed_ = 0;
     rod_ = rod;
     left_ = false;

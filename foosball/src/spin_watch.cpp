@@ -19,9 +19,9 @@ void SpinWatch::reset(double angle) {
 }
 
 void SpinWatch::update(double angle, bool touches) {
-  const double under_way = furthest_ != from_ ? furthest_ - from_ : angle - furthest_;
-  const double way = under_way >= 0.0 ? 1.0 : -1.0;
-  const double ahead = way * (angle - furthest_);
+  const double moved = furthest_ != from_ ? furthest_ - from_ : angle - furthest_;
+  const double direction = moved >= 0.0 ? 1.0 : -1.0;
+  const double ahead = direction * (angle - furthest_);
   if (ahead > 1e-4) {
     furthest_ = angle;
     still_ticks_ = 0;

@@ -226,18 +226,18 @@ void StatisticsObserver::note_match_won(const MatchView& view, int team) {
 // --- hands ---------------------------------------------------------------------------------------
 
 bool StatisticsObserver::Reversals::update(double value, double hysteresis) {
-  if (way == 0) {
+  if (direction == 0) {
     if (std::fabs(value - extreme) < hysteresis) return false;
-    way = value > extreme ? 1 : -1;
+    direction = value > extreme ? 1 : -1;
     extreme = value;
     return false;
   }
-  if (way * (value - extreme) >= 0.0) {
+  if (direction * (value - extreme) >= 0.0) {
     extreme = value;
     return false;
   }
-  if (way * (extreme - value) < hysteresis) return false;
-  way = -way;
+  if (direction * (extreme - value) < hysteresis) return false;
+  direction = -direction;
   extreme = value;
   return true;
 }

@@ -257,10 +257,10 @@ void TableWorld::add_rod(int rod) {
   for (int i = 0; i < spec.men; ++i) {
     const int man = man_from_left(spec, i);
     const vp::BodyId body = world_.link_body(rods_[rod], hinged ? kFirstMan + i : kTurn);
-    const Vec3 place{0.0, hinged ? 0.0 : man_offset(spec, man), 0.0};  // in the link's frame
+    const Vec3 offset{0.0, hinged ? 0.0 : man_offset(spec, man), 0.0};  // in the link's frame
     const auto boxes = boxes_of(c);
     for (std::size_t part = 0; part < boxes.size(); ++part) {
-      const Vec3 centre = boxes[part].centre + place;
+      const Vec3 centre = boxes[part].centre + offset;
       vp::ColliderDesc desc;
       desc.shape = Box{boxes[part].half_extents};
       desc.T_body_shape = T_link_table * SE3(centre);
@@ -454,11 +454,11 @@ vp::Expected<void> TableWorld::restore(std::span<const std::byte> bytes) {
 void TableWorld::lift_ball(double speed) {
   const vp::Vec3 position = ball().pose.position();
   const double up = ball().velocity.z;
-  const double room = std::max(0.0, tuning_.hop_ceiling - (position.z - table_.ball_radius));
-  const double max = std::sqrt(2.0 * tuning_.gravity * room);
-  const double wanted = std::min(speed, max);
-  if (wanted == up) return;
-  must(world_.apply_impulse(ball_, {0.0, 0.0, tuning_.ball_mass * (wanted - up)}, position));
+  const double height = std::max(0.0, tuning_.hop_ceiling - (position.z - table_.ball_radius));
+  const double max = std::sqrt(2.0 * tuning_.gravity * height);
+  const double target = std::min(speed, max);
+  if (target == up) return;
+  must(world_.apply_impulse(ball_, {0.0, 0.0, tuning_.ball_mass * (target - up)}, position));
   read_ball();
 }
 

@@ -44,11 +44,11 @@ std::vector<Vec3> random_points(int count, double radius) {
 // Points spread evenly over a sphere: their angles about an axis grow by the golden ratio's
 // fraction of a revolution (Fibonacci lattice).
 std::vector<Vec3> lattice_points(int count, double radius) {
-  const double turn = 2.0 * vp::kPi / (0.5 * (1.0 + std::sqrt(5.0)));
+  const double angle = 2.0 * vp::kPi / (0.5 * (1.0 + std::sqrt(5.0)));
   std::vector<Vec3> points;
   for (int i = 0; i < count; ++i) {
     const double along = 1.0 - (2.0 * i + 1.0) / count, out = std::sqrt(1.0 - along * along);
-    const auto [s, c] = vp::sin_cos(turn * i);
+    const auto [s, c] = vp::sin_cos(angle * i);
     points.push_back(radius * z_up(out * c, out * s, along));
   }
   return points;

@@ -119,11 +119,11 @@ Scene ragdolls(int along_x, int along_y, int layers) {
         // stays on its feet.
         const double yaw = 0.7 * i + 1.9 * j + 2.3 * k;
         const auto [s, c] = vp::sin_cos(3.1 * yaw);
-        const SE3 middle = turned(
+        const SE3 T_world_centre = turned(
             {0, 0, yaw}, {kPitch * (i - 0.5 * (along_x - 1)), kPitch * (j - 0.5 * (along_y - 1)),
                           kLowest + kLayer * k + kMiddle});
-        add_ragdoll(scene,
-                    middle * turned({kLean * c, kLean * s, 0}, {}) * SE3(Vec3{0, 0, -kMiddle}));
+        add_ragdoll(scene, T_world_centre * turned({kLean * c, kLean * s, 0}, {}) *
+                               SE3(Vec3{0, 0, -kMiddle}));
       }
     }
   }

@@ -107,7 +107,7 @@ Mat3 eigenvectors(const Sym3& A) {
   double a[3][3] = {{A.xx, A.xy, A.zx}, {A.xy, A.yy, A.yz}, {A.zx, A.yz, A.zz}};
   double v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   const double scale = std::max({std::fabs(A.xx), std::fabs(A.yy), std::fabs(A.zz)});
-  for (int round = 0; round < 12; ++round) {
+  for (int iteration = 0; iteration < 12; ++iteration) {
     for (int p = 0; p < 2; ++p) {
       for (int q = p + 1; q < 3; ++q) {
         if (std::fabs(a[p][q]) <= 1e-17 * scale) continue;

@@ -128,9 +128,9 @@ double terrain_penetration(const Terrain& terrain, const SE3& T, const Core& cor
                                           corner & 4 ? h.z : -h.z});
     const Terrain::Below below = terrain.below(p.x, p.y);
     const double above = below.normal.z * (p.z - below.height);  // above its triangle's plane
-    const bool apart = core.round() && above > 0.0;
+    const bool separated = core.round() && above > 0.0;
     deepest =
-        std::max(deepest, core.radius - (apart ? distance_to(terrain, p, core.radius) : above));
+        std::max(deepest, core.radius - (separated ? distance_to(terrain, p, core.radius) : above));
   }
   return deepest;
 }
@@ -222,14 +222,15 @@ Placed place(const Scene& scene, std::span<const SE3> poses, int body, const Par
     return out;
   }
   const Core core = core_of(part.shape, out.pose);
-  const Vec3 reach = {core.radius + extent(core, {1, 0, 0}), core.radius + extent(core, {0, 1, 0}),
-                      core.radius + extent(core, {0, 0, 1})};
-  out.lower = out.pose.position() - reach;
-  out.upper = out.pose.position() + reach;
+  const Vec3 half_extents = {core.radius + extent(core, {1, 0, 0}),
+                             core.radius + extent(core, {0, 1, 0}),
+                             core.radius + extent(core, {0, 0, 1})};
+  out.lower = out.pose.position() - half_extents;
+  out.upper = out.pose.position() + half_extents;
   return out;
 }
 
-bool bounds_meet(const Placed& a, const Placed& b) {
+bool bounds_overlap(const Placed& a, const Placed& b) {
   if (is_ground(*a.shape) || is_ground(*b.shape)) return true;
   return a.lower.x <= b.upper.x && b.lower.x <= a.upper.x && a.lower.y <= b.upper.y &&
          b.lower.y <= a.upper.y && a.lower.z <= b.upper.z && b.lower.z <= a.upper.z;
@@ -284,7 +285,7 @@ class Depth {
     std::sort(joined_.begin(), joined_.end());
   }
   void look_at(const Placed& a, const Placed& b) {
-    if (a.body == b.body || !bounds_meet(a, b)) return;
+    if (a.body == b.body || !bounds_overlap(a, b)) return;
     if (std::binary_search(joined_.begin(), joined_.end(), key(a.body, b.body))) return;
     deepest = std::max(deepest, penetration(*a.shape, a.pose, *b.shape, b.pose, grids_));
   }
@@ -333,15 +334,15 @@ bool is_in_place(const InPlace& rule, const Vec3& start, const Vec3& now) {
          now.x <= rule.upper.x && now.y <= rule.upper.y && now.z <= rule.upper.z;
 }
 
-double widest_gap(const Scene& scene, std::span<const SE3> poses, double time) {
-  double widest = 0.0;
+double max_joint_gap(const Scene& scene, std::span<const SE3> poses, double time) {
+  double max = 0.0;
   for (const Joint& j : scene.joints) {
     if (!exists(scene, j, time) || !is_finite_pose(poses[j.a]) || !is_finite_pose(poses[j.b]))
       continue;
     const Vec3 a = poses[j.a] * j.T_a_joint.position(), b = poses[j.b] * j.T_b_joint.position();
-    widest = std::max(widest, norm(b - a));
+    max = std::max(max, norm(b - a));
   }
-  return widest;
+  return max;
 }
 
 }  // namespace
@@ -373,7 +374,7 @@ Standing measure(const Scene& scene, std::span<const SE3> poses, double time) {
     out.sink = std::max(out.sink, std::fabs(moved.z));
   }
   out.penetration = deepest_penetration(scene, poses, time);
-  out.gap = widest_gap(scene, poses, time);
+  out.gap = max_joint_gap(scene, poses, time);
   return out;
 }
 

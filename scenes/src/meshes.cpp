@@ -64,11 +64,11 @@ Body tree() {
   // Box3D's is 0.05 of the radius of each piece's largest inscribed sphere; here all have the mean.
   const Material bark{0.9, 0.0, 0.02};
   Body body;
-  double middle = 1.0, radius = kThick;
+  double centre = 1.0, radius = kThick;
   for (int i = 0; i < kPieces; ++i) {
     const double height = kLong + 2.0 * radius;
-    body.parts.push_back({prism(radius, middle - radius, height, kSides), SE3{}, kDensity, bark});
-    middle += height;
+    body.parts.push_back({prism(radius, centre - radius, height, kSides), SE3{}, kDensity, bark});
+    centre += height;
     radius *= kThinner;
   }
   body.as_one = true;
@@ -118,10 +118,10 @@ Scene rain(int along, int group) {
   scene.seconds = 12.0;
   const Mesh field = grid_mesh(kCells, kCells, kField / kCells, [](double, double) { return 0.0; });
   const Mesh ring = ring_mesh(kSides, kSides, kRing, kTube);
-  const auto middle = [&](int i) { return kField * (i - 0.5 * (along - 1)); };
+  const auto centre = [&](int i) { return kField * (i - 0.5 * (along - 1)); };
   for (int i = 0; i < along; ++i) {
     for (int j = 0; j < along; ++j) {
-      Body ground = fixed_body(field, SE3(Vec3{middle(i), middle(j), 0.0}));
+      Body ground = fixed_body(field, SE3(Vec3{centre(i), centre(j), 0.0}));
       ground.parts.push_back({ring, SE3{}, 1000.0, {}});
       add(scene, std::move(ground));
     }
@@ -132,7 +132,7 @@ Scene rain(int along, int group) {
     const std::size_t first = scene.bodies.size();
     for (int j = 0; j < along; ++j) {
       for (int k = 0; k < group; ++k) {
-        const Vec3 at{middle(n % along) + kPitch * k, middle(j), kHeight};
+        const Vec3 at{centre(n % along) + kPitch * k, centre(j), kHeight};
         add_ragdoll(scene, turned({0.0, 0.0, -0.5 * vp::kPi}, at));
       }
     }

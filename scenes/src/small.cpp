@@ -91,11 +91,12 @@ Scene t_handle() {
   constexpr double kAluminium = 2700.0;
   const Box bar{{0.1, 0.015, 0.015}}, stem{{0.015, 0.015, 0.05}};
   // The centre of mass is between the two parts, weighted by their masses.
-  const double apart = bar.half_extents.z + stem.half_extents.z;
-  const double share = mass_of(stem, 1.0).mass / (mass_of(stem, 1.0).mass + mass_of(bar, 1.0).mass);
+  const double separation = bar.half_extents.z + stem.half_extents.z;
+  const double fraction =
+      mass_of(stem, 1.0).mass / (mass_of(stem, 1.0).mass + mass_of(bar, 1.0).mass);
   Body handle;
-  handle.parts.push_back({bar, SE3(Vec3{0, 0, -share * apart}), kAluminium, {}});
-  handle.parts.push_back({stem, SE3(Vec3{0, 0, (1.0 - share) * apart}), kAluminium, {}});
+  handle.parts.push_back({bar, SE3(Vec3{0, 0, -fraction * separation}), kAluminium, {}});
+  handle.parts.push_back({stem, SE3(Vec3{0, 0, (1.0 - fraction) * separation}), kAluminium, {}});
   handle.spin = {0.2, 0.0, 8.0};  // nearly about the intermediate axis
   Scene scene;
   scene.gravity = {};
@@ -159,8 +160,8 @@ Scene conveyor() {
   const Box board{{2.5, 1.0, 0.05}};
   add(scene, fixed_body(board, slope));
   for (int i = 0; i < 5; ++i) {
-    const Vec3 place{-2.0, 0.35 * (i - 2), board.half_extents.z + kRadius};
-    add(scene, body_of(Sphere{kRadius}, slope * SE3(place), {0.6, 0.0, 0.0075 * i}));
+    const Vec3 position{-2.0, 0.35 * (i - 2), board.half_extents.z + kRadius};
+    add(scene, body_of(Sphere{kRadius}, slope * SE3(position), {0.6, 0.0, 0.0075 * i}));
   }
   return scene;
 }

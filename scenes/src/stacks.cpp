@@ -32,10 +32,10 @@ int cells_of(int count) {
 }
 
 Body poured(int kind, Random& random, const Vec3& position) {
-  const Vec3 turn = random.in_cube(1.0);
-  if (kind == 1) return body_of(Sphere{0.5}, turned(vp::kPi * turn, position));
-  if (kind == 2) return body_of(Capsule{0.3, 0.3}, turned(vp::kPi * turn, position));
-  return body_of(kCrate, turned(kTilt * turn, position));
+  const Vec3 rotation = random.in_cube(1.0);
+  if (kind == 1) return body_of(Sphere{0.5}, turned(vp::kPi * rotation, position));
+  if (kind == 2) return body_of(Capsule{0.3, 0.3}, turned(vp::kPi * rotation, position));
+  return body_of(kCrate, turned(kTilt * rotation, position));
 }
 
 // Rows of boxes in the xz plane, each one box shorter than the row below it.

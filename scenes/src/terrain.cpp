@@ -66,10 +66,10 @@ Scene hills(int count) {
     const int column = k % along, row = k / along;
     const double x = kPitch * (column - 0.5 * (along - 1));
     const double y = kPitch * (row - 0.5 * (along - 1));
-    const Vec3 turn = vp::kPi * random.in_cube(1.0), place{x, y, bowl(x, y) + 1.2};
+    const Vec3 rotation = vp::kPi * random.in_cube(1.0), position{x, y, bowl(x, y) + 1.2};
     const Material material{0.6, 0.2, 0.002};
     const Shape shapes[] = {Sphere{0.3}, Capsule{0.2, 0.25}, Box{{0.3, 0.25, 0.2}}};
-    Body body = body_of(shapes[k % 3], turned(turn, place), material);
+    Body body = body_of(shapes[k % 3], turned(rotation, position), material);
     add(scene, std::move(body));
   }
   return scene;
@@ -126,9 +126,9 @@ Scene furniture(int along, int layers) {
     for (int k = 0; k < along * along; ++k) {
       Body body = k % 3 == 0 ? table() : k % 3 == 1 ? jack() : dumbbell();
       const int column = k % along, row = k / along;
-      const Vec3 place{kPitch * (column - 0.5 * (along - 1)), kPitch * (row - 0.5 * (along - 1)),
-                       0.8 + kPitch * layer};
-      body.T_world_body = turned(vp::kPi * random.in_cube(1.0), place);
+      const Vec3 position{kPitch * (column - 0.5 * (along - 1)), kPitch * (row - 0.5 * (along - 1)),
+                          0.8 + kPitch * layer};
+      body.T_world_body = turned(vp::kPi * random.in_cube(1.0), position);
       add(scene, std::move(body));
     }
   }

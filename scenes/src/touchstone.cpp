@@ -47,10 +47,10 @@ void add_slider(Course& b, double y) {
 void add_roller(Course& b, double y) {
   constexpr double kSpeed = 3.0, kRadius = 0.5;
   const double slips = 2.0 * kSpeed / (7.0 * kMu * kG);
-  const double way = kSpeed * slips - 0.5 * kMu * kG * slips * slips;
+  const double distance = kSpeed * slips - 0.5 * kMu * kG * slips * slips;
   const int ball = b.add(moving(Sphere{kRadius}, {0, y, kRadius}, {kSpeed, 0, 0}));
   b.expect("a ball slides, then rolls", ball, {},
-           {way + 5.0 / 7.0 * kSpeed * (kEnd - slips), y, kRadius}, 0.08);
+           {distance + 5.0 / 7.0 * kSpeed * (kEnd - slips), y, kRadius}, 0.08);
 }
 
 // Both fall, and one collides with the other, of twice its mass. Whatever the impulse, the motion

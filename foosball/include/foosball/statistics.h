@@ -37,12 +37,12 @@ struct Histogram {
   }
   // Precondition: 0 <= fraction <= 1. Linear within a bin; 0 if empty.
   double quantile(double fraction) const {
-    const double wanted = fraction * static_cast<double>(count());
+    const double rank = fraction * static_cast<double>(count());
     double below = 0.0;
     for (std::size_t i = 0; i < bins.size(); ++i) {
       const double here = static_cast<double>(bins[i]);
-      if (here > 0.0 && below + here >= wanted) {
-        return (static_cast<double>(i) + (wanted - below) / here) * kWidth;
+      if (here > 0.0 && below + here >= rank) {
+        return (static_cast<double>(i) + (rank - below) / here) * kWidth;
       }
       below += here;
     }
@@ -160,7 +160,7 @@ class StatisticsObserver {
   // Detects reversals of a hand on one axis.
   struct Reversals {
     double extreme = 0.0;
-    int way = 0;  // direction of motion: -1, +1; 0: not known yet
+    int direction = 0;  // direction of motion: -1, +1; 0: not known yet
     bool update(double value, double hysteresis);
   };
   struct Rod {

@@ -146,11 +146,11 @@ bool BoundingTree::insert(std::uint32_t item, const FloatBounds& bounds) {
       best = i;
       smallest = growth;
     });
-    const auto room = static_cast<unsigned>(std::countr_one(n.used));
+    const auto free_slot = static_cast<unsigned>(std::countr_one(n.used));
     const bool into_leaf = best < 8 && ((n.leaves >> best) & 1u) != 0;
     const bool growing = best == 8 || into_leaf || smallest > half_area(bounds);
-    if (room < 8 && growing) {
-      set_child(8 * node + room, kLeaf | item, bounds);
+    if (free_slot < 8 && growing) {
+      set_child(8 * node + free_slot, kLeaf | item, bounds);
       fit_above(node);
       ++size_;
       ++changes_;

@@ -163,7 +163,7 @@ void collide_boxes(const CorePair& pair, double margin, PairCache& cache, Manifo
   if (m.min_separation > margin) return;
   const ContactQuery query(pair, margin);
   FaceAxis face;
-  const bool near = find_best_face(query, boxes, face);
+  const bool is_within_margin = find_best_face(query, boxes, face);
   face.normal = face_normal(pair, boxes, face.of_a, face.face);
   face.face = facing(boxes, face.of_a, face.face);
   EdgeAxis edge;
@@ -173,7 +173,7 @@ void collide_boxes(const CorePair& pair, double margin, PairCache& cache, Manifo
     remember(cache, face.normal, face.of_a ? PairCache::face_of_a : PairCache::face_of_b,
              face.face);
     m.min_separation = face.separation;
-    if (!near) return;
+    if (!is_within_margin) return;
     Feature feature;
     face_feature(face.of_a ? pair.a : pair.b, face.of_a ? SE3{} : pair.T_a_b, face.face, feature);
     // A point of the patch proves the separation.

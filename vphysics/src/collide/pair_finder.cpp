@@ -43,9 +43,9 @@ void PairFinder::resize(std::size_t proxies) {
   moved_.resize(proxies);
   pending_.resize(proxies);
   // So that the first busy step need not allocate.
-  const std::size_t room = 64 + 2 * bounds_.capacity();
-  for (auto* list : {&candidates_, &new_keys_, &key_scratch_}) list->reserve(room);
-  for (auto* list : {&moved_list_, &pending_list_}) list->reserve(room);
+  const std::size_t capacity = 64 + 2 * bounds_.capacity();
+  for (auto* list : {&candidates_, &new_keys_, &key_scratch_}) list->reserve(capacity);
+  for (auto* list : {&moved_list_, &pending_list_}) list->reserve(capacity);
 }
 
 std::uint32_t PairFinder::add(const ProxyDesc& desc) {

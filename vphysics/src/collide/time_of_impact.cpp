@@ -55,7 +55,7 @@ struct TurningShape {
   Mat3 R;
   Vec3 arm;  // to the origin of its frame
   Vec3 w;
-  double rate, reach;
+  double rate, extent;
   mutable int hint = 0;
 
   TurningShape(const MovingShape& m, double time)
@@ -69,7 +69,7 @@ struct TurningShape {
       R = rotation * R;
       arm = rotation * arm;
     }
-    reach = norm(arm + R * core_centre(*shape)) + core_extent(*shape);
+    extent = norm(arm + R * core_centre(*shape)) + core_extent(*shape);
   }
   Vec3 support(const Vec3& d) const {
     return arm + R * core_support(*shape, transposed_times(R, d), hint);
@@ -101,8 +101,8 @@ class SeparationBound {
         derivative_(dot(n, pair.v) + dot(pair.D, cross(rate, n))) {
     const double turning = norm(cross(rate, n)), speed = norm(pair.v);
     const auto bend = [&](const TurningShape& s) {
-      const double across = is_turning(rate) ? norm(s.w - rate) : norm(cross(s.w, n));
-      return across * (s.rate + turning) * s.reach;
+      const double tangential = is_turning(rate) ? norm(s.w - rate) : norm(cross(s.w, n));
+      return tangential * (s.rate + turning) * s.extent;
     };
     bend_ = bend(pair.a) + bend(pair.b) +
             turning * (norm(rate) * (norm(pair.D) + speed * horizon) + 2.0 * speed);

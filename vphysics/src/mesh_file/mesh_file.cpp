@@ -47,16 +47,16 @@ Expected<MeshFile> MeshBuilder::finish(const char* format) {
   }
   // Triangles refer only to finite vertices. Removes the other vertices and renumbers.
   std::vector<std::uint32_t> number(mesh.vertices.size());
-  std::size_t kept = 0;
+  std::size_t count = 0;
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-    number[i] = static_cast<std::uint32_t>(kept);
-    if (good(static_cast<std::int64_t>(i))) mesh.vertices[kept++] = mesh.vertices[i];
+    number[i] = static_cast<std::uint32_t>(count);
+    if (good(static_cast<std::int64_t>(i))) mesh.vertices[count++] = mesh.vertices[i];
   }
-  mesh.vertices.resize(kept);
+  mesh.vertices.resize(count);
   for (auto& triangle : mesh.triangles) {
     for (std::uint32_t& corner : triangle) corner = number[corner];
   }
-  if (kept == 0) {
+  if (count == 0) {
     return tl::make_unexpected(Error{
         Errc::bad_data, std::string("no vertex that ") + format + " has; is it such a file?"});
   }

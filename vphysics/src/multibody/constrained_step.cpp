@@ -258,13 +258,13 @@ Expected<void> return_to_constraints(const Model& model, ConstraintWork& work, s
   constexpr double kTolerance = 1e-12;
   constexpr int kMaxSteps = 20;
   std::copy(q.begin(), q.end(), work.q_before.begin());
-  std::size_t held = 0;
+  std::size_t count = 0;
   for (std::size_t j = 0; j < work.joints.size(); ++j) {
-    if (work.force_laws.on[j].at_step) work.joints[held++] = work.joints[j];
+    if (work.force_laws.on[j].at_step) work.joints[count++] = work.joints[j];
   }
-  work.joints.resize(held);
+  work.joints.resize(count);
   auto closed = close(model, work, q, kTolerance, kMaxSteps);
-  if (!closed && held > 0) {
+  if (!closed && count > 0) {
     work.joints.clear();
     std::copy(work.q_before.begin(), work.q_before.end(), q.begin());
     closed = close(model, work, q, kTolerance, kMaxSteps);

@@ -15,7 +15,7 @@ tl::unexpected<Error> invalid_constraint(std::string why) {
   return tl::make_unexpected(Error{Errc::invalid_argument, std::move(why)});
 }
 
-const detail::LinkFrame<double>& place_of(const Model& model, int link) {
+const detail::LinkFrame<double>& frame_of(const Model& model, int link) {
   return model.tree().frames[static_cast<std::size_t>(link)];
 }
 // Pose of a link in its tree's frame.
@@ -71,18 +71,18 @@ SE3 ConstraintView::T_world_link(int link) const {
 }
 
 SE3 ConstraintView::T_between(int a, int b) const {
-  struct Place {
+  struct LinkPose {
     SE3 X;
     Vec3 origin;
   };
-  const auto find = [&](int link) -> Place {
+  const auto find = [&](int link) -> LinkPose {
     if (link == kWorld) return {};
-    const auto& frame = place_of(model_, link);
+    const auto& frame = frame_of(model_, link);
     if (frame.node == kWorld)
       return {SE3(frame.T_node_link.rotation(), {}), frame.T_node_link.position()};
     return {pose_in_tree(data_, frame), detail::origin_of(data_.work(), frame.node)};
   };
-  const Place from = find(a), to = find(b);
+  const LinkPose from = find(a), to = find(b);
   return Inv(from.X) * (SE3(to.origin - from.origin) * to.X);
 }
 
@@ -93,7 +93,7 @@ se3 ConstraintView::velocity(int link) const {
 
 se3 ConstraintView::bias(int link) const {
   if (link == kWorld) return {};
-  const auto& frame = place_of(model_, link);
+  const auto& frame = frame_of(model_, link);
   if (frame.node == kWorld) return {};
   return InvAd(pose_in_tree(data_, frame), bias_[static_cast<std::size_t>(frame.node)]);
 }
@@ -102,7 +102,7 @@ void ConstraintView::add(const ConstraintRows& out, std::size_t row, int link,
                          const dse3& F) const {
   if (link == kWorld) return;
   const auto& tree = model_.tree();
-  const auto& frame = place_of(model_, link);
+  const auto& frame = frame_of(model_, link);
   if (frame.node == kWorld) return;
   const dse3 in_tree = InvdAd(pose_in_tree(data_, frame), F);
   const std::span<double> J = out.row(row);

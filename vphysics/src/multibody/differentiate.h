@@ -353,8 +353,8 @@ bool differentiate(const State<T>& state, DerivativesWork<T>& memory, Span<dse3T
     for (int k = 0; k < count; ++k) {
       const auto i = static_cast<std::size_t>(first + k);
       const auto forces = memory.lane(k);
-      const dse3T<T> gain = inverse ? forces.wrench(kForceA) : state.work.factors[i].W;
-      const T W[6] = {gain.m.x, gain.m.y, gain.m.z, gain.f.x, gain.f.y, gain.f.z};
+      const dse3T<T> wrench = inverse ? forces.wrench(kForceA) : state.work.factors[i].W;
+      const T W[6] = {wrench.m.x, wrench.m.y, wrench.m.z, wrench.f.x, wrench.f.y, wrench.f.z};
       fill_velocity(memory, first + k, forces, W, inverse, out);
       const auto& node = state.tree.nodes[static_cast<std::size_t>(memory.branches[i].node)];
       if (inverse) out.a(i, i) += T(node.armature);

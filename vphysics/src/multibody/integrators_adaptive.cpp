@@ -91,7 +91,7 @@ class DormandPrince {
   // Evaluates all stages. Returns E, or infinity if a stage or the new state is not valid.
   Expected<T> attempt(std::span<const T> q, std::span<const T> v, T t, T h) {
     for (std::size_t s = 1; s < kMaxStages; ++s) {
-      reach(v, h, s);
+      set_stage(v, h, s);
       integrate<T>(model_, q, work_.u, work_.q);
       if (!rate_on_group<T>(model_.tree(), work_.u, work_.v, work_.u_rate[s])) return kNoState;
       if (!finite(work_.q) || !finite(work_.v)) return kNoState;
@@ -137,7 +137,7 @@ class DormandPrince {
   }
   T tolerated(T magnitude) const { return options_.absolute + options_.relative * magnitude; }
 
-  void reach(std::span<const T> v, T h, std::size_t s) {
+  void set_stage(std::span<const T> v, T h, std::size_t s) {
     for (std::size_t i = 0; i < v.size(); ++i) {
       T u = 0, w = 0;
       for (std::size_t r = 0; r < s; ++r) {

@@ -22,13 +22,13 @@ namespace {
 
 // A link's node and pose, in the tree's frame.
 template <class T>
-struct Place {
+struct LinkPose {
   int node;
   SE3T<T> X;
   Vec3T<T> origin;  // of the tree's frame in the world
 };
 template <class T>
-Place<T> place_of(const Tree<base_t<T>>& tree, const Work<T>& work, int link) {
+LinkPose<T> link_pose(const Tree<base_t<T>>& tree, const Work<T>& work, int link) {
   const auto& frame = tree.frames[static_cast<std::size_t>(link)];
   return {frame.node, pose_of(work, frame.node) * wide<T>(frame.T_node_link),
           origin_of(work, frame.node)};
@@ -39,7 +39,7 @@ Place<T> place_of(const Tree<base_t<T>>& tree, const Work<T>& work, int link) {
 template <class T>
 struct LinkView {
   using Column = se3T<T>;
-  Place<T> at;
+  LinkPose<T> at;
   Frame frame;
 
   Column operator()(const se3T<T>& S) const {
@@ -59,7 +59,7 @@ struct LinkView {
 template <class T>
 struct PointView {
   using Column = Vec3T<T>;
-  Place<T> at;
+  LinkPose<T> at;
   Frame frame;
   Vec3T<T> x;
 
@@ -77,12 +77,12 @@ struct PointView {
 
 template <class T>
 LinkView<T> view_of(const Tree<base_t<T>>& tree, const Work<T>& work, int link, Frame frame) {
-  return {place_of(tree, work, link), frame};
+  return {link_pose(tree, work, link), frame};
 }
 template <class T>
 PointView<T> view_of(const Tree<base_t<T>>& tree, const Work<T>& work, int link, Frame frame,
                      const Vec3T<T>& point) {
-  const Place<T> at = place_of(tree, work, link);
+  const LinkPose<T> at = link_pose(tree, work, link);
   return {at, frame, at.X * point};
 }
 

@@ -116,13 +116,13 @@ class NodeMaker {
  public:
   NodeMaker(Tree<double>& tree, const LinkSpec& link) : tree_(tree), link_(link) {
     if (link.parent == kWorld) {
-      place_ = {kWorld, link.T_parent_joint, 0, 0};
+      frame_ = {kWorld, link.T_parent_joint, 0, 0};
     } else {
       const LinkFrame<double>& parent = tree.frames[static_cast<std::size_t>(link.parent)];
-      place_ = {parent.node, parent.T_node_link * link.T_parent_joint, 0, 0};
+      frame_ = {parent.node, parent.T_node_link * link.T_parent_joint, 0, 0};
     }
-    place_.q = tree.coordinates;
-    place_.v = tree.velocities;
+    frame_.q = tree.coordinates;
+    frame_.v = tree.velocities;
   }
 
   void operator()(const FixedJoint&) {}
@@ -151,11 +151,11 @@ class NodeMaker {
 
   // Adds the link's inertia to the node, and returns the link's frame.
   LinkFrame<double> finish() {
-    if (place_.node != kWorld) {
-      Inertia& J = tree_.nodes[static_cast<std::size_t>(place_.node)].J;
-      J = J + link_.inertia.InvXform(place_.T_node_link);
+    if (frame_.node != kWorld) {
+      Inertia& J = tree_.nodes[static_cast<std::size_t>(frame_.node)].J;
+      J = J + link_.inertia.InvXform(frame_.T_node_link);
     }
-    return place_;
+    return frame_;
   }
 
  private:
@@ -167,26 +167,26 @@ class NodeMaker {
   void add(NodeKind kind, const Mat3& Q, int coordinates, int dofs, double pitch = 0.0,
            const UserJoint* user = nullptr) {
     Node<double> node{};
-    node.parent = place_.node;
+    node.parent = frame_.node;
     node.kind = kind;
     node.q = tree_.coordinates;
     node.v = tree_.velocities;
     node.dofs = dofs;
-    node.T_parent = place_.T_node_link * SE3(Q, {});
+    node.T_parent = frame_.T_node_link * SE3(Q, {});
     node.pitch = pitch;
     node.armature = link_.armature;
     node.damping = link_.damping;
     node.user = user;
     tree_.coordinates += coordinates;
     tree_.velocities += dofs;
-    place_.node = static_cast<int>(tree_.nodes.size());
-    place_.T_node_link = SE3(transpose(Q), {});
+    frame_.node = static_cast<int>(tree_.nodes.size());
+    frame_.T_node_link = SE3(transpose(Q), {});
     tree_.nodes.push_back(node);
   }
 
   Tree<double>& tree_;
   const LinkSpec& link_;
-  LinkFrame<double> place_;
+  LinkFrame<double> frame_;
 };
 
 template <class To, class From>

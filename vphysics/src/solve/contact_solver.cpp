@@ -107,15 +107,15 @@ void prepare_approach(const StepContext& s, const SolverBody& a, const SolverBod
   const Vec3 forced =
       b.forced_v + cross(b.forced_w, p.arm_b) - a.forced_v - cross(a.forced_w, p.arm_a);
   const double approach_speed = -dot(c.normal, relative_velocity(a, b, c, p));
-  const double gain = -dot(c.normal, forced);  // g dt
+  const double forced_speed = -dot(c.normal, forced);  // g dt
   const double left = s.duration / s.step;
   // A swept body is at its contact; its separation is within the tolerance.
   const double separation = c.swept ? 0.0 : std::max(0.0, p.separation);
-  p.early = gain * (left - 0.5);
-  p.fall = 2.0 * gain / s.step * separation;
+  p.early = forced_speed * (left - 0.5);
+  p.fall = 2.0 * forced_speed / s.step * separation;
   const double speed = std::max(0.0, approach_speed - p.early);
   p.approach = std::sqrt(std::max(0.0, speed * speed + p.fall));
-  p.hits = approach_speed - gain * left > s.restitution_threshold;
+  p.hits = approach_speed - forced_speed * left > s.restitution_threshold;
   p.bounces = false;
 }
 

@@ -37,19 +37,19 @@ void keep(BodyState* states, VelocityChange* velocity_changes, const std::uint32
 void find_velocity_changes(BodyState* states, VelocityChange* velocity_changes,
                            const std::uint32_t* bodies, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
-    VelocityChange& gain = velocity_changes[bodies[i]];
-    lanes::store<8>(gain.velocity,
-                    lanes::load<8>(states[bodies[i] + 1].velocity) - lanes::load<8>(gain.velocity));
+    VelocityChange& change = velocity_changes[bodies[i]];
+    lanes::store<8>(change.velocity, lanes::load<8>(states[bodies[i] + 1].velocity) -
+                                         lanes::load<8>(change.velocity));
   }
 }
 void repeat(BodyState* states, VelocityChange* velocity_changes, const std::uint32_t* bodies,
             std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
     BodyState& state = states[bodies[i] + 1];
-    VelocityChange& gain = velocity_changes[bodies[i]];
+    VelocityChange& change = velocity_changes[bodies[i]];
     const Row8 before = lanes::load<8>(state.velocity);
-    lanes::store<8>(state.velocity, before + lanes::load<8>(gain.velocity));
-    lanes::store<8>(gain.velocity, before);
+    lanes::store<8>(state.velocity, before + lanes::load<8>(change.velocity));
+    lanes::store<8>(change.velocity, before);
   }
 }
 

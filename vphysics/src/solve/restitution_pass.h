@@ -41,7 +41,7 @@ struct Approaching {
   void find_approach(const LanesOf<W, P>& c, const Normals<W, P>& normals, float h) {
     Vec3T<F> a, b;
     c.gather_accelerations(a, b);
-    gain = larger(F(0.0f), dot(normals.n, c.falls_a * a - c.falls_b * b));
+    acceleration = larger(F(0.0f), dot(normals.n, c.falls_a * a - c.falls_b * b));
     const F added = F(h) * dot(normals.n, a - b);
     soonest = F(h);
     fastest = F(0.0f);
@@ -53,7 +53,7 @@ struct Approaching {
       soonest = select(reaches[i], smaller(soonest, time), soonest);
     }
   }
-  F u[P], s[P], separation[P], gain, soonest, fastest;
+  F u[P], s[P], separation[P], acceleration, soonest, fastest;
   LaneMask<W> reaches[P], closes;  // reaches: a point within h; closes: any point of the lane
 };
 
@@ -85,10 +85,12 @@ bool apply_restitution_lanes(LanesOf<W, P>& c, float h, float threshold) {
   const F after = F(h) - approach_speed.soonest;
   F leaving(0.0f), gained(0.0f);
   for (int i = 0; i < P; ++i) {
-    const F start = larger(F(0.0f), -approach_speed.u[i] - F(0.5f * h) * approach_speed.gain);
+    const F start =
+        larger(F(0.0f), -approach_speed.u[i] - F(0.5f * h) * approach_speed.acceleration);
     const F at_surface =
-        sqrt(start * start + F(2.0f) * approach_speed.gain * approach_speed.separation[i]);
-    const F target = e * at_surface - approach_speed.gain * (F(0.5f * h) - approach_speed.soonest);
+        sqrt(start * start + F(2.0f) * approach_speed.acceleration * approach_speed.separation[i]);
+    const F target =
+        e * at_surface - approach_speed.acceleration * (F(0.5f * h) - approach_speed.soonest);
     leaving = larger(leaving, select(approach_speed.reaches[i], e * at_surface, F(0.0f)));
     const auto acts = both(bounces, approach_speed.reaches[i]);
     u[i] = approach_speed.u[i] - target;
@@ -119,7 +121,7 @@ bool apply_restitution_lanes(LanesOf<W, P>& c, float h, float threshold) {
     speed = select(first, now[i], speed);
     separation = select(first, approach_speed.s[i], separation);
   }
-  const F target = leaving * after - F(0.5f) * approach_speed.gain * after * after;
+  const F target = leaving * after - F(0.5f) * approach_speed.acceleration * after * after;
   const F error = target - (larger(F(0.0f), separation) + F(h) * speed);
   const auto moves = both(bounces, gained > F(1e-9f));
   const F part = select(moves, clamped(error / larger(gained, F(1e-9f)), F(h)), F(0.0f));

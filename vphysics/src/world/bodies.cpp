@@ -47,7 +47,7 @@ Vec3 mean_rate(const Body& body, const Mat3& next) {
 
 }  // namespace
 
-void place(Body& body, const Vec3& reference, const Mat3& R) {
+void set_pose(Body& body, const Vec3& reference, const Mat3& R) {
   const bool at_centre = body.motion == Motion::dynamic && !body.is_link;
   body.T = SE3(R, at_centre ? reference - R * body.centre : reference);
   body.moved();
@@ -58,7 +58,7 @@ void advance_body(Body& body, const collide::Motion& m, double h, bool freely, c
   if (freely && tumbles && body.rotates_freely()) {
     const Rotated free = rotated_freely(body, h, more_w);
     body.w = free.w;
-    return place(body, m.x + h * m.v, free.R);
+    return set_pose(body, m.x + h * m.v, free.R);
   }
   const Mat3& R = body.T.rotation();
   const bool turns = m.w.x != 0.0 || m.w.y != 0.0 || m.w.z != 0.0;
@@ -66,7 +66,7 @@ void advance_body(Body& body, const collide::Motion& m, double h, bool freely, c
   if (tumbles && turns) {
     body.w = body.rotates_freely() ? mean_rate(body, next) : rate_at(body, next);
   }
-  place(body, m.x + h * m.v, next);
+  set_pose(body, m.x + h * m.v, next);
 }
 
 bool never_collide(const Body& a, const Body& b) {

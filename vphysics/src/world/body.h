@@ -144,7 +144,7 @@ inline Vec3 reference_point(const Body& body) {
   return body.motion == Motion::dynamic && !body.is_link ? body.T * body.centre : body.T.position();
 }
 // Moves the body so that its reference point is at `reference`.
-void place(Body& body, const Vec3& reference, const Mat3& R);
+void set_pose(Body& body, const Vec3& reference, const Mat3& R);
 
 // Distance from the body's reference point to the farthest point of its local bounds.
 double bounding_radius_of(const Body& body);

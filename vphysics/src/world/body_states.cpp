@@ -172,7 +172,7 @@ void BodyStates::copy_to_body(Body& body, std::uint32_t index) const {
   const Vec3 rotation = vector_of(state.displacement + 3) - vector_of(start + 3);
   body.v = vector_of(state.velocity);
   body.w = vector_of(state.velocity + 3);
-  place(body, x, rotated(body.T.rotation(), rotation));
+  set_pose(body, x, rotated(body.T.rotation(), rotation));
 }
 
 // Whether contacts and joints left its rotation unchanged, though it has contact slots. If so, it

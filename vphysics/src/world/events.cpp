@@ -19,9 +19,9 @@ void Events::touch(const Colliders& colliders, Contact& c, bool touching) {
 
 // Keeps the events sorted by time. Only swept sensors between two impacts arrive out of order.
 void Events::add(const ContactEvent& event) {
-  auto place = events_.end();
-  while (place != events_.begin() && std::prev(place)->time > event.time) --place;
-  events_.insert(place, event);
+  auto position = events_.end();
+  while (position != events_.begin() && std::prev(position)->time > event.time) --position;
+  events_.insert(position, event);
 }
 
 void Events::report_destroyed(const Colliders& colliders) {

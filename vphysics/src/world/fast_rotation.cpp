@@ -16,8 +16,8 @@ namespace {
 constexpr double kFastRotation = 0.75, kSlowMotion = 0.5, kShallow = 0.5;
 // Smaller rotations are not looked at [rad].
 constexpr double kMinRotation = 0.005;
-// Of two that touch at the start, poses at these angles [rad] and distances of one reach are
-// tested: a part of a body that enters another one is then still in it.
+// Of two that touch at the start, poses at these angles [rad] and distances of one bounding radius
+// are tested: a part of a body that enters another one is then still in it.
 constexpr double kSample = 0.4, kMaxSamples = 20.0;
 constexpr int kMaxAdvances = 64;
 
@@ -105,7 +105,7 @@ class FastRotation {
   // contacts and the distance of the own body's farthest point from its centre.
   struct Pair {
     collide::MovingShape own, other;
-    double shallow, reach;
+    double shallow, bounding_radius;
   };
 
   // The closest points at a fraction of the motion, if they are within the limit.
@@ -147,12 +147,12 @@ class FastRotation {
   double end_of_shallow(const Pair& pair, double shallow) const {
     const double rotation = norm(pair.own.motion.w),
                  shift = norm(pair.own.motion.v - pair.other.motion.v);
-    const int samples =
-        1 + static_cast<int>(std::min(rotation / kSample + shift / pair.reach, kMaxSamples));
+    const int samples = 1 + static_cast<int>(std::min(
+                                rotation / kSample + shift / pair.bounding_radius, kMaxSamples));
     int k = 1;
     while (k <= samples && !overlaps_deeply(static_cast<double>(k) / samples, shallow, pair)) ++k;
     if (k > samples) return 1.0;
-    const double speed = shift + (rotation + norm(pair.other.motion.w)) * pair.reach;
+    const double speed = shift + (rotation + norm(pair.other.motion.w)) * pair.bounding_radius;
     double fraction = static_cast<double>(k - 1) / samples;
     for (int i = 0; i < kMaxAdvances; ++i) {
       collide::ClosestPoints points;

@@ -191,7 +191,7 @@ void ImpactStage::apply_corrections(std::span<const std::uint32_t> of) {
     if (body.is_link || body.motion != Motion::dynamic) continue;
     const solve::SolverBody& s = rows_.body(i);
     if (s.shift == Vec3{} && s.rotation == Vec3{}) continue;
-    place(body, s.x + s.shift, orthonormalized(Exp(s.rotation).matrix() * body.T.rotation()));
+    set_pose(body, s.x + s.shift, orthonormalized(Exp(s.rotation).matrix() * body.T.rotation()));
   }
 }
 

@@ -293,10 +293,10 @@ bool JointSteps::is_far_open(const BodyJoint& joint, const BLOCK& block, int lan
     size =
         std::min(size, std::max(body.bounding_radius, norm(T_body_joint.position() - body.centre)));
   };
-  const auto is_open = [&](double gap) {
+  const auto is_open = [&](double separation) {
     find_size(joint.a, joint.T_a_joint);
     find_size(joint.b, joint.T_b_joint);
-    return gap > kMaxJointSeparation * size;
+    return separation > kMaxJointSeparation * size;
   };
   const double fastest = kMaxJointCorrectionSpeed * context_.speed_unit;
   constexpr int kPoint = BLOCK::kPointRows;
