@@ -105,8 +105,8 @@ struct Net {
     for (int c = 0; c < kLastColour; ++c) {
       const auto one = [&](const auto& of_kind, auto& colour) {
         using Run = typename std::remove_cvref_t<decltype(of_kind)>::Run;
-        if (colour.lanes > 0) {
-          f(of_kind, Run{colour.blocks.data(), colour.lanes, kLanes, states.data()});
+        if (colour.slots > 0) {
+          f(of_kind, Run{colour.blocks.data(), colour.slots, kLanes, states.data()});
         }
       };
       one(passes.one, graph.of<1>(kSharedRegion, c));
@@ -133,7 +133,7 @@ struct Net {
     for (int round = 0; round < 2; ++round) {
       for_runs(passes, [&](const auto& p, const auto& run) {
         p.solve_again(run, soft);
-        for (std::uint32_t l = 0; l < run.lanes; ++l)
+        for (std::uint32_t l = 0; l < run.slots; ++l)
           acted.push_back(run.blocks[l / kLanes].active.lane[l % kLanes]);
       });
     }
@@ -151,7 +151,7 @@ struct Net {
       add(state.displacement);
     }
     for_runs(passes(), [&](const auto&, const auto& run) {
-      for (std::uint32_t l = 0; l < run.lanes; ++l) {
+      for (std::uint32_t l = 0; l < run.slots; ++l) {
         auto& block = run.blocks[l / kLanes];
         for (const Field* f : {&block.active, &block.given, &block.bias[0]})
           all.push_back(f->lane[l % kLanes]);
@@ -302,7 +302,7 @@ TEST(Passes, GiveTheSameBitsInEveryWidth) {
       }
     }
     nets[0].for_runs(passes(), [&](const auto&, const auto& run) {
-      for (std::uint32_t l = 0; l < run.lanes; ++l) {
+      for (std::uint32_t l = 0; l < run.slots; ++l) {
         const auto& block = run.blocks[l / kLanes];
         loaded += block.impulse[0].lane[l % kLanes] > 0.0f;
         idle += block.active.lane[l % kLanes] == 0.0f;

@@ -66,7 +66,7 @@ void ContactGraph::clear() {
   const auto empty = [](auto& colours) {
     for (auto& colour : colours) {
       colour.blocks.clear();
-      colour.lanes = 0;
+      colour.slots = 0;
     }
   };
   for (std::size_t region = 0; region < regions_in_use_; ++region) {
@@ -133,7 +133,7 @@ template <int P>
 void ContactGraph::add_slot(std::uint32_t contact, const End& a, const End& b, ContactSlot& slot) {
   ColourBlocks<P>& colour = of<P>(slot.region, slot.colour);
   if (slot.colour < kColours) regions_[slot.region].in_use.insert(slot.colour);
-  slot.index = colour.lanes++;
+  slot.index = colour.slots++;
   const std::size_t block = ColourBlocks<P>::block_of(slot.index, slot.colour);
   const int lane = ColourBlocks<P>::lane_of(slot.index, slot.colour);
   if (block == colour.blocks.size()) {
@@ -152,7 +152,7 @@ template <int P>
 std::uint32_t ContactGraph::remove_slot(const ContactSlot& slot) {
   ColourBlocks<P>& colour = of<P>(slot.region, slot.colour);
   ContactSlot last = slot;
-  last.index = --colour.lanes;
+  last.index = --colour.slots;
   ContactBlock<P>& from = block<P>(last);
   std::uint32_t moved = kNoContact;
   if (last.index != slot.index) {
@@ -163,7 +163,7 @@ std::uint32_t ContactGraph::remove_slot(const ContactSlot& slot) {
   if (slot.colour == kLastColour || last.index % kLanes == 0) colour.blocks.pop_back();
   Region& region = regions_[slot.region];
   if (slot.colour < kColours &&
-      region.ones[slot.colour].lanes + region.fours[slot.colour].lanes == 0) {
+      region.ones[slot.colour].slots + region.fours[slot.colour].slots == 0) {
     region.in_use.erase(slot.colour);
   }
   return moved;

@@ -76,7 +76,7 @@ struct ContactSlot {
 template <int P>
 struct ColourBlocks {
   std::vector<ContactBlock<P>> blocks;
-  std::uint32_t lanes = 0;  // in use; in the last colour one per block
+  std::uint32_t slots = 0;  // in use; in the last colour one per block
 
   static constexpr std::uint32_t block_of(std::uint32_t index, int colour) {
     return colour == kLastColour ? index : index / kLanes;

@@ -85,8 +85,8 @@ bool find_deviating(const BodyState* states, const SearchedMotion* searched,
 template <int P, class F>
 void for_lanes(const typename ContactPasses<P>::Run& run, const F& f) {
   ContactBlock<P>* block = run.blocks;
-  for (std::uint32_t first = 0; first < run.lanes; first += run.stride, ++block) {
-    const int end = static_cast<int>(std::min(run.stride, run.lanes - first));
+  for (std::uint32_t first = 0; first < run.slots; first += run.stride, ++block) {
+    const int end = static_cast<int>(std::min(run.stride, run.slots - first));
     for (int at = 0; at < end; at += W) {
       LanesOf<W, P> lanes(*block, at, run.states);
       f(lanes, static_cast<std::size_t>(block - run.blocks), at);
@@ -124,8 +124,8 @@ template <int P>
   return too_deep;
 }
 // A bit for each slot of the block that is in use.
-std::uint32_t used(std::uint32_t lanes, std::uint32_t stride, std::size_t block) {
-  const std::uint32_t count = std::min(stride, lanes - static_cast<std::uint32_t>(block) * stride);
+std::uint32_t used(std::uint32_t slots, std::uint32_t stride, std::size_t block) {
+  const std::uint32_t count = std::min(stride, slots - static_cast<std::uint32_t>(block) * stride);
   return (1u << count) - 1u;
 }
 template <int P>
@@ -134,15 +134,15 @@ template <int P>
   for_lanes<P>(run, [&](LanesOf<W, P>& c, std::size_t block, int at) {
     const std::uint32_t found = find_moved_slots<W, P>(c, dt, rotation) << at;
     const std::uint32_t before = at == 0 ? 0u : bits[block];
-    bits[block] = before | (found & used(run.lanes, run.stride, block));
+    bits[block] = before | (found & used(run.slots, run.stride, block));
   });
 }
 template <int P>
 [[gnu::flatten]] void find_changes(const typename ContactPasses<P>::Run& run, std::uint32_t* bits) {
   for_lanes<P>(run, [&](LanesOf<W, P>& c, std::size_t block, int at) {
     const std::uint32_t found = find_changed_slots<W, P>(c, at) << at;
-    const std::uint32_t lanes = used(run.lanes, run.stride, block);
-    bits[block] = (at == 0 ? 0u : bits[block]) | (found & (lanes | lanes << kLanes));
+    const std::uint32_t slots = used(run.slots, run.stride, block);
+    bits[block] = (at == 0 ? 0u : bits[block]) | (found & (slots | slots << kLanes));
   });
 }
 [[gnu::flatten]] void find_closer(SpeculativeBlock* blocks, std::size_t count, BodyState* states,

@@ -37,14 +37,14 @@ struct Soft {
   bool last = false;  // the last sub-step of a step: relax reports contacts that are too deep
 };
 
-// The passes over the blocks of one colour, in which `lanes` slots are in use. `stride` is kLanes.
+// The passes over the blocks of one colour, in which `slots` slots are in use. `stride` is kLanes.
 // In the last colour it is 1, one slot per block, since its contacts are solved one after another.
 template <int P>
 struct ContactPasses {
   using Blocks = ContactBlock<P>*;
   struct Run {
     Blocks blocks;
-    std::uint32_t lanes, stride;
+    std::uint32_t slots, stride;
     BodyState* states;
   };
   // Before the sub-steps of a step.

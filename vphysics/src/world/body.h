@@ -50,7 +50,7 @@ struct alignas(64) Body {
   bool requested_continuous = false;            // when it is dynamic
   bool remote = false;                          // a link of a remote articulation (remote.cpp)
   std::uint16_t region = solve::kSharedRegion;  // regions.cpp
-  std::uint32_t lanes = 0;                      // number of its contact slots in the solver
+  std::uint32_t contact_slots = 0;              // number of its contact slots in the solver
   std::uint32_t first_joint = kNone, first_collider = kNone;
   std::uint32_t load = kNone;  // index into the world's loads; kNone for links
   float bounded_at[6] = {};    // displacement of its state when its proxies' bounds were last set
@@ -93,7 +93,7 @@ struct alignas(64) Body {
   // Of a link: T, w and v are kept up to date.
   bool is_followed() const { return first_collider != kNone || first_joint != kNone; }
   // Its solver state moves it; otherwise it falls freely.
-  bool is_solver_driven() const { return lanes > 0 || first_joint != kNone || on_link; }
+  bool is_solver_driven() const { return contact_slots > 0 || first_joint != kNone || on_link; }
   bool tumbles() const { return motion == Motion::dynamic && !is_link && !isotropic; }
   bool rotates_freely() const { return !is_solver_driven() || untouched; }
   void moved() {

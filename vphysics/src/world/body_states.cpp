@@ -112,9 +112,9 @@ bool BodyStates::load(Body& body, std::uint32_t index) const {
   }
   state.displacement[solve::kSupported] = 0.0f;
   state.displacement[solve::kFractionMinusOne] = 0.0f;
-  if (pushed && body.lanes > kMaxUnscaledContacts)
+  if (pushed && body.contact_slots > kMaxUnscaledContacts)
     state.displacement[solve::kFractionMinusOne] =
-        static_cast<float>(kMaxUnscaledContacts / static_cast<double>(body.lanes) - 1.0);
+        static_cast<float>(kMaxUnscaledContacts / static_cast<double>(body.contact_slots) - 1.0);
   const float* displacement = state.displacement;
   if (!pushed) {
     std::fill(std::begin(state.rate), std::end(state.rate), 0.0f);

@@ -226,8 +226,8 @@ solve::ContactGraph::End ContactState::end_of(std::uint32_t body) const {
 template <int P>
 void ContactState::read_slots(Reader& in, std::size_t region, int colour) {
   constexpr std::size_t kFields = solve::kFieldsOf<P>;
-  const std::size_t lanes = in.count(1 + kFields / 2);
-  for (std::size_t l = 0; l < lanes && in.ok(); ++l) {
+  const std::size_t slots = in.count(1 + kFields / 2);
+  for (std::size_t l = 0; l < slots && in.ok(); ++l) {
     const std::uint32_t index = in.index(contacts_.pool.size());
     if (!in.ok()) return;
     Contact& c = contacts_.pool[index];
@@ -238,8 +238,8 @@ void ContactState::read_slots(Reader& in, std::size_t region, int colour) {
     in.check(contacts_.graph.append(index, end_of(a), end_of(b), P, colour, c.slot) &&
              c.slot.region == region);
     if (!in.ok()) return;
-    ++bodies_[a].lanes;
-    ++bodies_[b].lanes;
+    ++bodies_[a].contact_slots;
+    ++bodies_[b].contact_slots;
     const int lane = solve::ContactGraph::lane(c.slot);
     contacts_.graph.block<P>(c.slot).touches.lane[lane] = c.touching ? 1 : 0;
     contacts_.graph.block<P>(c.slot).active.lane[lane] = 1.0f;
@@ -261,7 +261,7 @@ void ContactState::adopt() {
     body.rest_time = from.rest_time;
     if (body.asleep) std::fill_n(world_.body_states[i + 1].velocity, 6, 0.0f);
     body.first_edge = from.first_edge;
-    body.lanes = from.lanes;
+    body.contact_slots = from.contact_slots;
     body.region = from.region;
     std::copy_n(from.displacement, 6, world_.body_states[i + 1].displacement);
     std::copy_n(from.bounded_at, 6, body.bounded_at);

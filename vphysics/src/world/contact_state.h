@@ -54,7 +54,7 @@ class ContactState {
     bool supported = false, asleep = false;
     double rest_time = 0.0;
     float displacement[6] = {}, bounded_at[6] = {};
-    std::uint32_t first_edge = kNone, lanes = 0;
+    std::uint32_t first_edge = kNone, contact_slots = 0;
     std::uint16_t region = solve::kSharedRegion;
   };
   void clear();
@@ -156,8 +156,8 @@ void write_contacts(Sink& sink, const ContactData& world) {
     for (const Body& body : world.bodies) sink.u64(body.region);
   }
   const auto write_slots = [&](const auto& colour, int index) {
-    sink.u64(colour.lanes);
-    for (std::uint32_t l = 0; l < colour.lanes; ++l) {
+    sink.u64(colour.slots);
+    for (std::uint32_t l = 0; l < colour.slots; ++l) {
       const auto& block = colour.blocks[colour.block_of(l, index)];
       const int lane = colour.lane_of(l, index);
       sink.u64(block.contact.lane[lane]);

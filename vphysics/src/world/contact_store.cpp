@@ -120,8 +120,8 @@ void ContactStore::assign_slot(std::uint32_t index, int max_points, const BodySe
   const std::uint32_t a = on.colliders[c.a].body, b = on.colliders[c.b].body;
   if (!c.is_part()) unset_speculative(index);
   c.slot = graph.add(index, end_of(on.bodies, a), end_of(on.bodies, b), max_points);
-  ++on.bodies[a].lanes;
-  ++on.bodies[b].lanes;
+  ++on.bodies[a].contact_slots;
+  ++on.bodies[b].contact_slots;
 }
 
 void ContactStore::release_slot(std::uint32_t index, const BodySet& on) {
@@ -132,8 +132,8 @@ void ContactStore::release_slot(std::uint32_t index, const BodySet& on) {
   c.slot = {};
   if (!c.parked) points -= c.count;
   c.count = 0;
-  --on.bodies[a].lanes;
-  --on.bodies[b].lanes;
+  --on.bodies[a].contact_slots;
+  --on.bodies[b].contact_slots;
 }
 
 void ContactStore::follow_region(const Body& body, const BodySet& on) {

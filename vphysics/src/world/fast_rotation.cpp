@@ -34,7 +34,8 @@ class FastRotation {
     const Displacement d = displacement_of(index);
     if (!(dot(d.w, d.w) > kMinRotation * kMinRotation)) return false;
     const Body& body = on_.bodies[index];
-    if (body.lanes == 0 || body.motion != Motion::dynamic || !joins_sub_steps(body)) return false;
+    if (body.contact_slots == 0 || body.motion != Motion::dynamic || !joins_sub_steps(body))
+      return false;
     if (body.first_joint != kNone) return false;  // alone it would leave its joints
     return in_range(d.v) && in_range(d.w) && rotates_far(body, d.w);
   }

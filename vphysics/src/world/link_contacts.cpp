@@ -194,7 +194,7 @@ void LinkContacts::load_body(std::uint32_t index, double h) {
     s.link = body.link;
     return;
   }
-  s.in_blocks = body.lanes > 0 || has_block_joints(body, s_.joints);
+  s.in_blocks = body.contact_slots > 0 || has_block_joints(body, s_.joints);
   if (body.motion != Motion::dynamic) return;
   const Velocity a = s_.acceleration_of(body);
   s.forced_w = h * a.w;

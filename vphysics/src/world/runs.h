@@ -33,11 +33,11 @@ struct ContactRuns {
   void for_runs_of(std::size_t region, const F& f) const {
     const solve::Passes& pass = solve::passes();
     const auto one_run = [&](const auto& passes, auto& colour, int index) {
-      if (colour.lanes == 0) return;
+      if (colour.slots == 0) return;
       using Run = typename std::remove_cvref_t<decltype(passes)>::Run;
       const bool last = index == solve::kLastColour;
       f(passes,
-        Run{colour.blocks.data(), colour.lanes, last ? 1u : std::uint32_t{solve::kLanes}, states},
+        Run{colour.blocks.data(), colour.slots, last ? 1u : std::uint32_t{solve::kLanes}, states},
         colour.blocks);
     };
     graph.colours_in_use(region).for_each([&](int c) {
@@ -73,8 +73,8 @@ struct ContactRuns {
         auto part = run;
         part.blocks += begin;
         const auto skipped = static_cast<std::uint32_t>(begin) * run.stride;
-        part.lanes =
-            std::min(run.lanes - skipped, static_cast<std::uint32_t>(end - begin) * run.stride);
+        part.slots =
+            std::min(run.slots - skipped, static_cast<std::uint32_t>(end - begin) * run.stride);
         f(passes, part, first + begin);
       };
       if (region == solve::kSharedRegion && run.stride > 1) {

@@ -173,7 +173,7 @@ void World::Impl::count_contacts() {
     colours.insert(contact_store.graph.colours_in_use(region));
     contact_store.graph.colours_in_use(region).for_each([&](int c) {
       counters.manifolds +=
-          contact_store.graph.of<1>(region, c).lanes + contact_store.graph.of<4>(region, c).lanes;
+          contact_store.graph.of<1>(region, c).slots + contact_store.graph.of<4>(region, c).slots;
     });
   }
   counters.colours = static_cast<std::uint32_t>(colours.size());
