@@ -61,9 +61,9 @@ TEST(Pads, APressBetweenTwoFramesIsThereAndAnUnpluggedPadIsTold) {
   pads.poll(input);
   EXPECT_FALSE(input.connected(0));
   EXPECT_EQ(input.take(kAllDevices).pad.left_y, 0.0f);
-  const auto news = pads.take_news();
-  ASSERT_EQ(news.size(), 1u);
-  EXPECT_NE(news[0].find("gamepad 1 was unplugged"), std::string::npos);
+  const auto messages = pads.take_messages();
+  ASSERT_EQ(messages.size(), 1u);
+  EXPECT_NE(messages[0].find("gamepad 1 was unplugged"), std::string::npos);
   const VirtualPad again;
   pads.poll(input);
   EXPECT_TRUE(input.connected(0)) << "has the place that it had";
@@ -90,7 +90,7 @@ TEST(Pads, ThoseOfACabinetArePlayedOnlyWhenAskedFor) {
     SDL_JoystickUpdate();
     pads.poll(input);
     EXPECT_FALSE(input.connected(0));
-    EXPECT_EQ(pads.take_news().size(), asked ? 1u : 0u);
+    EXPECT_EQ(pads.take_messages().size(), asked ? 1u : 0u);
   }
 }
 

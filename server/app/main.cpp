@@ -159,7 +159,7 @@ tl::expected<cabinet::Calibration, std::string> calibration_of(const std::string
 }
 
 // Logs each text only once.
-server::Log only_news(const server::Log& log) {
+server::Log without_repeats(const server::Log& log) {
   return [log, reported = std::make_shared<std::set<std::string>>()](server::LogLevel level,
                                                                      const std::string& text) {
     if (reported->insert(text).second) log(level, text);
@@ -181,16 +181,16 @@ tl::expected<std::unique_ptr<cabinet::DeviceSource>, std::string> open_controlle
     const std::array<double, cabinet::kRods>& slide_limit, const server::Log& log) {
   if (std::string why = cabinet::why_no_device(address); !why.empty())
     return tl::unexpected(std::move(why));
-  const server::Log news = only_news(log);
+  const server::Log once = without_repeats(log);
   const bool is_line = address.rfind("file:", 0) != 0;
   std::error_code unknown;
   const bool is_there = std::filesystem::exists(address.substr(address.find(':') + 1), unknown);
   tl::expected<cabinet::Calibration, std::string> own = cabinet::nominal_calibration();
-  if (is_there || !named.empty()) own = calibration_of(address, named, news);
+  if (is_there || !named.empty()) own = calibration_of(address, named, once);
   if (!own) return tl::unexpected(own.error());
   const bool finds = is_line && named.empty();
   return cabinet::open_device(address, *own, slide_limit,
-                              finds ? finder(address, news) : cabinet::CalibrationFinder());
+                              finds ? finder(address, once) : cabinet::CalibrationFinder());
 }
 
 tl::expected<Devices, std::string> open_devices(const app::Options& options,

@@ -65,7 +65,7 @@ Timeline::~Timeline() {
     const std::lock_guard guard(mutex_);
     stop_ = true;
   }
-  news_.notify_all();
+  changed_.notify_all();
   thread_.join();
 }
 
@@ -78,7 +78,7 @@ void Timeline::run() {
     const std::lock_guard guard(mutex_);
     over_ = true;
   }
-  news_.notify_all();
+  changed_.notify_all();
 }
 
 // Reads all present data.
@@ -107,11 +107,11 @@ bool Timeline::await_growth() {
     findings_.verdict = playback.verdict();
     findings_.sentence = playback.verdict_sentence();
   }
-  news_.notify_all();
+  changed_.notify_all();
   while (open_end && !stop_) {
     if (look()) return true;
     std::unique_lock lock(mutex_);
-    news_.wait_for(lock, kLookAgain, [&] { return stop_ || look_; });
+    changed_.wait_for(lock, kLookAgain, [&] { return stop_ || look_; });
     look_ = false;
     lock.unlock();
     // The end may have been written since the last read.
@@ -133,7 +133,7 @@ bool Timeline::look() {
     const std::lock_guard guard(mutex_);
     ++looks_ended_;
   }
-  news_.notify_all();
+  changed_.notify_all();
   return more;
 }
 
@@ -229,14 +229,14 @@ Findings Timeline::findings() const {
 
 void Timeline::wait_until_read() const {
   std::unique_lock lock(mutex_);
-  news_.wait(lock, [&] { return findings_.done && findings_.read >= findings_.total; });
+  changed_.wait(lock, [&] { return findings_.done && findings_.read >= findings_.total; });
 }
 
 void Timeline::look_now() {
   std::unique_lock lock(mutex_);
   look_ = true;
-  news_.notify_all();
-  news_.wait(lock, [&, wanted = looks_begun_ + 1] { return looks_ended_ >= wanted || over_; });
+  changed_.notify_all();
+  changed_.wait(lock, [&, wanted = looks_begun_ + 1] { return looks_ended_ >= wanted || over_; });
 }
 
 }  // namespace watch

@@ -99,7 +99,7 @@ class Timeline {
   bool look_ = false;
   std::uint64_t looks_begun_ = 0, looks_ended_ = 0;
   bool over_ = false;  // the thread no longer checks
-  mutable std::condition_variable news_;
+  mutable std::condition_variable changed_;
 
   server::RecordedScene reader_;  // used only by the thread
   std::uint64_t next_mark_ = kMarkTicks;

@@ -177,7 +177,7 @@ void Viewer::take_events() {
   pads_->poll(input_);
   session_.pad(input_.take(client::kAllDevices));
   input_.clear();
-  for (const std::string& news : pads_->take_news()) session_.tell(news, true);
+  for (const std::string& message : pads_->take_messages()) session_.tell(message, true);
 }
 
 // Handles a change of the recording, the side, or the moment.

@@ -304,7 +304,7 @@ HudState App::hud(const Camera& camera) {
   if (1e6 * seconds_ < kProblemsShownUs) hud.notices = problems_;
   hud.fps = options_.show_fps ? static_cast<float>(meter_.rate()) : 0.0f;
   for (const wire::Notice& notice : connection_->notices()) hud.notices.push_back(notice.text);
-  hud.notices.insert(hud.notices.end(), news_.begin(), news_.end());
+  hud.notices.insert(hud.notices.end(), messages_.begin(), messages_.end());
   const auto message = [this](const char* text) {
     return std::string(text) + " " + connection_->address();
   };

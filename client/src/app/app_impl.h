@@ -126,8 +126,8 @@ class App {
   std::vector<std::string> problems_;  // of the settings file
   std::string language_;               // in use
   std::string names_;                  // of people; the font has their letters
-  std::vector<std::string> news_;
-  double news_until_ = 0.0;  // [s]
+  std::vector<std::string> messages_;
+  double messages_until_ = 0.0;  // [s]
   ReplayReel reel_;
   bool replay_ = false;
   ConnectionStatus status_;

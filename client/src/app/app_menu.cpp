@@ -165,8 +165,8 @@ void App::follow_watching() {
 // Shows the lines for a while.
 void App::tell(std::vector<std::string> lines) {
   constexpr double kShown = 8.0;  // [s]
-  news_ = std::move(lines);
-  news_until_ = seconds_ + kShown;
+  messages_ = std::move(lines);
+  messages_until_ = seconds_ + kShown;
 }
 
 void App::turn_view() {
@@ -204,11 +204,11 @@ void App::watch_devices(std::int64_t now) {
 }
 
 void App::report_pads() {
-  if (auto news = window_->take_news(); !news.empty()) {
-    for (const std::string& line : news) log_info(line);
-    tell(std::move(news));
+  if (auto messages = window_->take_messages(); !messages.empty()) {
+    for (const std::string& line : messages) log_info(line);
+    tell(std::move(messages));
   }
-  if (seconds_ > news_until_) news_.clear();
+  if (seconds_ > messages_until_) messages_.clear();
 }
 
 }  // namespace client

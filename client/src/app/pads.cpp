@@ -111,8 +111,8 @@ void Pads::unplug(std::int32_t instance, InputCollector& into) {
   SDL_GameControllerClose(static_cast<SDL_GameController*>(place.pad));
   place = {-1, nullptr, place.guid, {}, 0};
   into.connect(number, false);
-  news_.push_back("gamepad " + std::to_string(number + 1) +
-                  " was unplugged: its rods stay in place");
+  messages_.push_back("gamepad " + std::to_string(number + 1) +
+                      " was unplugged: its rods stay in place");
 }
 
 void Pads::use(std::int32_t instance) {
@@ -173,8 +173,8 @@ void Pads::poll(InputCollector& into) {
   }
 }
 
-std::vector<std::string> Pads::take_news() {
-  return std::exchange(news_, {});
+std::vector<std::string> Pads::take_messages() {
+  return std::exchange(messages_, {});
 }
 
 }  // namespace client

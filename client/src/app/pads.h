@@ -28,7 +28,7 @@ class Pads {
   void rumble(int pad, float strength, std::uint16_t ms);
   std::uint64_t rumbles() const { return rumbles_; }  // that a pad accepted
   // Messages for a person since the last call, such as a pad that was unplugged.
-  std::vector<std::string> take_news();
+  std::vector<std::string> take_messages();
 
  private:
   struct Place {
@@ -47,7 +47,7 @@ class Pads {
   bool started_ = false;
   bool cabinets_ = false;
   std::array<Place, kPads> places_;
-  std::vector<std::string> news_;
+  std::vector<std::string> messages_;
   std::uint64_t rumbles_ = 0;
 };
 

@@ -148,8 +148,8 @@ void Window::rumble(int pad, float strength, std::uint16_t ms) {
   impl_->pads.rumble(pad, strength, ms);
 }
 
-std::vector<std::string> Window::take_news() {
-  return impl_->pads.take_news();
+std::vector<std::string> Window::take_messages() {
+  return impl_->pads.take_messages();
 }
 
 std::string Window::renderer() const {

@@ -33,8 +33,8 @@ class Window {
   const InputCollector& input() const;                     // since the last forget_input()
   void forget_input();                                     // a frame has consumed it
   void rumble(int pad, float strength, std::uint16_t ms);  // as in Pads
-  std::vector<std::string> take_news();  // messages for a person: a pad was unplugged
-  void wait(double seconds);             // until the window has events, at most for this time
+  std::vector<std::string> take_messages();                // for a person: a pad was unplugged
+  void wait(double seconds);  // until the window has events, at most for this time
   bool captured() const;
   std::string renderer() const;  // name of the driver, for the log
   bool draws_in_software() const;
