@@ -142,7 +142,7 @@ async function connected(options) {
   page.later(50);
   return { port, serial, page };
 }
-async function hear(port, data, piece = data.length) {
+async function receive(port, data, piece = data.length) {
   for (let at = 0; at < data.length; at += piece) port.line.enqueue(data.slice(at, at + piece));
   await settled();
 }
@@ -153,7 +153,7 @@ test('counts of a rod that is moved are those of the firmware, however the line 
     const { port, page } = await connected();
     assert.deepEqual([port.opened.baudRate, page.id('send').disabled], [1000000, true]);
     assert.match(page.id('state').textContent, /waiting for its first frame/);
-    await hear(port, recording, piece);
+    await receive(port, recording, piece);
     page.later(1000);
     assert.equal(page.id('state').textContent, 'The ATmega2560 at its serial port is connected.');
     assert.equal(page.id('motors').children[0].disabled, false);
@@ -172,14 +172,14 @@ test('a frame that is lost, one that is broken and a disturbed line are counted'
   const recording = recorded('6:20:0');
   const ends = [...recording.keys()].filter((at) => recording[at] === 0);
   const { port, page } = await connected();
-  await hear(port, recording.slice(0, ends[99] + 1));
-  await hear(port, recording.slice(ends[102] + 1, ends[110] + 1), 1);  // three are missing
-  await hear(port, bytes(kBroken + '0502' + '00'));
+  await receive(port, recording.slice(0, ends[99] + 1));
+  await receive(port, recording.slice(ends[102] + 1, ends[110] + 1), 1);  // three are missing
+  await receive(port, bytes(kBroken + '0502' + '00'));
   page.later(50);
   assert.match(page.id('faults').textContent, /^lost 3, not a frame 2,/);
   port.disturb();
   await settled();
-  await hear(port, recording.slice(ends[110], ends[120] + 1));
+  await receive(port, recording.slice(ends[110], ends[120] + 1));
   page.later(50);
   assert.match(page.id('faults').textContent, /^lost 3, not a frame 3,/);
   assert.equal(page.id('state').className, 'good');
@@ -188,8 +188,8 @@ test('a frame that is lost, one that is broken and a disturbed line are counted'
 test('a controller that starts again goes on from where its counts were', async () => {
   const all = recorded('6:100:0'), recording = all.slice(all.indexOf(0), all.lastIndexOf(0) + 1);  // whole frames
   const { port, page } = await connected();
-  await hear(port, recording);
-  await hear(port, recording);
+  await receive(port, recording);
+  await receive(port, recording);
   page.later(50);
   assert.ok(Math.abs(Math.abs(page.rods[5][2]) - 1600) <= 24, page.rods[5][2]);
   assert.match(page.id('faults').textContent, /^lost 0, not a frame 0,/);
@@ -221,15 +221,15 @@ function stuffed(plain) {
   }
 }
 
-// A Mega whose first frame has been heard.
-async function heard() {
+// A Mega whose first frame has been received.
+async function connectedWithFrame() {
   const { port, serial, page } = await connected();
-  await hear(port, bytes('00' + kGolden));
+  await receive(port, bytes('00' + kGolden));
   page.later(50);
   await settled();
   return { port, serial, page };
 }
-const answer = (port, ...rest) => hear(port, stuffed(settingsReport(...rest)));
+const answer = (port, ...rest) => receive(port, stuffed(settingsReport(...rest)));
 // A Pico whose settings have been read.
 async function pico(device = new Device(), settings = { abilities: 3 }) {
   const hid = hidApi(device), page = new Page({ hid, serial: serialApi(null) });
@@ -248,7 +248,7 @@ const frameAfter = (frame, changes) => {
 };
 
 test('settings and pulses go out as COBS of the bytes that the firmware takes', async () => {
-  const { port, page } = await heard();
+  const { port, page } = await connectedWithFrame();
   assert.deepEqual(unstuffed(port.written[0]), tell(1));
   assert.deepEqual([page.id('send').disabled, page.id('brightness').disabled], [true, true], 'what it has is not known yet');
   await answer(port, 1, { brightness: 9 });
@@ -278,7 +278,7 @@ test('settings that were not taken are said, and the form shows what the control
   const kept = { brightness: 200, switches: 1 };
   for (const [is, other] of [[true, {}], [false, { brightness: 9 }], [false, { switches: 0 }], [false, { resolution: 21 }],
     [false, { ps2: 1 }], [false, { switches: 3 }]]) {
-    const { port, page } = await heard();
+    const { port, page } = await connectedWithFrame();
     await answer(port, 1, { brightness: 9 });
     page.id('brightness').value = '200';
     page.id('silent').checked = true;
@@ -290,7 +290,7 @@ test('settings that were not taken are said, and the form shows what the control
 });
 
 test('a question that is lost is put again; firmware of before, which has no answer, can be set all the same', async () => {
-  const { port, serial, page } = await heard();
+  const { port, serial, page } = await connectedWithFrame();
   page.later(500);
   await settled();
   assert.equal(port.written.length, 1);
@@ -299,7 +299,7 @@ test('a question that is lost is put again; firmware of before, which has no ans
   assert.equal(port.written.length, 2);
   const broken = settingsReport(1, { brightness: 9 });
   broken[4] ^= 1;
-  await hear(port, stuffed(broken));
+  await receive(port, stuffed(broken));
   page.later(50);
   assert.match(page.id('faults').textContent, /not a frame 1,/);
   assert.equal(page.id('send').disabled, true);
@@ -320,14 +320,14 @@ test('a question that is lost is put again; firmware of before, which has no ans
   const other = new Port();
   serial.requestPort = async () => other;
   await page.id('serial').onclick();
-  await hear(other, bytes('00' + kGolden));
+  await receive(other, bytes('00' + kGolden));
   page.later(50);
   await answer(other, 2, { brightness: 9 });
   assert.equal(page.id('brightness').value, 9);
 });
 
 test('an answer that is not to the last question changes nothing', async () => {
-  const { port, page } = await heard();
+  const { port, page } = await connectedWithFrame();
   page.later(1001);
   await answer(port, 1, { brightness: 9 });
   page.id('brightness').value = '200';
@@ -344,7 +344,7 @@ test('an answer that is not to the last question changes nothing', async () => {
 test('settings of another version, or out of range, are not shown', async () => {
   for (const wrong of [{ version: 3 }, { resolution: 0 }, { resolution: 121 }, { switches: 4 }, { abilities: 4 },
     { stick: [1, 5, 400] }]) {
-    const { port, page } = await heard();
+    const { port, page } = await connectedWithFrame();
     await answer(port, 1, { brightness: 9, ...wrong });
     page.later(50);
     assert.match(page.id('told').textContent, /^Its settings are of another version/);
@@ -396,7 +396,7 @@ test('what one controller cannot do is its own affair: the next may, also if its
   const port = new Port(), device = new Device();
   const page = new Page({ serial: serialApi(port), hid: hidApi(device) });
   await page.id('serial').onclick();
-  await hear(port, bytes('00' + kGolden));
+  await receive(port, bytes('00' + kGolden));
   page.later(50);
   await answer(port, 1, { brightness: 9 });
   const able = () => ['resolution', 'mice', 'gamepads'].map((id) => !page.id(id).disabled);
@@ -467,10 +467,10 @@ test('troubles are said: in use, silent, no frames, unplugged, no way to control
   const { port, serial, page } = await connected();
   page.later(4100);
   assert.match(page.id('state').textContent, /sends nothing/);
-  await hear(port, bytes('00' + kBroken));
+  await receive(port, bytes('00' + kBroken));
   page.later(50);
   assert.match(page.id('state').textContent, /sends no valid frames/);
-  await hear(port, bytes(kGolden));
+  await receive(port, bytes(kGolden));
   page.later(50);
   assert.equal(page.id('state').className, 'good');
   unplug(port, serial);
@@ -489,7 +489,7 @@ test('one controller at a time: connecting a second line closes the first', asyn
   serial.requestPort = async () => other;
   await page.id('serial').onclick();
   assert.equal(port.opened, null);
-  await hear(other, bytes('00' + kGolden));
+  await receive(other, bytes('00' + kGolden));
   page.later(50);
   assert.equal(page.id('state').className, 'good');
 });

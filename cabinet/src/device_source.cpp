@@ -83,11 +83,11 @@ struct DeviceSource::Impl {
   int open_error = 0;
   std::int64_t try_open_us = 0;
   bool tried = false;
-  bool heard = false;  // a frame since it was opened
-  bool ever_heard = false;
+  bool received = false;  // a frame since it was opened
+  bool ever_received = false;
   bool fresh = false;  // a frame within silence_us
   // Times of the last frame and the last two polls.
-  std::int64_t heard_us = 0, polled_us = 0, before_us = 0;
+  std::int64_t received_us = 0, polled_us = 0, before_us = 0;
   std::optional<std::int64_t> bytes_us;  // time of the last bytes since it was opened
 
   // Of a recording, one frame is read ahead of its time.
@@ -130,7 +130,7 @@ void DeviceSource::Impl::open_device(std::int64_t now_us) {
   tracker.forget_base();
   const Calibration* own = options.calibration_of_open ? options.calibration_of_open() : nullptr;
   if (own != nullptr) tracker.calibrate(*own);
-  heard = pending = false;
+  received = pending = false;
   bytes_us.reset();
 }
 
@@ -149,7 +149,7 @@ void DeviceSource::Impl::lose_device(std::int64_t now_us) {
 
 // Time when the pending frame of a recording is due: its original interval after the last one.
 std::int64_t DeviceSource::Impl::due_us(std::int64_t now_us) const {
-  if (!heard) return now_us;
+  if (!received) return now_us;
   const auto elapsed = static_cast<std::int32_t>(frame.time_us - tracker.last_frame_time_us());
   if (elapsed <= 0 || elapsed > kLongestPauseUs) return now_us;
   return last_due_us + elapsed;
@@ -170,16 +170,16 @@ void DeviceSource::Impl::accept(std::int64_t now_us) {
   if (observer) observer(frame);
   if (options.arrived_us) counters.add_latency(now_us - arrived);
   last_due_us = due;
-  if (!heard && ever_heard) ++counters.reopened;
-  heard = ever_heard = fresh = true;
-  heard_us = now_us;
+  if (!received && ever_received) ++counters.reopened;
+  received = ever_received = fresh = true;
+  received_us = now_us;
 }
 
 // Bytes arrived recently that are not part of a frame. Bytes right after the last frame do not
 // count: they are an incomplete frame of a device that fell silent.
 bool DeviceSource::Impl::garbled() const {
   if (!bytes_us || polled_us - *bytes_us > kNoiseUs) return false;
-  return !heard || *bytes_us - heard_us > options.silence_us / 2;
+  return !received || *bytes_us - received_us > options.silence_us / 2;
 }
 
 // False if the next frame of a recording is not due yet.
@@ -223,7 +223,7 @@ void DeviceSource::poll(std::int64_t now_us) {
   in.before_us = std::exchange(in.polled_us, now_us);
   if (in.fd < 0) in.open_device(now_us);
   if (in.fd >= 0) in.take_in(now_us);
-  if (in.fresh && now_us - in.heard_us > in.options.silence_us) {
+  if (in.fresh && now_us - in.received_us > in.options.silence_us) {
     in.fresh = false;
     in.tracker.hold();
   }

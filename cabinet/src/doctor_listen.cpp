@@ -110,7 +110,7 @@ class Ear {
  public:
   virtual ~Ear() = default;
   virtual void poll(std::int64_t now_us) = 0;
-  virtual void tell(FoundDevice& device) const = 0;
+  virtual void report(FoundDevice& device) const = 0;
 };
 
 // Moves a rod as a hand mouse does.
@@ -123,7 +123,7 @@ class MouseEar final : public Ear {
     ranges_.add(source_.rods());
     rate_.add(source_.counters().frames, now_us);
   }
-  void tell(FoundDevice& device) const override {
+  void report(FoundDevice& device) const override {
     device.state = source_.counters().reopened > 0 ? DeviceState::missing : source_.state();
     device.error = device.state == DeviceState::refused ? source_.open_error() : 0;
     device.counters = source_.counters();
@@ -164,7 +164,7 @@ class GamepadEar final : public Ear {
     }
     rate_.add(counters_.frames, now_us);
   }
-  void tell(FoundDevice& device) const override {
+  void report(FoundDevice& device) const override {
     device.state = fd_ ? DeviceState::live : state_of_error(error_);
     device.error = device.state == DeviceState::refused ? error_ : 0;
     device.counters = counters_;
@@ -265,7 +265,7 @@ void listen_to_inputs(std::vector<FoundDevice>& devices, const DoctorOptions& op
     now = next_poll();
     for (const auto& [device, ear] : ears) ear->poll(now);
   }
-  for (const auto& [device, ear] : ears) ear->tell(*device);
+  for (const auto& [device, ear] : ears) ear->report(*device);
 }
 
 }  // namespace cabinet

@@ -63,7 +63,7 @@ MouseLink::Event MouseLink::on_byte(uint8_t value, bool good, uint16_t now_ms) {
 MouseLink::Event MouseLink::on_stream_byte(uint8_t value, bool good, uint16_t now_ms) {
   switch (parser_.byte(value, good, receiver_.after_gap())) {
     case PacketParser::kMovement:
-      heard_ms_ = now_ms;
+      received_ms_ = now_ms;
       count_answer();
       return kMovement;
     case PacketParser::kResync:
@@ -128,7 +128,7 @@ void MouseLink::stream(uint16_t now_ms) {
   asking_ = false;
   present_ = true;
   state_ = kStream;
-  heard_ms_ = now_ms;
+  received_ms_ = now_ms;
   parser_.reset();
 }
 
@@ -185,7 +185,7 @@ MouseLink::Event MouseLink::tend_stream(uint16_t now_ms) {
     restart();
     return kResync;
   }
-  if (passed(now_ms, static_cast<uint16_t>(heard_ms_ + kSilenceMs)) && !receiver_.busy()) {
+  if (passed(now_ms, static_cast<uint16_t>(received_ms_ + kSilenceMs)) && !receiver_.busy()) {
     asking_ = true;
     command_ = kReadData;
     take_hold();

@@ -95,7 +95,7 @@ class MouseLink {
   uint8_t last_byte_ = 0;
   uint8_t since_tick_ = 0;
   uint16_t deadline_ms_ = 0;  // in kAbsent: time of the next attempt
-  uint16_t heard_ms_ = 0;     // last complete packet
+  uint16_t received_ms_ = 0;  // last complete packet
   uint16_t byte_ms_ = 0;
 };
 

@@ -9,7 +9,7 @@
 
 namespace server {
 
-void ControlServer::tell_devices(const DeviceTable& table) {
+void ControlServer::report_devices(const DeviceTable& table) {
   devices_asked_.store(false, std::memory_order_relaxed);
   if (devices_.push(DeviceTable(table))) ::eventfd_write(wake_.get(), 1);
 }

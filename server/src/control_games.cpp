@@ -57,7 +57,7 @@ void ControlServer::choose(const wire::Game& game, std::uint32_t client) {
   event.client = client;
   event.game = game;
   pending_.push_back(std::move(event));
-  tell_tick();
+  push_events();
 }
 
 std::uint32_t ControlServer::challenge_day() const {

@@ -62,9 +62,9 @@ void ControlServer::take_kick(ControlConnection& connection, const wire::Kick& k
   const std::string votes =
       std::to_string(count.votes) + " of " + std::to_string(count.needed) + " votes";
   log(LogLevel::info, voter->name + " votes to put " + target->name + " out: " + votes);
-  tell(wire::Notice::Level::info, wire::kKickTopics + target->client,
-       make_sentence<SentenceId::would_put_out>(voter->name, target->name, count.votes,
-                                                count.needed));
+  publish(wire::Notice::Level::info, wire::kKickTopics + target->client,
+          make_sentence<SentenceId::would_put_out>(voter->name, target->name, count.votes,
+                                                   count.needed));
 }
 
 // Frees the seat and invalidates its ticket. The machine gets no rods until a match is over.
@@ -118,8 +118,8 @@ void ControlServer::carry_vote_over(const Seat& newcomer) {
   const auto before = kicks_.carry_over({newcomer.client, newcomer.name, newcomer.owner}, here());
   if (!before) return;
   clear_notice(wire::kKickTopics + before->client, "the vote continues");
-  tell(wire::Notice::Level::info, wire::kKickTopics + newcomer.client,
-       make_sentence<SentenceId::vote_goes_on>(newcomer.name, before->name, newcomer.name));
+  publish(wire::Notice::Level::info, wire::kKickTopics + newcomer.client,
+          make_sentence<SentenceId::vote_goes_on>(newcomer.name, before->name, newcomer.name));
 }
 
 }  // namespace server

@@ -145,7 +145,7 @@ void ControlServer::run() {
     if (roster_changed_ && roster_limit_.take(os::monotonic_us())) send_roster();
     drop_those_who_do_not_read();
     std::erase_if(connections_, [](const auto& c) { return c->state == State::dead; });
-    tell_tick();
+    push_events();
   }
   send_goodbye();
 }
@@ -419,8 +419,8 @@ void ControlServer::publish_report() {
   }
 }
 
-void ControlServer::tell(wire::Notice::Level level, std::uint32_t topic,
-                         const wire::Sentence& text) {
+void ControlServer::publish(wire::Notice::Level level, std::uint32_t topic,
+                            const wire::Sentence& text) {
   publish({level, topic, text.text()});
 }
 
@@ -446,7 +446,7 @@ void ControlServer::publish(const wire::Notice& notice) {
   }
 }
 
-void ControlServer::tell_tick() {
+void ControlServer::push_events() {
   while (!pending_.empty() && events_.room() > 0) {
     events_.push(std::move(pending_.front()));
     pending_.pop_front();

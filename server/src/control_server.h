@@ -116,9 +116,9 @@ class ControlServer {
   void ask(std::uint32_t match, RodSet cabinet_rods);
   // The same for a report; dropped if 8 are pending.
   void report(const wire::Report& report);
-  // True if a host has requested the devices since the last tell_devices().
+  // True if a host has requested the devices since the last report_devices().
   bool devices_asked() const { return devices_asked_.load(std::memory_order_acquire); }
-  void tell_devices(const DeviceTable& table);
+  void report_devices(const DeviceTable& table);
   // A match that was played is over: removed players may play again.
   void match_is_over();
   // Takes a connection that another port has accepted, with the rights of a player: it sends a
@@ -180,11 +180,11 @@ class ControlServer {
   void publish_game();
   void publish_questionnaires();
   void publish_report();
-  void tell(wire::Notice::Level level, std::uint32_t topic, const wire::Sentence& text);
+  void publish(wire::Notice::Level level, std::uint32_t topic, const wire::Sentence& text);
   void clear_notice(std::uint32_t topic, const std::string& why);
   void publish(const wire::Notice& notice);
   void answer(ControlConnection& connection, std::uint32_t topic, const wire::Sentence& text);
-  void tell_tick();
+  void push_events();
   void log(LogLevel level, const std::string& text);
   void send_goodbye();
 
@@ -202,7 +202,7 @@ class ControlServer {
                                    const os::SocketAddress& listener);
   void take_claim(ControlConnection& connection, const wire::Claim& claim);
   void take_names(ControlConnection& connection, const wire::Names& names);
-  void tell_name(const Seat& seat, RodSet rods, const std::string& name);
+  void report_name(const Seat& seat, RodSet rods, const std::string& name);
   void take_request(ControlConnection& connection, const wire::MatchRequest& request);
   void take_game(ControlConnection& connection, wire::Game game);
   void choose(const wire::Game& game, std::uint32_t client);

@@ -275,7 +275,7 @@ bool ControlServer::welcome(ControlConnection& connection, Seat& seat, ControlEv
     welcome.multicast_port = options_.multicast->port;
   }
   pending_.push_back(std::move(event));
-  tell_tick();
+  push_events();
   connection.state = State::joined;
   connection.client = seat.client;
   send(connection, welcome);
@@ -331,7 +331,7 @@ void ControlServer::take_claim(ControlConnection& connection, const wire::Claim&
   seat->name.copy(event.name.data(), event.name.size() - 1);
   event.input_key = seat->input_key;
   pending_.push_back(std::move(event));
-  tell_tick();
+  push_events();
   roster_changed_ = true;
 }
 
@@ -345,7 +345,7 @@ void ControlServer::take_names(ControlConnection& connection, const wire::Names&
     seat->wanted_name = wanted;
     seat->name.clear();
     seat->name = seats_.name_for(*seat, seat->team);
-    tell_name(*seat, 0, seat->name);
+    report_name(*seat, 0, seat->name);
   }
   wire::RodPlayers players;
   for (int rod = 0; rod < foosball::kRods; ++rod) {
@@ -358,15 +358,15 @@ void ControlServer::take_names(ControlConnection& connection, const wire::Names&
     RodSet same = 0;
     for (std::size_t rod = 0; rod < players.size(); ++rod)
       if (players[rod] == name) same |= RodSet(1u << rod);
-    tell_name(*seat, same, name);
+    report_name(*seat, same, name);
     untold &= static_cast<RodSet>(~same);
   }
   seat->players = std::move(players);
-  tell_tick();
+  push_events();
   roster_changed_ = true;
 }
 
-void ControlServer::tell_name(const Seat& seat, RodSet rods, const std::string& name) {
+void ControlServer::report_name(const Seat& seat, RodSet rods, const std::string& name) {
   ControlEvent event;
   event.kind = ControlEvent::Kind::name;
   event.client = seat.client;
@@ -383,10 +383,10 @@ void ControlServer::lose_seat(std::uint32_t client) {
   event.kind = ControlEvent::Kind::away;
   event.client = client;
   pending_.push_back(std::move(event));
-  tell_tick();
+  push_events();
   const auto seconds = std::to_string(options_.limits.seat_kept_us / 1'000'000);
-  tell(wire::Notice::Level::warning, kAwayTopic + client,
-       make_sentence<SentenceId::player_lost>(seat.name, to_text(seat.rods), seconds));
+  publish(wire::Notice::Level::warning, kAwayTopic + client,
+          make_sentence<SentenceId::player_lost>(seat.name, to_text(seat.rods), seconds));
   log(LogLevel::warning, seat.name + " at " + os::to_text(seat.peer) +
                              " was lost: its rods are reserved for " + seconds + " s");
   roster_changed_ = true;
@@ -406,7 +406,7 @@ void ControlServer::give_up_seat(std::uint32_t client) {
   seats_.remove(client);
   count(Count::left);
   pending_.push_back(std::move(event));
-  tell_tick();
+  push_events();
   roster_changed_ = true;
 }
 
@@ -509,7 +509,7 @@ void ControlServer::take_answers(ControlConnection& connection, const wire::Answ
   event.team = team;
   event.answers = answers;
   pending_.push_back(std::move(event));
-  tell_tick();
+  push_events();
 }
 
 bool ControlServer::hand_on(std::uint32_t client, const foosball::Command& command) {
@@ -519,7 +519,7 @@ bool ControlServer::hand_on(std::uint32_t client, const foosball::Command& comma
   event.client = client;
   event.request = command;
   pending_.push_back(std::move(event));
-  tell_tick();
+  push_events();
   return true;
 }
 
@@ -539,8 +539,8 @@ bool ControlServer::put_to_vote(const Seat& seat, const foosball::Command& comma
     clear_notice(vote_topic(command), "agreed");
     return hand_on(kEverybody, command);
   }
-  tell(wire::Notice::Level::info, vote_topic(command),
-       asks_for(command, seat.name, votes.votes, votes.needed));
+  publish(wire::Notice::Level::info, vote_topic(command),
+          asks_for(command, seat.name, votes.votes, votes.needed));
   return true;
 }
 

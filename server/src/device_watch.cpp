@@ -55,7 +55,7 @@ bool DeviceWatch::due(const Watched& watched, std::int64_t now_us) {
 }
 
 void DeviceWatch::look(const std::vector<std::unique_ptr<cabinet::Device>>& devices,
-                       std::int64_t now_us, const Tell& tell) {
+                       std::int64_t now_us, const Report& report) {
   while (watched_.size() < devices.size()) watched_.push_back({DeviceState::missing, now_us, {}});
   for (std::uint32_t i = 0; i < devices.size(); ++i) {
     Watched& watched = watched_[i];
@@ -66,14 +66,14 @@ void DeviceWatch::look(const std::vector<std::unique_ptr<cabinet::Device>>& devi
     if (!due(watched, now_us)) continue;
     const bool live = state == DeviceState::live;
     if (!live || watched.reported)
-      tell(i, sentence(*devices[i], state, watched.ever_live), devices[i]->name() + " is back");
+      report(i, sentence(*devices[i], state, watched.ever_live), devices[i]->name() + " is back");
     watched.ever_live = watched.ever_live || live;
     watched.reported = state;
   }
 }
 
 void DeviceWatch::look_at_sensors(const std::vector<std::unique_ptr<cabinet::Device>>& devices,
-                                  std::int64_t now_us, const Tell& tell) {
+                                  std::int64_t now_us, const Report& report) {
   saturations_.resize(devices.size());
   for (std::uint32_t i = 0; i < devices.size(); ++i) {
     Saturation& known = saturations_[i];
@@ -82,10 +82,10 @@ void DeviceWatch::look_at_sensors(const std::vector<std::unique_ptr<cabinet::Dev
     if (overflows != std::exchange(known.overflows, overflows)) {
       known.last_us = now_us;
       if (!std::exchange(known.reported, true))
-        tell(i, make_sentence<SentenceId::device_too_fast>(name), {});
+        report(i, make_sentence<SentenceId::device_too_fast>(name), {});
     } else if (known.reported && now_us - known.last_us > kSaturationShownUs) {
       known.reported = false;
-      tell(i, {}, name + ": its sensors follow again");
+      report(i, {}, name + ": its sensors follow again");
     }
   }
 }

@@ -16,17 +16,17 @@ namespace server {
 class DeviceWatch {
  public:
   // fault: empty if the device works again; is_well is then the text for the log.
-  using Tell = std::function<void(std::uint32_t device, const wire::Sentence& fault,
-                                  const std::string& is_well)>;
+  using Report = std::function<void(std::uint32_t device, const wire::Sentence& fault,
+                                    const std::string& is_well)>;
 
   // Reports at once when a device stops being live, or is live again; other states only after a
   // while.
   void look(const std::vector<std::unique_ptr<cabinet::Device>>& devices, std::int64_t now_us,
-            const Tell& tell);
+            const Report& report);
   // A sensor that could not follow its rod: the number of lost counts is unknown. Reported for a
   // while.
   void look_at_sensors(const std::vector<std::unique_ptr<cabinet::Device>>& devices,
-                       std::int64_t now_us, const Tell& tell);
+                       std::int64_t now_us, const Report& report);
 
  private:
   // Delay before a new device is reported, and before one fault replaces another: a controller that

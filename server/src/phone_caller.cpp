@@ -265,7 +265,7 @@ void PhoneCaller::follow(PhoneGuest::Outcome&& outcome) {
     deadline_.cancel();
     if (!room) house_.count(Count::refused);
     if (!room || !open_link()) {
-      tell(wire::PhoneNotice{number(wire::PhoneNotice::Level::end),
+      send(wire::PhoneNotice{number(wire::PhoneNotice::Level::end),
                              (room ? wire::make_sentence<wire::SentenceId::server_overloaded>()
                                    : wire::make_sentence<wire::SentenceId::server_full>())
                                  .text()});
@@ -276,7 +276,7 @@ void PhoneCaller::follow(PhoneGuest::Outcome&& outcome) {
   if (dead_) return;
   for (const auto& message : outcome.to_control) wire::encode_control(message, link_out_);
   if (outcome.input) house_.take(*outcome.input);
-  for (const auto& reply : outcome.to_phone) tell(reply);
+  for (const auto& reply : outcome.to_phone) send(reply);
   if (dead_) return;
   if (link_out_.size() > kMaxToControl) return drop();
   write_link();
@@ -285,7 +285,7 @@ void PhoneCaller::follow(PhoneGuest::Outcome&& outcome) {
   if (to_phone_.empty()) close_socket(websocket::close_code::normal);
 }
 
-void PhoneCaller::tell(const wire::PhoneReply& reply) {
+void PhoneCaller::send(const wire::PhoneReply& reply) {
   if (dead_ || closing_ || !open_) return;
   if (to_phone_.size() >= house_.options().limits.unsent) {
     house_.count(Count::slow_dropped);
@@ -327,7 +327,7 @@ void PhoneCaller::pulse(const PhonePulseEvent& event) {
   const auto rod = guest_.index_of(event.rod);
   if (!rod || !inside_) return;
   house_.count(Count::pulses);
-  tell(wire::PhonePulse{*rod, event.strength, event.ms});
+  send(wire::PhonePulse{*rod, event.strength, event.ms});
 }
 
 // --- the control port

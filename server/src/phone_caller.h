@@ -104,7 +104,7 @@ class PhoneCaller final : public std::enable_shared_from_this<PhoneCaller> {
   bool open_link();
   void read_link();
   void write_link();
-  void tell(const wire::PhoneReply& reply);
+  void send(const wire::PhoneReply& reply);
   void write_next();
   void close_socket(websocket::close_code code);
 

@@ -46,7 +46,7 @@ class ResultsLog::Keeper {
   }
 
   // Any thread.
-  void tell(const wire::Sentence& problem) {
+  void set_problem(const wire::Sentence& problem) {
     const std::lock_guard guard(mutex_);
     problem_ = problem;
   }
@@ -167,7 +167,7 @@ void ResultsLog::Keeper::keep() {
       store_ = std::move(*opened);
       if (matches_.empty()) report(0);
     } else {
-      tell(wire::make_sentence<wire::SentenceId::results_not_kept>(opened.error()));
+      set_problem(wire::make_sentence<wire::SentenceId::results_not_kept>(opened.error()));
     }
   }
   Entry entry;
@@ -175,13 +175,13 @@ void ResultsLog::Keeper::keep() {
   while (store_ && !waiting_.empty()) {
     const auto id = keep(waiting_.front());
     if (!id) {
-      tell(wire::make_sentence<wire::SentenceId::results_not_kept>(id.error()));
+      set_problem(wire::make_sentence<wire::SentenceId::results_not_kept>(id.error()));
       store_.reset();
       return;
     }
     waiting_.pop_front();
   }
-  if (store_) tell(wire::Sentence());
+  if (store_) set_problem(wire::Sentence());
 }
 
 ResultsLog::ResultsLog(const ResultsLogOptions& options)
@@ -214,7 +214,7 @@ void ResultsLog::close() {
   if (ended_.wait_for(close_patience_) == std::future_status::ready) {
     thread_.join();
   } else {
-    keeper_->tell(wire::make_sentence<wire::SentenceId::results_problem>(
+    keeper_->set_problem(wire::make_sentence<wire::SentenceId::results_problem>(
         path_, "the file did not answer in time; some may be missing"));
     thread_.detach();
   }

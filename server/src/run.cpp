@@ -5,7 +5,7 @@
 namespace server {
 namespace {
 
-void tell(Server& server, OverloadWatch::Change change) {
+void report(Server& server, OverloadWatch::Change change) {
   switch (change) {
     case OverloadWatch::Change::overloaded:
       server.warn(Server::Topic::overload, wire::make_sentence<wire::SentenceId::cannot_keep_up>());
@@ -52,7 +52,7 @@ RunEnd run(Server& server, TickLoop& loop, const RunOptions& options,
   std::optional<RunEnd> end;
   loop.run([&](std::int64_t now_us, const LoopStats& stats) {
     server.tick(now_us);
-    tell(server, overload.look(stats.ticks, stats.missed));
+    report(server, overload.look(stats.ticks, stats.missed));
     end = reason_to_end(server, options, stop);
     return !end;
   });

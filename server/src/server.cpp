@@ -237,7 +237,7 @@ void Server::Impl::gather_live(std::int64_t now_us) {
   desk.follow(match.view());
   watch_absences();
   desk.poll(now_us);
-  tell_match();
+  add_commands();
   next.tick = ticks;
   for (int rod = 0; rod < foosball::kRods; ++rod) next.rods[rod] = to_grid(desk.rods()[rod]);
   device_watch.look(desk.devices(), now_us,
@@ -297,7 +297,7 @@ void Server::Impl::watch_game() {
 void Server::Impl::show_devices(std::int64_t now_us) {
   if (!control.devices_asked()) return;
   fill(device_table, desk.devices(), now_us);
-  control.tell_devices(device_table);
+  control.report_devices(device_table);
 }
 
 // Checks once a second whether any snapshot was sent.
@@ -410,7 +410,7 @@ void Server::tick(std::int64_t now_us) {
   }
   s.watch_journal();
   s.watch_results();
-  s.tell_report();
+  s.send_report();
   s.watch_sending();
   s.watch_tuning();
   s.watch_game();

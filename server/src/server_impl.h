@@ -48,14 +48,14 @@ struct Server::Impl {
   void take_phone_inputs(std::int64_t now_us);
   bool gather(std::int64_t now_us);
   void gather_live(std::int64_t now_us);
-  void tell_match();
+  void add_commands();
   void broadcast(std::int64_t now_us, std::int64_t tick_ns);
   void put_drivers(wire::Snapshot& out) const;
   void watch_journal();
   void keep_result();
   void keep_answers(const ControlEvent& event);
   void watch_results();
-  void tell_report();
+  void send_report();
   void begin_lineup();
   void count_players();
   MatchScribe::Players players() const;

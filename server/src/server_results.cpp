@@ -115,7 +115,7 @@ void Server::Impl::watch_results() {
 }
 
 // Clients show it at the end of the match and on the logo screen.
-void Server::Impl::tell_report() {
+void Server::Impl::send_report() {
   ResultsLog::Report kept;
   if (!results || !results->report_changed(kept)) return;
   wire::Report report;

@@ -115,7 +115,8 @@ void Server::Impl::watch_absences() {
   for (const Client& client : clients) {
     if ((client.rods & desk.stand_ins()) != 0) remember_name(client.id);
   }
-  const auto tell = [&](Topic topic, bool& reported, const wire::Sentence& text, const char* over) {
+  const auto report = [&](Topic topic, bool& reported, const wire::Sentence& text,
+                          const char* over) {
     if (!text.empty() || reported) notify(topic, text, over);
     reported = !text.empty();
   };
@@ -126,8 +127,8 @@ void Server::Impl::watch_absences() {
   if (offered != 0)
     offer = make_sentence<SentenceId::rods_offered>(RodDesk::kOfferUs / 1'000'000,
                                                     rods_by_name(offered, had_rod));
-  tell(Topic::stand_in, stand_ins_reported, stand_in, "the computer replaces nobody any more");
-  tell(Topic::offer, offer_reported, offer, "no rods are offered any more");
+  report(Topic::stand_in, stand_ins_reported, stand_in, "the computer replaces nobody any more");
+  report(Topic::offer, offer_reported, offer, "no rods are offered any more");
 }
 
 // Pauses a match while none of its players is heard, so that a network outage of the only player
@@ -162,7 +163,7 @@ bool Server::Impl::pause_is_abandoned() const {
 
 // Tells the match which teams computers play, so that it knows whose absence counts, and when a
 // hand ends a demonstration match.
-void Server::Impl::tell_match() {
+void Server::Impl::add_commands() {
   const foosball::MatchView& view = match.view();
   if (view.attract) {
     if (desk.hand_moved()) next.commands.push_back(to_record({foosball::Command::Kind::touch}));

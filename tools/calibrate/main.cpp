@@ -138,7 +138,7 @@ class Terminal {
         "Enter: leave.\n");
     while (asked_to_leave == 0 && !done_) {
       run_.step();
-      tell();
+      print_state();
       read_keys();
     }
     if (run_.session().all_fitted()) return run_.view().problem.empty() ? kOk : kFailed;
@@ -147,7 +147,7 @@ class Terminal {
   }
 
  private:
-  void tell() {
+  void print_state() {
     Session& s = run_.session();
     std::string now = rod_text(run_.view().layout, s.rod()) + "  ";
     if (s.state(s.rod()) == RodState::guided)

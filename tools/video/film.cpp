@@ -61,7 +61,7 @@ draw::Image Film::frame(const wire::Snapshot& state, Staging& staging, float tim
   hud.state = &state;
   hud.characters = &characters_;
   hud.camera = view.camera;
-  client::tell_story(hud, staging.story());
+  client::set_story(hud, staging.story());
   client::draw_hud(ui_, hud, options_.size);
   return draw::read_pixels(options_.size);
 }

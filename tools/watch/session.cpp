@@ -89,7 +89,7 @@ void Session::open(const std::string& path) {
   });
 }
 
-void Session::tell(const std::string& text, bool warning) {
+void Session::show_message(const std::string& text, bool warning) {
   message_ = text;
   warning_ = warning;
   message_until_ = seconds_ + kMessageSeconds;
@@ -97,7 +97,7 @@ void Session::tell(const std::string& text, bool warning) {
 
 void Session::take_list(Listed listed) {
   list_.reading = false;
-  if (!listed) return tell(listed.error(), true);
+  if (!listed) return show_message(listed.error(), true);
   // The selection stays with its file.
   const std::string chosen = recordings_.empty() ? "" : path();
   recordings_ = std::move(*listed);
@@ -118,7 +118,7 @@ void Session::take_recording(Opened opened) {
   list_.reading = listing_.running();
   if (!opened) {
     if (first_problem_.empty() && recordings_.empty()) first_problem_ = opened.error();
-    return tell(opened.error(), true);
+    return show_message(opened.error(), true);
   }
   player_ = std::make_unique<Player>(std::move(*opened));
   kept_ = server::summarise_recording(player_->timeline().path()).kept;
@@ -138,21 +138,22 @@ void Session::step(double dt) {
   if (auto copied = copying_.take()) {
     if (*copied) {
       kept_ = true;
-      tell(std::string(client::tr("copied to")) + " " + **copied, false);
+      show_message(std::string(client::tr("copied to")) + " " + **copied, false);
       if (!player_) read_folder();
     } else {
-      tell(copied->error(), true);
+      show_message(copied->error(), true);
     }
   }
   if (player_) {
     if (stick_ != 0.0) player_->go_to(player_->tick() + kStickRate * stick_ * dt);
     player_->advance(dt);
     if (const std::string text = player_->take_message(); !text.empty())
-      tell(client::tr(text.c_str()), false);
+      show_message(client::tr(text.c_str()), false);
     const Findings findings = player_->timeline().findings();
     if (findings.done && !verdict_shown_ && !findings.being_made) {
       verdict_shown_ = true;
-      if (findings.verdict != server::Playback::Verdict::same) tell(findings.sentence, true);
+      if (findings.verdict != server::Playback::Verdict::same)
+        show_message(findings.sentence, true);
     }
   }
   if (seconds_ > message_until_) message_.clear();
@@ -187,12 +188,12 @@ void Session::keep() {
   const auto row = static_cast<std::size_t>(list_.chosen);
   const bool keep = player_ ? !kept_ : !list_.rows[row].kept;
   if (const auto done = server::keep_recording(path(), keep); !done)
-    return tell(done.error(), true);
+    return show_message(done.error(), true);
   if (player_) kept_ = keep;
   if (!player_) list_.rows[row].kept = keep;
-  tell(client::tr(keep ? N_("kept: this recording is never deleted")
-                       : N_("no longer kept: it is deleted when there are too many")),
-       false);
+  show_message(client::tr(keep ? N_("kept: this recording is never deleted")
+                               : N_("no longer kept: it is deleted when there are too many")),
+               false);
 }
 
 void Session::copy() {

@@ -55,7 +55,7 @@ class Session {
   // A line for a log: the position in the recording, or the chosen row.
   std::string state() const;
   // Shows a message for a while; text: in the person's language.
-  void tell(const std::string& text, bool warning);
+  void show_message(const std::string& text, bool warning);
   // Why the first file could not be opened; empty: no error so far.
   const std::string& first_problem() const { return first_problem_; }
 

@@ -177,7 +177,7 @@ void Viewer::take_events() {
   pads_->poll(input_);
   session_.pad(input_.take(client::kAllDevices));
   input_.clear();
-  for (const std::string& message : pads_->take_messages()) session_.tell(message, true);
+  for (const std::string& message : pads_->take_messages()) session_.show_message(message, true);
 }
 
 // Handles a change of the recording, the side, or the moment.
@@ -244,7 +244,7 @@ void Viewer::draw_match() {
   hud.viewer_team = turned ? 1 : -1;
   hud.text_scale = settings_.text_scale;
   hud.still = settings_.reduced_flashes;
-  client::tell_story(hud, staging_->story());
+  client::set_story(hud, staging_->story());
   hud.recorded = true;
   client::draw_hud(*ui_, hud, picture);
   glViewport(0, 0, size_.x, size_.y);
@@ -274,7 +274,7 @@ void Viewer::take_picture() {
         session_.shared_to() + "/Space Foosball picture " + std::to_string(i) + ".png";
     if (std::filesystem::exists(path, error)) continue;
     const auto written = draw::write_png(image, path);
-    return session_.tell(
+    return session_.show_message(
         written ? client::tr("picture written to") + std::string(" ") + path : written.error(),
         !written);
   }

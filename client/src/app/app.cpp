@@ -152,7 +152,7 @@ void App::learn_names() {
 }
 
 // During a match the names stay: a player who changes the name would have left it.
-void App::tell_names() {
+void App::send_names() {
   const auto screen = static_cast<wire::Screen>(sample_.state.screen);
   const bool in_match = sample_.any && !sample_.state.attract &&
                         (screen == wire::Screen::play || screen == wire::Screen::ceremony);
@@ -179,7 +179,7 @@ void App::receive(std::int64_t now) {
   follow_phones();
   SceneSample sample = connection_->sample(now);
   if (sample.any) sample_ = std::move(sample);  // else the last scene stays
-  tell_names();
+  send_names();
   const auto events = connection_->take_events();
   events_.insert(events_.end(), events.begin(), events.end());
 }
@@ -292,7 +292,7 @@ HudState App::hud(const Camera& camera) {
   hud.still = settings_.reduced_flashes;
   hud.replay = replay_;
   hud.rod_shift = rod_shift();
-  tell_story(hud, story_);
+  set_story(hud, story_);
   hud.menu = menu_.page(menu_context());
   const bool logo = sample_.any && drawn_.screen == number(wire::Screen::logo);
   const bool asks = menu_.shows(Menu::Page::seats) || (logo && !menu_.open());

@@ -61,7 +61,7 @@ class App {
   void follow_connection();
   void follow_roster();
   void learn_names();
-  void tell_names();
+  void send_names();
   int viewer_team() const;
   void use_characters();
   void log_when_synchronised(std::int64_t now);
@@ -76,7 +76,7 @@ class App {
   void choose_game(std::int64_t now);
   void watch_devices(std::int64_t now);
   void report_pads();
-  void tell(std::vector<std::string> lines);
+  void show_messages(std::vector<std::string> lines);
   void shake_pads();
   void follow_phones();
   void predict(std::int64_t now);

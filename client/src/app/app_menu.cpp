@@ -134,7 +134,7 @@ void App::watch_recordings() {
   auto program = WatchProgram::start(options);
   if (!program) {
     log_warning(program.error());
-    tell({program.error()});
+    show_messages({program.error()});
     return;
   }
   watching_.emplace(std::move(*program));
@@ -159,11 +159,11 @@ void App::follow_watching() {
   const std::string said = "space-foosball-watch ended with " + std::to_string(*code) +
                            ": what it said is in the terminal, or in the log of ./play";
   log_warning(said);
-  tell({said});
+  show_messages({said});
 }
 
 // Shows the lines for a while.
-void App::tell(std::vector<std::string> lines) {
+void App::show_messages(std::vector<std::string> lines) {
   constexpr double kShown = 8.0;  // [s]
   messages_ = std::move(lines);
   messages_until_ = seconds_ + kShown;
@@ -206,7 +206,7 @@ void App::watch_devices(std::int64_t now) {
 void App::report_pads() {
   if (auto messages = window_->take_messages(); !messages.empty()) {
     for (const std::string& line : messages) log_info(line);
-    tell(std::move(messages));
+    show_messages(std::move(messages));
   }
   if (seconds_ > messages_until_) messages_.clear();
 }

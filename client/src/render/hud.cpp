@@ -348,7 +348,7 @@ void draw_for_reader(const HudPen& pen, const HudState& hud, const glm::ivec2& s
 
 }  // namespace
 
-void tell_story(HudState& hud, const MatchStory& story) {
+void set_story(HudState& hud, const MatchStory& story) {
   hud.goal = story.last_goal();
   hud.since_foul = story.since_foul();
   hud.since_serve = story.since_serve();

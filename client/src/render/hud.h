@@ -59,7 +59,7 @@ struct HudState {
 };
 
 // Copies what the match's events have shown.
-void tell_story(HudState& hud, const MatchStory& story);
+void set_story(HudState& hud, const MatchStory& story);
 
 class HudPen;
 void draw_menu(const HudPen& pen, const MenuPage& page);
