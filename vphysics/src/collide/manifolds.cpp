@@ -22,8 +22,13 @@ void to_world(const SE3& T, Manifold& m) {
 class Finder {
  public:
   Finder(const SearchMargin& margin, std::span<const KnownPart> known, ManifoldScratch& scratch,
-         std::vector<SubManifold>& out)
-      : search_(margin), margin_(margin.largest), known_(known), scratch_(scratch), out_(out) {}
+         std::vector<SubManifold>& out, const PairMotion* motion)
+      : search_(margin),
+        margin_(margin.largest),
+        known_(known),
+        scratch_(scratch),
+        out_(out),
+        motion_(motion) {}
 
   // Precondition: neither a nor b is a compound.
   void find(const Geometry& a, const SE3& T_a, const Geometry& b, const SE3& T_b,
@@ -38,7 +43,10 @@ class Finder {
     found.sub_b = sub_b_;
     find_manifold(a, T_a, b, T_b, margin_, cache, found.manifold);
     found.cache = cache;
-    if (found.manifold.count > 0) out_.push_back(found);
+    if (found.manifold.count == 0) return;
+    if (motion_)
+      found.to_impact = move_to_impact(a, T_a, b, T_b, *motion_, margin_, found.manifold);
+    out_.push_back(found);
   }
 
   // of: the compound whose parts are tested against the other shape.
@@ -105,6 +113,7 @@ class Finder {
   std::span<const KnownPart> known_;
   ManifoldScratch& scratch_;
   std::vector<SubManifold>& out_;
+  const PairMotion* motion_;
   std::uint32_t sub_a_ = 0, sub_b_ = 0;  // current parts of the compounds
 };
 
@@ -112,8 +121,9 @@ class Finder {
 
 void find_manifolds(const Geometry& a, const SE3& T_a, const Geometry& b, const SE3& T_b,
                     const SearchMargin& margin, PairCache& cache, std::span<const KnownPart> known,
-                    ManifoldScratch& scratch, std::vector<SubManifold>& manifolds) {
-  Finder finder(margin, known, scratch, manifolds);
+                    ManifoldScratch& scratch, std::vector<SubManifold>& manifolds,
+                    const PairMotion* motion) {
+  Finder finder(margin, known, scratch, manifolds, motion);
   if (a.kind == Kind::compound) {
     finder.find_of_parts(a, T_a, b, T_b, false);
   } else if (b.kind == Kind::compound) {

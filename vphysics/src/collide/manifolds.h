@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "collide/impact_manifold.h"
 #include "collide/manifold.h"
 #include "collide/triangle_contact.h"
 
@@ -16,6 +17,7 @@ struct SubManifold {
   Manifold manifold;
   std::uint32_t sub_a = 0, sub_b = 0;
   PairCache cache;  // if both parts are convex and not triangles
+  MotionToImpact to_impact;
 };
 
 // Cached data of a sub-manifold from the last call for the same pair.
@@ -87,9 +89,11 @@ inline constexpr std::size_t kMaxClusters = 12;
 // degrees, share one. Feature names are unique among the manifolds of the pair, except for
 // collisions with a probability of one in 2^32. cache is used if both shapes are convex; known, in
 // any order, if they have parts. Two surfaces, or a surface and a half-space, have no manifolds.
+// With a motion, those of convex parts that will collide are found where they will.
 void find_manifolds(const Geometry& a, const SE3& T_a, const Geometry& b, const SE3& T_b,
                     const SearchMargin& margin, PairCache& cache, std::span<const KnownPart> known,
-                    ManifoldScratch& scratch, std::vector<SubManifold>& manifolds);
+                    ManifoldScratch& scratch, std::vector<SubManifold>& manifolds,
+                    const PairMotion* motion = nullptr);
 
 // A lower bound of the distance of two shapes of which at least one has parts: the distance between
 // the bounds of the nearest part and the bounds of the other shape [m]. 0 if it is not cheap to

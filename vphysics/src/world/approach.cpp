@@ -72,4 +72,11 @@ double Approach::of(const Collider& a, const Collider& b) const {
                   dt * independent_speed + by_a.rotated(a, dt) + by_b.rotated(b, dt));
 }
 
+collide::PairMotion Approach::motion(const Collider& a, const Collider& b, double tolerance) const {
+  const auto of_body = [](const Body& body) {
+    return collide::BodyMotion{reference_point(body), body.v, body.w};
+  };
+  return {of_body(bodies[a.body]), of_body(bodies[b.body]), dt, tolerance};
+}
+
 }  // namespace vp

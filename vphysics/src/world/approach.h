@@ -2,6 +2,7 @@
 // narrow phase and the broad phase.
 #pragma once
 
+#include "collide/impact_manifold.h"
 #include "world/collider.h"
 #include "world/loads.h"
 
@@ -21,6 +22,8 @@ struct Approach {
   // touch. The second: relative velocity of the bounding spheres' centres, and the motion of each
   // shape within its sphere by rotation.
   double of(const Collider& a, const Collider& b) const;
+  // Their motion at the present velocities.
+  collide::PairMotion motion(const Collider& a, const Collider& b, double tolerance) const;
 };
 
 }  // namespace vp

@@ -27,6 +27,8 @@ struct NarrowPhaseResult {
   // Search distances, with motion and at rest, and the distance that is free of contact [m].
   double margin, margin_at_rest, clearance;
   bool by_part;  // of a compound: each part has its own margin
+  collide::MotionToImpact to_impact;
+  double dt;  // [s], in which they move
 };
 
 // Contacts that are tested in one batch, before their results are taken over: with their colliders
@@ -75,7 +77,8 @@ class ContactSearch {
   void list_dirty_contacts();
   void find_manifolds_of(std::span<const std::uint32_t> contacts, double dt);
   void take_over(const NarrowPhaseResult& found);
-  void assign_slot(std::uint32_t contact, const collide::Manifold& manifold);
+  void assign_slot(std::uint32_t contact, const collide::Manifold& manifold,
+                   const collide::MotionToImpact& to_impact);
   // part_contacts.cpp
   void find_parts(const NarrowPhaseResult& look);
   // find_again.cpp

@@ -84,10 +84,16 @@ void find_manifold_of(Contact& c, NarrowPhaseResult& found, const NarrowPhaseInp
   found.clearance = (found.by_part ? found.margin_at_rest : found.margin) - in.slop;
   found.manifold.count = 0;
   found.manifold.rough = false;
+  found.to_impact = {};
+  found.dt = in.approach.dt;
   if (disables_collision(in.bodies, in.joints, a.body, b.body)) {
     found.clearance = kNeverTouches;
   } else if (!c.has_parts) {
     find_manifold(a.geometry, a.T, b.geometry, b.T, found.margin, c.cache, found.manifold);
+    if (found.manifold.count > 0 && !c.sensor)
+      found.to_impact = move_to_impact(a.geometry, a.T, b.geometry, b.T,
+                                       in.approach.motion(a, b, found.margin_at_rest), found.margin,
+                                       found.manifold);
     if (found.manifold.count == 0)
       found.clearance = std::max(found.clearance, found.manifold.min_separation - in.slop);
   }
@@ -275,7 +281,7 @@ void ContactSearch::take_over(const NarrowPhaseResult& found) {
     if (collides != s_.contact_store[index].touching)
       s_.events.touch(s_.colliders, s_.contact_store[index], collides);
   } else if (found.manifold.count > 0) {
-    assign_slot(index, found.manifold);
+    assign_slot(index, found.manifold, found.to_impact);
     return;
   }
   Contact& c = s_.contact_store[index];  // the pool may have grown
@@ -295,7 +301,8 @@ void ContactSearch::take_over(const NarrowPhaseResult& found) {
   if (c.sensor && !c.parked) dirty_next_step_.push_back(index);  // in the next step
 }
 
-void ContactSearch::assign_slot(std::uint32_t index, const collide::Manifold& m) {
+void ContactSearch::assign_slot(std::uint32_t index, const collide::Manifold& m,
+                                const collide::MotionToImpact& to_impact) {
   Contact& c = s_.contact_store[index];
   solve::ContactGraph& graph = s_.contact_store.graph;
   ++renewed_;
@@ -314,8 +321,8 @@ void ContactSearch::assign_slot(std::uint32_t index, const collide::Manifold& m)
   solve::NewContact n{};
   n.normal = m.normal;
   // The world has no centre of its own: the other body's centre makes the arms short.
-  n.x_a = reference_point(s_.bodies[a.body]);
-  n.x_b = reference_point(s_.bodies[b.body]);
+  n.x_a = reference_point(s_.bodies[a.body]) + to_impact.a;
+  n.x_b = reference_point(s_.bodies[b.body]) + to_impact.b;
   if (end_a.state == solve::kWorldState) n.x_a = n.x_b;
   if (end_b.state == solve::kWorldState) n.x_b = n.x_a;
   n.count = std::min<int>(m.count, c.slot.points);

@@ -78,9 +78,11 @@ void ContactSearch::find_parts(const NarrowPhaseResult& look) {
   const collide::SearchMargin by_part(look.margin, look.margin_at_rest,
                                       s_.dt * (body_b.v - body_a.v - cross(body_a.w, arm)),
                                       s_.dt * (body_b.w - body_a.w), about);
-  find_manifolds(
-      a.geometry, a.T, b.geometry, b.T, look.by_part ? by_part : collide::SearchMargin(look.margin),
-      s_.contact_store[index].cache, known_parts_, s_.shapes.manifold_scratch, s_.shapes.manifolds);
+  const collide::PairMotion motion = s_.approach_in(look.dt).motion(a, b, look.margin_at_rest);
+  find_manifolds(a.geometry, a.T, b.geometry, b.T,
+                 look.by_part ? by_part : collide::SearchMargin(look.margin),
+                 s_.contact_store[index].cache, known_parts_, s_.shapes.manifold_scratch,
+                 s_.shapes.manifolds, s_.contact_store[index].sensor ? nullptr : &motion);
   for (const collide::SubManifold& found : s_.shapes.manifolds)
     s_.status.distance_limit |= found.manifold.rough;
   if (s_.contact_store[index].sensor) {
@@ -125,7 +127,7 @@ void ContactSearch::find_parts(const NarrowPhaseResult& look) {
     (last == kNone ? s_.contact_store[index].first_part : s_.contact_store[last].next_part) = p;
     last = p;
     put_deepest_first(found.manifold);
-    assign_slot(p, found.manifold);
+    assign_slot(p, found.manifold, found.to_impact);
   }
   if (last == kNone) s_.contact_store[index].first_part = kNone;
   const Contact& aggregate = s_.contact_store[index];
