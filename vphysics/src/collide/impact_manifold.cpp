@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "collide/time_of_impact.h"
+
 namespace vp::collide {
 namespace {
 
@@ -20,26 +22,20 @@ constexpr double kGrazing = 0.01;
 // Cosine of the angle within which two normals count as the same: 0.2 degrees.
 constexpr double kUnchangedNormal = 0.999994;
 
-// The reference points of the two bodies after a time.
+// The points x of the two motions after a time.
 struct Moment {
   const PairMotion& motion;
   Vec3 x_a, x_b;
 
   Moment(const PairMotion& of, double t)
-      : motion(of), x_a(of.a.reference + t * of.a.v), x_b(of.b.reference + t * of.b.v) {}
+      : motion(of), x_a(of.a.x + t * of.a.v), x_b(of.b.x + t * of.b.v) {}
 
   // Of a's point there relative to b's.
   Vec3 velocity(const Vec3& at) const {
-    const BodyMotion &a = motion.a, &b = motion.b;
+    const Motion &a = motion.a, &b = motion.b;
     return a.v + cross(a.w, at - x_a) - b.v - cross(b.w, at - x_b);
   }
 };
-
-SE3 pose_after(const SE3& T, const BodyMotion& motion, double t) {
-  const Mat3 R = Exp(t * motion.w).matrix();
-  return {R * T.rotation(),
-          motion.reference + t * motion.v + R * (T.position() - motion.reference)};
-}
 
 // The point of a manifold that closes first.
 struct Closing {
@@ -124,7 +120,8 @@ MotionToImpact move_to_impact(const Geometry& a, const SE3& T_a, const Geometry&
   const auto advance = [&](double by) {
     step = by;
     t += by;
-    find_manifold(a, pose_after(T_a, motion.a, t), b, pose_after(T_b, motion.b, t), margin, m);
+    find_manifold(a, pose_at({&a, T_a, motion.a}, t), b, pose_at({&b, T_b, motion.b}, t), margin,
+                  m);
     last = next;
     next = first_to_close(Moment(motion, t), m, tolerance);
     return m.count > 0;

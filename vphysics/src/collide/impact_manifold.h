@@ -9,23 +9,18 @@
 #pragma once
 
 #include "collide/manifold.h"
+#include "collide/sweep.h"
 
 namespace vp::collide {
 
-// The motion of a body from now on, in the world frame: v [m/s] of the point `reference`, w
-// [rad/s].
-struct BodyMotion {
-  Vec3 reference, v, w;
-};
-
 struct PairMotion {
-  BodyMotion a, b;
+  Motion a, b;
   double dt;  // [s]
   // An overlap [m] that counts as none: within it, the impact may be at another face.
   double tolerance;
 };
 
-// How far the reference points of the two bodies move until the impact [m].
+// How far the points `x` of the two motions move until the impact [m].
 struct MotionToImpact {
   Vec3 a, b;
 };

@@ -74,7 +74,7 @@ double Approach::of(const Collider& a, const Collider& b) const {
 
 collide::PairMotion Approach::motion(const Collider& a, const Collider& b, double tolerance) const {
   const auto of_body = [](const Body& body) {
-    return collide::BodyMotion{reference_point(body), body.v, body.w};
+    return collide::Motion{reference_point(body), body.v, body.w};
   };
   return {of_body(bodies[a.body]), of_body(bodies[b.body]), dt, tolerance};
 }
