@@ -29,11 +29,13 @@ struct View {
 class FaceSearch {
  public:
   explicit FaceSearch(const View& view) : v_(view) {
-    centre_a_ = core_centre(v_.pair.a);
-    centre_b_ = v_.pair.T_a_b * core_centre(v_.pair.b);
+    centre_a_ = witness_a_ = core_centre(v_.pair.a);
+    centre_b_ = witness_b_ = v_.pair.T_a_b * core_centre(v_.pair.b);
   }
 
-  // Along the normal the other's centre is at least as far as its closest point.
+  // Along the normal every point of the other is at least as far as its closest one. Its centre
+  // rules out the faces on the far side; the closest point of the best face so far, which is where
+  // the shapes meet, nearly all others.
   void try_face(bool of_a, int f) {
     const ConvexHull::Face& face = (of_a ? v_.a : v_.b).faces[static_cast<std::size_t>(f)];
     const SE3& T = v_.pair.T_a_b;
@@ -41,11 +43,15 @@ class FaceSearch {
     const double offset = of_a ? face.offset : face.offset + dot(n, T.position());
     FaceAxis& best = of_a ? best_a : best_b;
     bool& found = of_a ? found_a : found_b;
-    if (found && dot(n, of_a ? centre_b_ : centre_a_) - offset <= best.separation) return;
+    Vec3& witness = of_a ? witness_b_ : witness_a_;
+    if (found && (dot(n, of_a ? centre_b_ : centre_a_) - offset <= best.separation ||
+                  dot(n, witness) - offset <= best.separation))
+      return;
     const Vec3 nearest = of_a ? v_.pair.support_b(-n) : v_.pair.support_a(-n);
     const double separation = dot(n, nearest) - offset;
     if (found && !(separation > best.separation)) return;
     found = true;
+    witness = nearest;
     best = {separation, of_a ? n : -n, of_a, f};
   }
 
@@ -53,7 +59,7 @@ class FaceSearch {
 
  private:
   const View& v_;
-  Vec3 centre_a_, centre_b_;
+  Vec3 centre_a_, centre_b_, witness_a_, witness_b_;
   bool found_a = false, found_b = false;
 };
 
