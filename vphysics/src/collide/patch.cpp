@@ -84,7 +84,7 @@ class Clipper {
   std::uint32_t crossing_name(int incident_edge, int k) const;
   ClipCorner cut(const ClipCorner& from, const ClipCorner& to, double d_from, double d_to,
                  int k) const;
-  void cut_by_edge(int k, const ClipPolygon& in, ClipPolygon& out) const;
+  bool cut_by_edge(int k, const ClipPolygon& in, ClipPolygon& out) const;
   double reference_height(double u, double v) const;
   void keep(const ClipCorner& c);
   void keep(double u, double v, double h_a, double h_b, std::uint32_t name);
@@ -160,14 +160,21 @@ ClipCorner Clipper::cut(const ClipCorner& from, const ClipCorner& to, double d_f
   return c;
 }
 
-void Clipper::cut_by_edge(int k, const ClipPolygon& in, ClipPolygon& out) const {
-  out.count = 0;
+// Returns false if nothing is outside of edge k: `out` is not written then.
+bool Clipper::cut_by_edge(int k, const ClipPolygon& in, ClipPolygon& out) const {
   const double on = coincident_[k];
-  double d = in.count > 0 ? outside(k, in.corners[0]) : 0.0;
+  double distance[kMaxPatch];
+  bool some_outside = false;
   for (int i = 0; i < in.count; ++i) {
-    const ClipCorner& here = in.corners[i];
-    const ClipCorner& next = in.corners[i + 1 < in.count ? i + 1 : 0];
-    const double d_next = outside(k, next);
+    distance[i] = outside(k, in.corners[i]);
+    some_outside = some_outside || distance[i] > on;
+  }
+  if (!some_outside) return false;
+  out.count = 0;
+  for (int i = 0; i < in.count; ++i) {
+    const int after = i + 1 < in.count ? i + 1 : 0;
+    const ClipCorner &here = in.corners[i], &next = in.corners[after];
+    const double d = distance[i], d_next = distance[after];
     if (d <= on) out.add(here);
     if (d_next > on && d <= on) {  // leaves
       if (d < -on) out.add(cut(here, next, d, d_next, k));
@@ -177,8 +184,8 @@ void Clipper::cut_by_edge(int k, const ClipPolygon& in, ClipPolygon& out) const 
     } else if (d > on && d_next < -on) {  // enters
       out.add(cut(here, next, d, d_next, k));
     }
-    d = d_next;
   }
+  return true;
 }
 
 void Clipper::keep(double u, double v, double h_a, double h_b, std::uint32_t name) {
@@ -207,8 +214,7 @@ bool Clipper::clip(bool ref_is_a) {
     in->add(c);
   }
   for (int k = 0; k < edges_ && in->count > 0; ++k) {
-    cut_by_edge(k, *in, *out);
-    std::swap(in, out);
+    if (cut_by_edge(k, *in, *out)) std::swap(in, out);
   }
   for (int i = 0; i < in->count; ++i) keep(in->corners[i]);
   return in->count > 0;
