@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <vector>
 
@@ -29,6 +30,22 @@ std::vector<Instructions> of_this_machine() {
   if (&passes() == &kAvx512) all.push_back({"AVX-512", &kAvx512});
 #endif
   return all;
+}
+
+template <int P>
+const ContactPasses<P>& passes_of(const Passes& passes) {
+  if constexpr (P == 1)
+    return passes.one;
+  else
+    return passes.four;
+}
+
+template <int P>
+void write_contact(const Passes& passes, ContactBlock<P>& block, int lane, const NewContact& c,
+                   const BodyState& a, const BodyState& b) {
+  NewContacts contacts;
+  put(contacts, lane, c, a, b);
+  passes_of<P>(passes).renew(block, contacts);
 }
 
 // A graph of bodies with contacts: some at rest, some separated, some that bounce, some that are
@@ -96,7 +113,7 @@ struct Net {
     c.restitution = random.word() % 6 == 0 ? 0.5 : 0.0;
     c.rolling = P == 1 ? 0.01 : 0.0;
     c.slid_limit = 0.01;
-    write_slot(block, ContactGraph::lane(slot), c, states[a.state], states[b.state]);
+    write_contact(passes(), block, ContactGraph::lane(slot), c, states[a.state], states[b.state]);
   }
 
   // f(passes of the kind, run).
@@ -192,7 +209,7 @@ TEST(Passes, PushEveryPointAsItsEquationSays) {
         const Vec3 first = random.in_cube(0.4);
         for (auto& point : c.points)
           point = {first + random.in_cube(0.1), random.uniform(-2e-3, 1e-3), 0.0f};
-        write_slot(blocks[0], lane, c, states[1 + 2 * lane], states[2 + 2 * lane]);
+        write_contact(*of.passes, blocks[0], lane, c, states[1 + 2 * lane], states[2 + 2 * lane]);
       }
       const ContactPasses<4>::Run run{blocks.data(), kLanes, kLanes, states.data()};
       of.passes->four.load_inertias(run);
@@ -264,7 +281,7 @@ TEST(Passes, LeaveAloneWhatNoBlowReaches) {
         const double blow = 0.05 + 0.1 * lane;
         c.points[0] = {{0.1, 0, 0}, kH * (blow - speed), 0.0f};
         c.points[1] = {{-0.1, 0, 0}, kH * (5.0 - speed), 0.0f};
-        write_slot(blocks[0], lane, c, states[a], states[b]);
+        write_contact(*of.passes, blocks[0], lane, c, states[a], states[b]);
       }
       const ContactPasses<4>::Run run{blocks.data(), kLanes, kLanes, states.data()};
       of.passes->four.load_inertias(run);
@@ -276,6 +293,62 @@ TEST(Passes, LeaveAloneWhatNoBlowReaches) {
             << of.name << ", lane " << lane << " at " << speed;
       }
     }
+  }
+}
+
+// A slot without a new contact keeps every bit; one with a new contact gets the same in every
+// width.
+template <int P>
+void expect_that_new_contacts_alone_are_written(std::uint64_t seed) {
+  vp::test::Random random(seed);
+  std::vector<ContactBlock<P>> before(1);
+  for (Field& f : fields_of(before[0])) {
+    for (float& x : f.lane) x = static_cast<float>(random.uniform(-1.0, 1.0));
+  }
+  NewContacts contacts;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    if (random.word() % 3 == 0) continue;
+    BodyState states[2]{};
+    for (BodyState& state : states) {
+      state.velocity[kInverseMass] = static_cast<float>(random.uniform(0.5, 2.0));
+      for (int k = 0; k < 3; ++k) state.inertia[k] = static_cast<float>(random.uniform(4, 8));
+      for (float& x : state.displacement) x = static_cast<float>(random.uniform(-0.1, 0.1));
+    }
+    NewContact c{};
+    c.normal = random.rotation() * Vec3{0, 0, 1};
+    c.x_b = random.in_cube(0.5);
+    c.count = P == 1 ? 1 : 1 + static_cast<int>(random.word() % 4);
+    for (int i = 0; i < c.count; ++i) c.points[i] = {random.in_cube(0.5), -1e-3, 0.01f};
+    c.friction = 0.5;
+    c.rolling = random.word() % 2 == 0 ? 0.01 : 0.0;
+    put(contacts, lane, c, states[0], states[1]);
+  }
+  std::vector<ContactBlock<P>> first;
+  for (const Instructions& of : of_this_machine()) {
+    std::vector<ContactBlock<P>> after = before;
+    passes_of<P>(*of.passes).renew(after[0], contacts);
+    if (first.empty()) first = after;
+    const auto fields = fields_of(after[0]), old = fields_of(before[0]), same = fields_of(first[0]);
+    for (std::size_t f = 0; f < fields.size(); ++f) {
+      for (int lane = 0; lane < kLanes; ++lane) {
+        EXPECT_EQ(fields[f].lane[lane], same[f].lane[lane]) << of.name << ", field " << f;
+        if ((contacts.lanes >> lane & 1u) != 0) continue;
+        EXPECT_EQ(fields[f].lane[lane], old[f].lane[lane]) << of.name << ", field " << f;
+      }
+    }
+    for (int lane = 0; lane < kLanes; ++lane) {
+      if ((contacts.lanes >> lane & 1u) == 0) continue;
+      EXPECT_GT(after[0].inverse[0].lane[lane], 0.0f);
+      EXPECT_GT(std::hypot(after[0].tangent_impulse[0].lane[lane],
+                           after[0].tangent_impulse[1].lane[lane]),
+                0.0f);
+    }
+  }
+}
+TEST(Passes, WriteNewContactsAlone) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    expect_that_new_contacts_alone_are_written<1>(seed);
+    expect_that_new_contacts_alone_are_written<4>(seed);
   }
 }
 

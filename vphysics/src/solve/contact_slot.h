@@ -1,8 +1,8 @@
-// Fills a contact slot from the narrow phase's result.
+// One new contact, as the narrow phase has found it, and the slots that it is written to.
 #pragma once
 
-#include "solve/body_state.h"
-#include "solve/contact_graph.h"
+#include "solve/contact_block.h"
+#include "solve/new_contacts.h"
 #include "vphysics/lie/vec3.h"
 
 namespace vp::solve {
@@ -21,14 +21,12 @@ struct NewContact {
   int count;
   double friction, restitution, rolling, spinning;  // the last two are lever arms [m]
   Vec3 surface_velocity;  // target velocity of b's surface relative to a's, for friction [m/s]
-  Vec3 old_friction;      // accumulated tangent impulse [N s]
-  Vec3 old_moment;        // accumulated twist and rolling impulse [N m s]
   double slid_limit;      // [m]
 };
 
-template <int P>
-void write_slot(ContactBlock<P>& block, int lane, const NewContact& contact, const BodyState& a,
-                const BodyState& b);
+// Puts a contact into a lane, for the pass `renew`.
+void put(NewContacts& contacts, int lane, const NewContact& contact, const BodyState& a,
+         const BodyState& b);
 
 // Multiplies all accumulated impulses of a block by a factor.
 template <int P>

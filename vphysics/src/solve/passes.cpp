@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "solve/contact_passes.h"
+#include "solve/renew_pass.h"
 #include "solve/restitution_pass.h"
 
 namespace vp::solve {
@@ -95,6 +96,14 @@ void for_lanes(const typename ContactPasses<P>::Run& run, const F& f) {
 }
 
 template <int P>
+[[gnu::flatten]] void renew(ContactBlock<P>& block, const NewContacts& contacts) {
+  constexpr int kDoubles = W / 2;  // as many bytes as W floats
+  for (int at = 0; at < kLanes; at += kDoubles) {
+    if ((contacts.lanes >> at & ((1u << kDoubles) - 1u)) != 0)
+      RenewLanes<kDoubles, P>(block, contacts, at).renew();
+  }
+}
+template <int P>
 void load_inertias(const typename ContactPasses<P>::Run& run) {
   for_lanes<P>(run, [](LanesOf<W, P>& c, std::size_t, int) { c.load_inertias(); });
 }
@@ -158,9 +167,9 @@ template <int P>
 
 template <int P>
 constexpr ContactPasses<P> contact_passes() {
-  return {load_inertias<P>,      apply_restitution<P>,  warm_start<P>,
-          solve<P, Pass::first>, solve<P, Pass::again>, relax<P>,
-          find_moved<P>,         find_changes<P>};
+  return {renew<P>,      load_inertias<P>,      apply_restitution<P>,
+          warm_start<P>, solve<P, Pass::first>, solve<P, Pass::again>,
+          relax<P>,      find_moved<P>,         find_changes<P>};
 }
 
 }  // namespace

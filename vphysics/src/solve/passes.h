@@ -12,6 +12,7 @@
 #include "solve/body_state.h"
 #include "solve/contact_block.h"
 #include "solve/joint_block.h"
+#include "solve/new_contacts.h"
 #include "solve/speculative_list.h"
 
 namespace vphysics_solver {
@@ -47,6 +48,8 @@ struct ContactPasses {
     std::uint32_t slots, stride;
     BodyState* states;
   };
+  // Writes new contacts into the slots of a block.
+  void (*renew)(ContactBlock<P>& block, const NewContacts& contacts);
   // Before the sub-steps of a step.
   void (*load_inertias)(const Run& run);
   bool (*apply_restitution)(const Run& run, float h, float threshold);  // true: something bounced

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "solve/contact_block.h"
+#include "solve/large_pages.h"
 
 namespace vphysics_solver {
 
@@ -74,7 +75,7 @@ class SpeculativeList {
   void reserve(std::size_t contacts) { blocks_.reserve(contacts / kLanes + 1); }
 
  private:
-  std::vector<SpeculativeBlock> blocks_;
+  LargeVector<SpeculativeBlock> blocks_;
   std::uint32_t size_ = 0;
 };
 

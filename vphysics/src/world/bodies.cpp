@@ -4,6 +4,7 @@
 
 #include "solve/state_vector.h"
 #include "world/impl.h"
+#include "world/prefetch.h"
 #include "world/validate.h"
 
 namespace vp {
@@ -143,25 +144,15 @@ bool stop_if_out_of_range(const StepContext& s, std::uint32_t index, const SE3& 
 }
 
 void restart_displacement(const Stores& s, std::uint32_t index) {
-  const auto for_speculative = [&](const auto& f) {
-    s.contact_store.for_each_of(s.bodies[index], [&](std::uint32_t contact, const Contact& c) {
-      if (!c.dirty && !c.parked && !c.of_link && c.slot.points == 0) f(contact, c);
-    });
-  };
-  for_speculative(
-      [&](std::uint32_t, const Contact& c) { s.contact_store.use_clearance(c, s.body_set); });
-  std::fill_n(s.body_states[index + 1].displacement, 6, 0.0f);
+  float* displacement = s.body_states[index + 1].displacement;
+  s.contact_store.for_each_of(s.bodies[index], [&](std::uint32_t contact, const Contact& c) {
+    const bool speculative = c.slot.points == 0 && !c.sensor && !c.of_link && !c.parked;
+    if (!speculative || !s.contact_store.restart_displacement(c, index + 1, displacement))
+      s.contact_store.mark_dirty(contact);
+  });
+  std::fill_n(displacement, 6, 0.0f);
   std::fill_n(s.start_displacements[index].begin(), 6, 0.0f);
   std::fill_n(s.bodies[index].bounded_at, 6, 1e9f);
-  for_speculative([&](std::uint32_t contact, const Contact& c) {
-    const double left = s.contact_store.clearance(c);
-    if (left > 0.0) return s.contact_store.set_clearance(c, left, s.body_set);
-    s.contact_store.reset_speculative(c, s.body_set);
-    s.contact_store.mark_dirty(contact);
-  });
-  s.contact_store.for_each_of(s.bodies[index], [&](std::uint32_t contact, const Contact& c) {
-    if (c.slot.points > 0 || c.sensor || c.of_link || c.parked) s.contact_store.mark_dirty(contact);
-  });
 }
 
 void World::Impl::load_states(double dt) {
@@ -185,6 +176,9 @@ void World::Impl::load_states(double dt) {
       });
   for (std::size_t k = 0; k < lists.awake_bodies.size(); ++k) {
     if (sub_step.awake_body_changed[k] == 0) continue;
+    prefetch_bodies(
+        context, [&](std::size_t at) { return lists.awake_bodies[at]; }, k,
+        lists.awake_bodies.size());
     const std::uint32_t i = lists.awake_bodies[k];
     if ((sub_step.awake_body_changed[k] & kFar) != 0) restart_displacement(context, i);
     if ((sub_step.awake_body_changed[k] & kPulled) != 0)

@@ -53,18 +53,18 @@ struct alignas(64) Body {
   std::uint32_t contact_slots = 0;              // number of its contact slots in the solver
   std::uint32_t first_joint = kNone, first_collider = kNone;
   std::uint32_t load = kNone;  // index into the world's loads; kNone for links
-  float bounded_at[6] = {};    // displacement of its state when its proxies' bounds were last set
   // bounding_radius: from the reference point to the farthest point of its bounded colliders [m].
   // min_size: half of the smallest extent of one of them [m].
   double bounding_radius = 0.0, min_size = 1e9;
   // State and constants.
   Vec3 w, v;  // world frame; v of the reference point (centre of mass; a link's origin)
   double inverse_mass = 0.0;
+  double gravity_scale = 1.0;
   SE3 T;                          // T_world_body
   Vec3 centre;                    // of mass, body frame
   Sym3 inverse_central, central;  // rotational inertia about it, body frame
   double linear_damping = 0.0, angular_damping = 0.0;
-  double gravity_scale = 1.0;
+  float bounded_at[6] = {};  // displacement of its state when its proxies' bounds were last set
   // Time since it was last faster than desc.sleep_speed [s]. Of a sleep candidate: sleep_after and
   // the time since it became one (sleep.cpp).
   double rest_time = 0.0;

@@ -83,4 +83,9 @@ Vicinity vicinity_of(const Bodies& bodies, const Collider& a, const Collider& b)
 // Half of the smallest extent of the smaller one; 0 if neither has one.
 double smaller_size(const Collider& a, const Collider& b);
 
+// How far the two may slide on each other before their contact is computed again [m].
+inline double slide_limit(const Collider& a, const Collider& b) {
+  return 0.01 * smaller_size(a, b);
+}
+
 }  // namespace vp

@@ -15,6 +15,7 @@
 #include <span>
 #include <vector>
 
+#include "world/manifold_writer.h"
 #include "world/runs.h"
 #include "world/step_context.h"
 
@@ -31,10 +32,6 @@ struct NarrowPhaseResult {
   double dt;  // [s], in which they move
 };
 
-// Contacts that are tested in one batch, before their results are taken over: with their colliders
-// and bodies they fit into the second-level cache.
-inline constexpr std::size_t kNarrowPhaseBatch = 512;
-
 // What find_again() has changed.
 struct SearchedAgain {
   bool has_new_slots = false;  // contact slots, new or with other points
@@ -44,7 +41,7 @@ struct SearchedAgain {
 
 class ContactSearch {
  public:
-  explicit ContactSearch(const StepContext& context) : s_(context) {}
+  explicit ContactSearch(const StepContext& context) : s_(context), writer_(context) {}
 
   // Reserves memory for a number of contacts.
   void begin_step(std::size_t contacts);
@@ -74,7 +71,7 @@ class ContactSearch {
   bool has_separated(const Contact& contact) const;
   void add_contact_pair(std::uint32_t collider_i, std::uint32_t collider_j);
   void find_dirty_contacts(double dt, const ContactRuns& runs);
-  void list_dirty_contacts();
+  void list_dirty_contacts(const ContactRuns& runs);
   void find_manifolds_of(std::span<const std::uint32_t> contacts, double dt);
   void take_over(const NarrowPhaseResult& found);
   void assign_slot(std::uint32_t contact, const collide::Manifold& manifold,
@@ -88,6 +85,7 @@ class ContactSearch {
   void list_contacts_of_deviating(double left);
 
   const StepContext s_;
+  ManifoldWriter writer_;
   std::uint32_t renewed_ = 0;
   // Contacts without a slot that the next step must test: sensors, and those that have to wait.
   std::vector<std::uint32_t> dirty_next_step_;

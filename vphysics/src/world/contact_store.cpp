@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <utility>
 
 #include "solve/state_vector.h"
@@ -185,9 +186,23 @@ double ContactStore::clearance(const Contact& c) const {
   return static_cast<double>(speculative.pair(c.speculative_index).clearance);
 }
 
-void ContactStore::use_clearance(const Contact& c, const BodySet& on) {
+bool ContactStore::restart_displacement(const Contact& c, std::uint32_t state,
+                                        const float* displacement) {
+  // Of a reference: in single precision it still resolves some micrometres, and the sum of small
+  // rotations as vectors is still close to the rotation.
+  constexpr float kFarthest = 32.0f;         // [m]
+  constexpr float kFarthestRotation = 0.5f;  // [rad]
   solve::SpeculativePair& pair = speculative.pair(c.speculative_index);
-  pair.clearance -= static_cast<float>(max_approach(pair, on, 0.0));
+  const bool is_a = pair.a == state;
+  float *x = is_a ? pair.x_a : pair.x_b, *rotation = is_a ? pair.rotation_a : pair.rotation_b;
+  bool precise = true;
+  for (int i = 0; i < 3; ++i) {
+    x[i] -= displacement[i];
+    rotation[i] -= displacement[3 + i];
+    precise =
+        precise && std::fabs(x[i]) <= kFarthest && std::fabs(rotation[i]) <= kFarthestRotation;
+  }
+  return precise;
 }
 
 bool ContactStore::may_touch_within(const Contact& c, double time, const BodySet& on) const {
@@ -258,12 +273,13 @@ void ContactStore::mark_dirty_pairs(const solve::SpeculativeBlock& block, std::u
   }
 }
 
-// Sorts by a bit set over the pool.
-void ContactStore::take_dirty(std::vector<std::uint32_t>& ascending) {
+// The list is sorted by a bit set over the pool.
+void ContactStore::set_dirty_bits() {
   dirty_bits_.resize(pool.capacity() / 64 + 1);
   for (const std::uint32_t i : dirty) dirty_bits_[i / 64] |= std::uint64_t{1} << (i % 64);
   dirty.clear();
-  ascending.clear();
+}
+void ContactStore::take_dirty_bits(std::vector<std::uint32_t>& ascending) {
   const std::size_t words = pool.size() / 64 + 1;
   for (std::size_t w = 0; w < words; ++w) {
     for (std::uint64_t left = std::exchange(dirty_bits_[w], 0); left != 0; left &= left - 1) {

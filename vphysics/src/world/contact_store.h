@@ -25,7 +25,7 @@ struct BodySet {
 class ContactStore {
  public:
   // --- state
-  std::vector<Contact> pool;
+  solve::LargeVector<Contact> pool;
   std::vector<std::uint32_t> free;
   solve::ContactGraph graph;                  // contacts with points
   solve::SpeculativeList speculative;         // contacts without points
@@ -72,9 +72,9 @@ class ContactStore {
   // Sets the clearance to zero, so that it is tested; of links, which are tested elsewhere, to
   // never.
   void reset_speculative(const Contact& contact, const BodySet& on);
-  // Subtracts from the clearance how far the two have moved relative to each other since it was
-  // set.
-  void use_clearance(const Contact& contact, const BodySet& on);
+  // Before a state's displacement (six floats, as in BodyState) becomes zero: moves the reference
+  // of a speculative pair by it. False if that would lose precision: test the contact instead.
+  bool restart_displacement(const Contact& contact, std::uint32_t state, const float* displacement);
 
   // Whether the two may touch within this time from now [s], at the states' present velocities.
   bool may_touch_within(const Contact& contact, double time, const BodySet& on) const;
@@ -89,10 +89,33 @@ class ContactStore {
   void mark_contacts_dirty(const Body& body);
   void mark_dirty_slots(const solve::IndexField& contacts, std::uint32_t bits);
   void mark_dirty_pairs(const solve::SpeculativeBlock& block, std::uint32_t bits);
-  // Returns the dirty ones, ascending, each once, and clears the list.
-  void take_dirty(std::vector<std::uint32_t>& ascending);
+  // Returns the dirty ones, each once, and clears the list: first those in slots, in the order in
+  // which for_each_block passes blocks' contact indices to its argument, then all others,
+  // ascending.
+  template <class F>
+  void take_dirty(std::vector<std::uint32_t>& taken, const F& for_each_block) {
+    set_dirty_bits();
+    taken.clear();
+    for_each_block([&](const solve::IndexField& contacts) {
+      for (const std::uint32_t i : contacts.lane) {
+        if (i == solve::kNoContact || !is_dirty_bit_set(i)) continue;
+        clear_dirty_bit(i);
+        taken.push_back(i);
+      }
+    });
+    take_dirty_bits(taken);
+  }
+  void take_dirty(std::vector<std::uint32_t>& ascending) {
+    take_dirty(ascending, [](const auto&) {});
+  }
 
  private:
+  bool is_dirty_bit_set(std::uint32_t i) const {
+    return (dirty_bits_[i / 64] >> (i % 64) & 1u) != 0;
+  }
+  void clear_dirty_bit(std::uint32_t i) { dirty_bits_[i / 64] &= ~(std::uint64_t{1} << (i % 64)); }
+  void set_dirty_bits();
+  void take_dirty_bits(std::vector<std::uint32_t>& ascending);
   void unset_speculative(std::uint32_t contact);
 
   std::vector<std::uint64_t> dirty_bits_;  // scratch

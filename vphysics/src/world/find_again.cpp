@@ -150,6 +150,7 @@ SearchedAgain ContactSearch::find_again(double left) {
         load_inertias_of(s_.contact_store[p]);
       changed.has_old_slots |= had_slots;
     }
+    writer_.write();
   }
   s_.contact_store.dirty.insert(s_.contact_store.dirty.end(), dirty_next_step_.begin(),
                                 dirty_next_step_.end());

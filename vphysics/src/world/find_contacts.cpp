@@ -5,18 +5,14 @@
 #include <span>
 #include <utility>
 
-#include "solve/contact_slot.h"
-#include "solve/state_vector.h"
 #include "world/contact_search.h"
-#include "world/lane_fields.h"
+#include "world/prefetch.h"
 
 namespace vp {
 namespace {
 
-// Limits beyond which a contact is computed again: how far the two may slide on each other, in half
-// extents of the smaller one, and how far they may rotate [rad]. The separation of a point at an
-// arm r then has an error of r angle^2 / 2: a thirtieth of a millimetre for a box of a metre.
-constexpr double kSlide = 0.01;
+// A contact is computed again when the two have rotated by more [rad]. The separation of a point at
+// an arm r then has an error of r angle^2 / 2: a thirtieth of a millimetre for a box of a metre.
 constexpr double kRevolution = 0.01;
 constexpr std::size_t kNarrowPhaseGrain = 16;  // contacts: some microseconds
 
@@ -25,41 +21,6 @@ int points_of(const Contact& c, const Collider& a, const Collider& b) {
   const bool ball = kind_of_part(a.geometry, c.sub_a) == collide::Kind::sphere ||
                     kind_of_part(b.geometry, c.sub_b) == collide::Kind::sphere;
   return ball ? 1 : collide::kMaxPoints;
-}
-
-// The impulses in a contact slot.
-struct SlotImpulses {
-  std::array<float, collide::kMaxPoints> normal{};
-  Vec3 friction, moment;
-};
-
-template <int P>
-SlotImpulses impulses_in(const solve::ContactBlock<P>& block, int lane) {
-  SlotImpulses impulses;
-  for (int i = 0; i < P; ++i)
-    impulses.normal[static_cast<std::size_t>(i)] = block.impulse[i].lane[lane];
-  const Vec3 n = get(block.normal, lane), t = get(block.tangent, lane), b = cross(n, t);
-  impulses.friction =
-      get(block.tangent_impulse[0], lane) * t + get(block.tangent_impulse[1], lane) * b;
-  impulses.moment = get(block.twist_impulse, lane) * n + get(block.roll_impulse[0], lane) * t +
-                    get(block.roll_impulse[1], lane) * b;
-  return impulses;
-}
-
-// The impulse of the old point with the same feature id; otherwise, since feature ids change when
-// edges pass over each other, of the nearest old point within range.
-float impulse_of(const Contact& contact, const SlotImpulses& impulses,
-                 const collide::ManifoldPoint& p, double range) {
-  float nearest = 0.0f;
-  double min_distance_squared = range * range;
-  for (std::size_t i = 0; i < contact.count; ++i) {
-    if (contact.feature[i] == p.feature) return impulses.normal[i];
-    const Vec3 d = contact.position[i] - p.position;
-    if (dot(d, d) >= min_distance_squared) continue;
-    min_distance_squared = dot(d, d);
-    nearest = impulses.normal[i];
-  }
-  return nearest;
 }
 
 struct NarrowPhaseInput {
@@ -73,8 +34,7 @@ struct NarrowPhaseInput {
 // The narrow phase of one contact. Contacts with parts are tested in take_over().
 void find_manifold_of(Contact& c, NarrowPhaseResult& found, const NarrowPhaseInput& in) {
   const Collider &a = in.colliders[c.a], &b = in.colliders[c.b];
-  const double slide_limit = kSlide * smaller_size(a, b);
-  found.margin_at_rest = c.sensor ? 0.0 : in.slop + slide_limit;
+  found.margin_at_rest = c.sensor ? 0.0 : in.slop + slide_limit(a, b);
   found.margin = c.sensor ? 0.0 : found.margin_at_rest + in.approach.of(a, b);
   // If the smaller one is a compound, its parts are tested within a smaller margin where they are
   // slower.
@@ -111,6 +71,7 @@ void ContactSearch::begin_step(std::size_t contacts) {
   renewed_ = 0;
   for (auto* list : {&dirty_, &dirty_next_step_}) list->reserve(s_.contact_store.dirty.capacity());
   results_.reserve(std::min(contacts, kNarrowPhaseBatch));
+  writer_.reserve();
   new_pairs_.reserve(contacts);
   const std::size_t n = s_.bodies.size();
   if (n <= to_pose_.capacity()) return;
@@ -200,8 +161,8 @@ void ContactSearch::find_dirty_contacts(double dt, const ContactRuns& runs) {
     s_.contact_store.mark_dirty_pairs(blocks[b], found[b]);
 }
 
-// Tests dirty contacts in the order of their indices, then those of bodies that these have
-// woken.
+// Tests dirty contacts in the order of their slots, those without one in the order of their
+// indices; then those of bodies that these have woken.
 void ContactSearch::update(double dt, const ContactRuns& runs) {
   dirty_next_step_.clear();
   for (bool first = true; first || !s_.contact_store.dirty.empty(); first = false) {
@@ -210,12 +171,13 @@ void ContactSearch::update(double dt, const ContactRuns& runs) {
       {
         const auto stage = s_.in(Stage::narrow_phase);
         if (first && done == 0) find_dirty_contacts(dt, runs);
-        if (done == 0) list_dirty_contacts();
+        if (done == 0) list_dirty_contacts(runs);
         const std::span<const std::uint32_t> left = std::span(dirty_).subspan(done);
         find_manifolds_of(left.first(std::min(left.size(), kNarrowPhaseBatch)), dt);
       }
       const auto stage = s_.in(Stage::contact_slots);
       for (const NarrowPhaseResult& found : results_) take_over(found);
+      writer_.write();
       done += results_.size();
     } while (done < dirty_.size());
   }
@@ -223,12 +185,19 @@ void ContactSearch::update(double dt, const ContactRuns& runs) {
 }
 
 // Lists the contacts to test. Removes those whose enlarged bounds have separated.
-void ContactSearch::list_dirty_contacts() {
-  s_.contact_store.take_dirty(dirty_);
+void ContactSearch::list_dirty_contacts(const ContactRuns& runs) {
+  s_.contact_store.take_dirty(dirty_, [&](const auto& visit) {
+    runs.for_runs([&](const auto&, const auto&, const auto& blocks) {
+      for (const auto& block : blocks) visit(block.contact);
+    });
+  });
   std::vector<std::uint32_t>& to_pose = to_pose_;
   to_pose.clear();
   std::size_t count = 0;
-  for (const std::uint32_t index : dirty_) {
+  for (std::size_t k = 0; k < dirty_.size(); ++k) {
+    prefetch_contacts(
+        s_, [&](std::size_t i) { return dirty_[i]; }, k, dirty_.size());
+    const std::uint32_t index = dirty_[k];
     const Contact& c = s_.contact_store[index];
     if (!c.alive || !c.dirty || c.parked) continue;
     if (c.of_link) continue;  // tested in link_contacts.cpp
@@ -246,7 +215,11 @@ void ContactSearch::list_dirty_contacts() {
   }
   dirty_.resize(count);
   s_.workers.in_parallel(to_pose.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) pose_colliders(s_.bodies[to_pose[k]], s_.colliders);
+    for (std::size_t k = begin; k < end; ++k) {
+      prefetch_bodies(
+          s_, [&](std::size_t i) { return to_pose[i]; }, k, end);
+      pose_colliders(s_.bodies[to_pose[k]], s_.colliders);
+    }
   });
 }
 
@@ -258,6 +231,8 @@ void ContactSearch::find_manifolds_of(std::span<const std::uint32_t> contacts, d
   s_.workers.in_parallel(results.size(), kNarrowPhaseGrain,
                          [&](std::size_t begin, std::size_t end) {
                            for (std::size_t k = begin; k < end; ++k) {
+                             prefetch_contacts(
+                                 s_, [&](std::size_t i) { return contacts[i]; }, k, end);
                              results[k].contact = contacts[k];
                              find_manifold_of(s_.contact_store[contacts[k]], results[k], input);
                            }
@@ -303,57 +278,13 @@ void ContactSearch::take_over(const NarrowPhaseResult& found) {
 
 void ContactSearch::assign_slot(std::uint32_t index, const collide::Manifold& m,
                                 const collide::MotionToImpact& to_impact) {
-  Contact& c = s_.contact_store[index];
-  solve::ContactGraph& graph = s_.contact_store.graph;
+  const Contact& c = s_.contact_store[index];
   ++renewed_;
   const Collider &a = s_.colliders[c.a], &b = s_.colliders[c.b];
-  const auto end_a = end_of(s_.bodies, a.body), end_b = end_of(s_.bodies, b.body);
   wake(s_, a.body);
   wake(s_, b.body);
-  SlotImpulses impulses;
-  if (c.slot.points == 0) {
-    s_.contact_store.assign_slot(index, points_of(c, a, b), s_.body_set);
-  } else {
-    impulses = c.slot.points == 1
-                   ? impulses_in(graph.block<1>(c.slot), solve::ContactGraph::lane(c.slot))
-                   : impulses_in(graph.block<4>(c.slot), solve::ContactGraph::lane(c.slot));
-  }
-  solve::NewContact n{};
-  n.normal = m.normal;
-  // The world has no centre of its own: the other body's centre makes the arms short.
-  n.x_a = reference_point(s_.bodies[a.body]) + to_impact.a;
-  n.x_b = reference_point(s_.bodies[b.body]) + to_impact.b;
-  if (end_a.state == solve::kWorldState) n.x_a = n.x_b;
-  if (end_b.state == solve::kWorldState) n.x_b = n.x_a;
-  n.count = std::min<int>(m.count, c.slot.points);
-  const double slide_limit = kSlide * smaller_size(a, b);
-  for (int i = 0; i < n.count; ++i) {
-    const collide::ManifoldPoint& p = m.points[i];
-    n.points[i] = {p.position, p.separation, impulse_of(c, impulses, p, 4.0 * slide_limit)};
-  }
-  n.friction = std::sqrt(a.material.friction * b.material.friction);
-  n.restitution = std::max(a.material.restitution, b.material.restitution);
-  n.rolling = std::max(a.material.rolling_friction, b.material.rolling_friction);
-  n.spinning = std::max(a.material.spinning_friction, b.material.spinning_friction);
-  n.surface_velocity = a.T.rotate(a.surface_velocity) - b.T.rotate(b.surface_velocity);
-  n.old_friction = impulses.friction;
-  n.old_moment = impulses.moment;
-  n.slid_limit = slide_limit;
-  s_.contact_store.points += static_cast<std::uint32_t>(n.count) - c.count;
-  c.count = static_cast<std::uint8_t>(n.count);
-  for (int i = 0; i < n.count; ++i) {
-    c.feature[i] = m.points[i].feature;
-    c.position[i] = m.points[i].position;
-  }
-  const solve::BodyState &state_a = s_.body_states[end_a.state],
-                         &state_b = s_.body_states[end_b.state];
-  if (c.slot.points == 1) {
-    write_slot(graph.block<1>(c.slot), solve::ContactGraph::lane(c.slot), n, state_a, state_b);
-    graph.block<1>(c.slot).touches.lane[solve::ContactGraph::lane(c.slot)] = c.touching ? 1 : 0;
-  } else {
-    write_slot(graph.block<4>(c.slot), solve::ContactGraph::lane(c.slot), n, state_a, state_b);
-    graph.block<4>(c.slot).touches.lane[solve::ContactGraph::lane(c.slot)] = c.touching ? 1 : 0;
-  }
+  if (c.slot.points == 0) s_.contact_store.assign_slot(index, points_of(c, a, b), s_.body_set);
+  writer_.add(index, m, to_impact);
 }
 
 }  // namespace vp

@@ -7,6 +7,7 @@
 #include "solve/passes.h"
 #include "solve/state_vector.h"
 #include "world/lane_fields.h"
+#include "world/prefetch.h"
 #include "world/solver_limits.h"
 #include "world/validate.h"
 
@@ -16,6 +17,9 @@ namespace {
 using solve::kLanes;
 
 constexpr std::size_t kBlockGrain = 16;  // blocks: some microseconds
+// Blocks that are passed to all passes of one loop before the next ones: they stay in the cache.
+constexpr std::size_t kTile = 8;
+constexpr std::size_t kAhead = 6;  // joints, whose bodies are requested ahead of their use
 
 // The nearest multiple of 2 pi.
 double revolutions_of(double angle) {
@@ -127,18 +131,20 @@ bool JointSteps::is_active(const BodyJoint& joint) const {
   return joint.alive && !joint.in_rows && !(is_still(a) && is_still(b));
 }
 
-// Calls f(passes, run of blocks). The blocks of a colour run in parallel, except those that share
-// bodies.
+// Calls f(passes, run of at most kTile blocks), one colour after the other. The blocks of a colour
+// run in parallel, except those that share bodies.
 template <class F>
 void JointSteps::for_runs(const F& f) {
   scratch_.runs.for_each([&](auto& run) {
     const auto& passes = passes_for(run);
     const auto part = [&](std::size_t begin, std::size_t end) {
       using Run = typename std::remove_cvref_t<decltype(passes)>::Run;
-      f(passes,
-        Run{run.blocks.data() + begin, end - begin, &run.form, context_.states.data(),
-            scratch_.motions.data(),
-            static_cast<float>(kMaxJointCorrectionSpeed * context_.speed_unit), some_are_far_});
+      for (std::size_t b = begin; b < end; b += kTile) {
+        f(passes,
+          Run{run.blocks.data() + b, std::min(kTile, end - b), &run.form, context_.states.data(),
+              scratch_.motions.data(),
+              static_cast<float>(kMaxJointCorrectionSpeed * context_.speed_unit), some_are_far_});
+      }
     };
     if (run.alone) {
       part(0, run.blocks.size());
@@ -190,6 +196,11 @@ JointSteps::JointSteps(const JointContext& context, JointScratch& scratch, doubl
   scratch_.runs.clear(context_.states.size());
   for (std::uint32_t i = 0; i < joints.size(); ++i) {
     BodyJoint& joint = joints[i];
+    if (i + kAhead < joints.size()) {
+      const BodyJoint& next = joints[i + kAhead];
+      prefetch_slot(bodies, next.a);
+      prefetch_slot(bodies, next.b);
+    }
     if (!is_active(joint)) continue;
     scratch_.active.push_back(i);
     if (joint.rows_sub_step != h) build_rows(joint, h);
@@ -203,8 +214,8 @@ JointSteps::JointSteps(const JointContext& context, JointScratch& scratch, doubl
     if (bodies[i].first_joint != kNone && joins_sub_steps(bodies[i]))
       scratch_.joined_bodies.push_back(i);
   }
-  for_runs([](const auto& passes, const auto& run) { passes.load_inertias(run); });
-  prepare();
+  prepare([](const auto& passes, const auto& run) { passes.load_inertias(run); },
+          [](const auto&, const auto&) {});
 }
 
 BodyPose pose_within_step(const Body& body, const solve::BodyState& state,
@@ -243,8 +254,9 @@ void JointSteps::evaluate_rows(solve::RowsBlock& block) {
   }
 }
 
-void JointSteps::prepare() {
-  if (empty()) return;
+// Calls before and after with the passes and blocks that it prepares.
+template <class Before, class After>
+void JointSteps::prepare(const Before& before, const After& after) {
   context_.workers.in_parallel(
       scratch_.joined_bodies.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
         solve::joint_passes().find_step_motions(
@@ -253,10 +265,12 @@ void JointSteps::prepare() {
       });
   std::atomic<bool> far = false;
   for_runs([&](const auto& passes, const auto& run) {
+    before(passes, run);
     if constexpr (std::is_same_v<decltype(run.blocks), solve::RowsBlock*>) {
       for (std::size_t i = 0; i < run.count; ++i) evaluate_rows(run.blocks[i]);
     }
     if (passes.prepare(run)) far.store(true, std::memory_order_relaxed);
+    after(passes, run);
   });
   some_are_far_ = far;
 }
@@ -270,9 +284,10 @@ void JointSteps::solve(int iteration) {
     (iteration == 0 ? passes.solve_first : passes.solve_again)(run, static_cast<float>(h_));
   });
 }
-void JointSteps::relax() {
+void JointSteps::prepare_and_relax() {
   if (empty()) return;
-  for_runs([&](const auto& passes, const auto& run) { passes.relax(run, static_cast<float>(h_)); });
+  prepare([](const auto&, const auto&) {},
+          [&](const auto& passes, const auto& run) { passes.relax(run, static_cast<float>(h_)); });
 }
 
 // Whether a hard constraint of the joint is open by more than kMaxJointSeparation times the smaller

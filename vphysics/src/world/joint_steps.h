@@ -56,10 +56,10 @@ class JointSteps {
  public:
   JointSteps(const JointContext& context, JointScratch& scratch, double h);
   bool empty() const { return scratch_.active.empty(); }
-  void prepare();
   void warm_start();
   void solve(int iteration);
-  void relax();
+  // After the bodies have moved.
+  void prepare_and_relax();
   // Copies the impulses back. Returns whether any joint is far open.
   bool end(double dt);
 
@@ -68,6 +68,8 @@ class JointSteps {
   BodyPose pose_within_step(std::uint32_t body) const;
   template <class F>
   void for_runs(const F& f);
+  template <class Before, class After>
+  void prepare(const Before& before, const After& after);
   void fill(std::uint32_t joint);
   void evaluate_rows(solve::RowsBlock& block);
   template <class BLOCK>

@@ -6,11 +6,13 @@
 #include <utility>
 #include <vector>
 
+#include "solve/large_pages.h"
+
 namespace vp {
 
 // Takes a free slot, or appends a new one.
-template <class T>
-std::uint32_t take_slot(std::vector<T>& slots, std::vector<std::uint32_t>& free) {
+template <class Vector>
+std::uint32_t take_slot(Vector& slots, std::vector<std::uint32_t>& free) {
   const auto index = static_cast<std::uint32_t>(slots.size());
   if (free.empty()) {
     slots.emplace_back();
@@ -59,7 +61,7 @@ class Slots {
   auto end() const { return slots_.end(); }
 
  private:
-  std::vector<T> slots_;
+  solve::LargeVector<T> slots_;
   std::vector<std::uint32_t> free_;
 };
 

@@ -262,8 +262,7 @@ void World::Impl::take_sub_steps(double dt, int n) {
       }
       if (links) link_contacts.move(h);
       runs.everywhere([&](std::size_t region) { steps.move(region); });
-      joint_steps.prepare();
-      joint_steps.relax();
+      joint_steps.prepare_and_relax();
       runs.everywhere([&](std::size_t region) { steps.relax(region, last); });
       if (links) link_contacts.relax(h);
     }
