@@ -43,7 +43,7 @@ const ContactPasses<P>& passes_of(const Passes& passes) {
 template <int P>
 void write_contact(const Passes& passes, ContactBlock<P>& block, int lane, const NewContact& c,
                    const BodyState& a, const BodyState& b) {
-  NewContacts contacts;
+  NewContacts contacts{};
   put(contacts, lane, c, a, b);
   passes_of<P>(passes).renew(block, contacts);
 }
@@ -305,7 +305,7 @@ void expect_that_new_contacts_alone_are_written(std::uint64_t seed) {
   for (Field& f : fields_of(before[0])) {
     for (float& x : f.lane) x = static_cast<float>(random.uniform(-1.0, 1.0));
   }
-  NewContacts contacts;
+  NewContacts contacts{};
   for (int lane = 0; lane < kLanes; ++lane) {
     if (random.word() % 3 == 0) continue;
     BodyState states[2]{};

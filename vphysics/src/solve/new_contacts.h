@@ -1,6 +1,6 @@
-// New geometry for the slots of one block, as the narrow phase has found it: the input of the pass
-// `renew`. In structure-of-arrays layout too, but in double precision: positions are relative to
-// an origin that need not be close.
+// New contacts for the slots of one block, the input of the pass `renew`: NewContact
+// (contact_slot.h) in structure-of-arrays layout, with the states of their bodies. In double
+// precision: the origin of positions need not be close.
 #pragma once
 
 #include <cstdint>

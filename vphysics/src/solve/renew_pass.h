@@ -17,10 +17,7 @@ class RenewLanes {
 
   RenewLanes(ContactBlock<P>& block, const NewContacts& contacts, int at)
       : block_(block), new_(contacts), at_(at) {
-    for (int i = 0; i < N; ++i) {
-      const int bit = (contacts.lanes >> (at + i) & 1u) != 0 ? -1 : 0;
-      written_.lanes[i] = bit;
-    }
+    for (int i = 0; i < N; ++i) written_.lanes[i] = (contacts.lanes >> (at + i) & 1u) != 0 ? -1 : 0;
   }
 
   void renew() const {

@@ -9,7 +9,6 @@
 namespace vp {
 namespace {
 
-constexpr std::size_t kMostWaiting = kNarrowPhaseBatch;
 constexpr std::size_t kWriteGrain = 4;  // blocks: some microseconds
 
 std::uint64_t block_of(const solve::ContactSlot& slot) {
@@ -37,9 +36,9 @@ float impulse_of(const Contact& contact, std::span<const float> impulses,
 }  // namespace
 
 void ManifoldWriter::reserve() {
-  waiting_.reserve(kMostWaiting);
-  order_.reserve(kMostWaiting);
-  block_ends_.reserve(kMostWaiting);
+  waiting_.reserve(kNarrowPhaseBatch);
+  order_.reserve(kNarrowPhaseBatch);
+  block_ends_.reserve(kNarrowPhaseBatch);
 }
 
 void ManifoldWriter::add(std::uint32_t contact, const collide::Manifold& manifold,
@@ -47,7 +46,7 @@ void ManifoldWriter::add(std::uint32_t contact, const collide::Manifold& manifol
   const Contact& c = s_.contact_store[contact];
   s_.contact_store.points +=
       static_cast<std::uint32_t>(std::min<int>(manifold.count, c.slot.points)) - c.count;
-  if (waiting_.size() == kMostWaiting) write();
+  if (waiting_.size() == kNarrowPhaseBatch) write();
   waiting_.push_back({contact, manifold, to_impact});
 }
 
@@ -106,7 +105,7 @@ solve::NewContact ManifoldWriter::take(const Waiting& waiting, std::span<const f
 
 template <int P>
 void ManifoldWriter::write_block(std::size_t begin, std::size_t end) {
-  solve::NewContacts contacts;
+  solve::NewContacts contacts{};  // lanes that are not used are computed too
   solve::ContactBlock<P>* block = nullptr;
   for (std::size_t k = begin; k < end; ++k) {
     prefetch_contacts(

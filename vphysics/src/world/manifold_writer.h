@@ -25,7 +25,7 @@ class ManifoldWriter {
   explicit ManifoldWriter(const Stores& stores) : s_(stores) {}
 
   void reserve();
-  // Precondition: the contact has a slot, and no manifold that waits. Writes all if many wait.
+  // Precondition: the contact has a slot, and no manifold that waits. Writes all if a batch waits.
   void add(std::uint32_t contact, const collide::Manifold& manifold,
            const collide::MotionToImpact& to_impact);
   void write();
