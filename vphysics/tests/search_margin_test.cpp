@@ -78,5 +78,55 @@ TEST(SearchMargin, ASpinThatEndsHidesNoPartOfALargeCompound) {
   }
 }
 
+// The angular velocity turns in the plane: the sum of the rotation vectors stays on a circle, while
+// the rod itself turns about z, into a ball at rest.
+TEST(SearchMargin, ARodThatWobblesMeetsWhatIsInItsWay) {
+  constexpr double kTurning = 12.0, kWobbleStep = 1.0 / 240;        // [rad/s], [s]
+  for (const double radius : {0.14, 0.17, 0.2, 0.23, 0.26, 0.3}) {  // of the circle [rad]
+    WorldDesc desc;
+    desc.gravity = {};
+    World world(desc);
+    const BodyId rod = add_kinematic(world, Box{{1.0, 0.05, 0.5}}, {}, {},
+                                     SE3(Exp(Vec3{0, 0, kPi / 4}).matrix(), {}));
+    add_dynamic(world, {.shape = Sphere{0.05}, .pose = SE3(Vec3{-0.5, 0.5, 0.0})});
+    int hits = 0;
+    for (int k = 0; k < 4800; ++k) {
+      const double angle = kTurning * kWobbleStep * k, rate = radius * kTurning;
+      must(
+          world.set_velocity_world(rod, {{}, {rate * std::cos(angle), rate * std::sin(angle), 0}}));
+      must(world.step(kWobbleStep));
+      hits += static_cast<int>(world.contact_events().size());
+    }
+    EXPECT_GT(hits, 0) << radius;
+  }
+}
+
+// A body that leaves the range of positions stops where the step began. What comes near it
+// afterwards touches it there.
+TEST(SearchMargin, ABodyThatWasStoppedIsWhereItStopped) {
+  for (const double speed : {20.0, 5.0}) {
+    for (const double gap : {0.3, 0.45, 0.6, 0.8}) {
+      WorldDesc desc;
+      desc.gravity = {};
+      World world(desc);
+      const double at = 1e9 - 0.3;
+      add_dynamic(
+          world,
+          {.shape = Sphere{0.05}, .pose = SE3(Vec3{at, 0, 0}), .velocity = {{}, {speed, 0, 0}}});
+      const double off = std::sqrt(0.5) * (gap + 0.1);
+      const BodyId plate =
+          add_kinematic(world, Box{{0.05, 2.0, 0.5}}, {}, {},
+                        SE3(Exp(Vec3{0, 0, kPi / 4}).matrix(), Vec3{at - off, -off, 0}));
+      bool touches = false;
+      for (int k = 0; k < 150 && !touches; ++k) {
+        if (k == 3) must(world.set_velocity(plate, {{}, {0.5, 0, 0}}));
+        must(world.step(kDt));
+        touches = !world.contact_events().empty();
+      }
+      EXPECT_TRUE(touches) << speed << " m/s, " << gap << " m";
+    }
+  }
+}
+
 }  // namespace
 }  // namespace vp::test

@@ -1,4 +1,5 @@
-// One new contact, as the narrow phase has found it, and the slots that it is written to.
+// One new contact, as the narrow phase has found it, for the pass `renew`; accumulated impulses of
+// contact slots.
 #pragma once
 
 #include "solve/contact_block.h"

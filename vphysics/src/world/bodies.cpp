@@ -143,16 +143,26 @@ bool stop_if_out_of_range(const StepContext& s, std::uint32_t index, const SE3& 
   return true;
 }
 
+// The clearances are set again at the present poses: rotations are added as vectors, and the sum of
+// many says less and less about the orientation.
 void restart_displacement(const Stores& s, std::uint32_t index) {
-  float* displacement = s.body_states[index + 1].displacement;
-  s.contact_store.for_each_of(s.bodies[index], [&](std::uint32_t contact, const Contact& c) {
-    const bool speculative = c.slot.points == 0 && !c.sensor && !c.of_link && !c.parked;
-    if (!speculative || !s.contact_store.restart_displacement(c, index + 1, displacement))
-      s.contact_store.mark_dirty(contact);
+  const auto is_speculative = [](const Contact& c) {
+    return c.slot.points == 0 && !c.sensor && !c.of_link && !c.parked;
+  };
+  s.contact_store.for_each_of(s.bodies[index], [&](std::uint32_t, const Contact& c) {
+    if (is_speculative(c) && !c.dirty) s.contact_store.use_clearance(c, s.body_set);
   });
-  std::fill_n(displacement, 6, 0.0f);
+  std::fill_n(s.body_states[index + 1].displacement, 6, 0.0f);
   std::fill_n(s.start_displacements[index].begin(), 6, 0.0f);
   std::fill_n(s.bodies[index].bounded_at, 6, 1e9f);
+  s.contact_store.for_each_of(s.bodies[index], [&](std::uint32_t contact, const Contact& c) {
+    const bool speculative = is_speculative(c);
+    if (speculative && c.dirty) return;
+    const double left = speculative ? s.contact_store.clearance(c) : 0.0;
+    if (left > 0.0) return s.contact_store.set_clearance(c, left, s.body_set);
+    if (speculative) s.contact_store.reset_speculative(c, s.body_set);
+    s.contact_store.mark_dirty(contact);
+  });
 }
 
 void World::Impl::load_states(double dt) {
@@ -174,12 +184,13 @@ void World::Impl::load_states(double dt) {
               (far ? kFar : 0) | (pulled ? kPulled : 0) | (far || !stays ? kLeaves : 0));
         }
       });
+  const auto changed_at = [&](std::size_t k) {
+    return sub_step.awake_body_changed[k] == 0 ? kNone : lists.awake_bodies[k];
+  };
   for (std::size_t k = 0; k < lists.awake_bodies.size(); ++k) {
-    if (sub_step.awake_body_changed[k] == 0) continue;
-    prefetch_bodies(
-        context, [&](std::size_t at) { return lists.awake_bodies[at]; }, k,
-        lists.awake_bodies.size());
-    const std::uint32_t i = lists.awake_bodies[k];
+    prefetch_bodies(context, changed_at, k, lists.awake_bodies.size());
+    const std::uint32_t i = changed_at(k);
+    if (i == kNone) continue;
     if ((sub_step.awake_body_changed[k] & kFar) != 0) restart_displacement(context, i);
     if ((sub_step.awake_body_changed[k] & kPulled) != 0)
       contact_store.mark_contacts_dirty(bodies[i]);

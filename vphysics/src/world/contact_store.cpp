@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <utility>
 
 #include "solve/state_vector.h"
@@ -186,23 +185,9 @@ double ContactStore::clearance(const Contact& c) const {
   return static_cast<double>(speculative.pair(c.speculative_index).clearance);
 }
 
-bool ContactStore::restart_displacement(const Contact& c, std::uint32_t state,
-                                        const float* displacement) {
-  // Of a reference: in single precision it still resolves some micrometres, and the sum of small
-  // rotations as vectors is still close to the rotation.
-  constexpr float kFarthest = 32.0f;         // [m]
-  constexpr float kFarthestRotation = 0.5f;  // [rad]
+void ContactStore::use_clearance(const Contact& c, const BodySet& on) {
   solve::SpeculativePair& pair = speculative.pair(c.speculative_index);
-  const bool is_a = pair.a == state;
-  float *x = is_a ? pair.x_a : pair.x_b, *rotation = is_a ? pair.rotation_a : pair.rotation_b;
-  bool precise = true;
-  for (int i = 0; i < 3; ++i) {
-    x[i] -= displacement[i];
-    rotation[i] -= displacement[3 + i];
-    precise =
-        precise && std::fabs(x[i]) <= kFarthest && std::fabs(rotation[i]) <= kFarthestRotation;
-  }
-  return precise;
+  pair.clearance -= static_cast<float>(max_approach(pair, on, 0.0));
 }
 
 bool ContactStore::may_touch_within(const Contact& c, double time, const BodySet& on) const {

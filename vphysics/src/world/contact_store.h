@@ -72,9 +72,9 @@ class ContactStore {
   // Sets the clearance to zero, so that it is tested; of links, which are tested elsewhere, to
   // never.
   void reset_speculative(const Contact& contact, const BodySet& on);
-  // Before a state's displacement (six floats, as in BodyState) becomes zero: moves the reference
-  // of a speculative pair by it. False if that would lose precision: test the contact instead.
-  bool restart_displacement(const Contact& contact, std::uint32_t state, const float* displacement);
+  // Subtracts from the clearance how far the two have moved relative to each other since it was
+  // set.
+  void use_clearance(const Contact& contact, const BodySet& on);
 
   // Whether the two may touch within this time from now [s], at the states' present velocities.
   bool may_touch_within(const Contact& contact, double time, const BodySet& on) const;
@@ -94,8 +94,9 @@ class ContactStore {
   // ascending.
   template <class F>
   void take_dirty(std::vector<std::uint32_t>& taken, const F& for_each_block) {
-    set_dirty_bits();
     taken.clear();
+    if (dirty.empty()) return;
+    set_dirty_bits();
     for_each_block([&](const solve::IndexField& contacts) {
       for (const std::uint32_t i : contacts.lane) {
         if (i == solve::kNoContact || !is_dirty_bit_set(i)) continue;

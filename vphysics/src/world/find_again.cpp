@@ -132,7 +132,7 @@ SearchedAgain ContactSearch::find_again(double left) {
   list_contacts_of_deviating(left);
   for (std::size_t done = 0; done < dirty_.size(); done += results_.size()) {
     const std::span<const std::uint32_t> waiting = std::span(dirty_).subspan(done);
-    find_manifolds_of(waiting.first(std::min(waiting.size(), kNarrowPhaseBatch)), left);
+    find_manifolds_of(waiting.first(std::min(waiting.size(), kContactBatch)), left);
     for (const NarrowPhaseResult& found : results_) {
       Contact& c = s_.contact_store[found.contact];
       const bool had_slots = c.slot.points > 0 || c.first_part != kNone;

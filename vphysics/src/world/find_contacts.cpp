@@ -1,9 +1,6 @@
 // The search for contacts at the start of a step.
 #include <algorithm>
-#include <bit>
-#include <cmath>
 #include <span>
-#include <utility>
 
 #include "world/contact_search.h"
 #include "world/prefetch.h"
@@ -70,7 +67,7 @@ bool ContactSearch::is_needed() const {
 void ContactSearch::begin_step(std::size_t contacts) {
   renewed_ = 0;
   for (auto* list : {&dirty_, &dirty_next_step_}) list->reserve(s_.contact_store.dirty.capacity());
-  results_.reserve(std::min(contacts, kNarrowPhaseBatch));
+  results_.reserve(std::min(contacts, kContactBatch));
   writer_.reserve();
   new_pairs_.reserve(contacts);
   const std::size_t n = s_.bodies.size();
@@ -173,7 +170,7 @@ void ContactSearch::update(double dt, const ContactRuns& runs) {
         if (first && done == 0) find_dirty_contacts(dt, runs);
         if (done == 0) list_dirty_contacts(runs);
         const std::span<const std::uint32_t> left = std::span(dirty_).subspan(done);
-        find_manifolds_of(left.first(std::min(left.size(), kNarrowPhaseBatch)), dt);
+        find_manifolds_of(left.first(std::min(left.size(), kContactBatch)), dt);
       }
       const auto stage = s_.in(Stage::contact_slots);
       for (const NarrowPhaseResult& found : results_) take_over(found);

@@ -254,7 +254,8 @@ void JointSteps::evaluate_rows(solve::RowsBlock& block) {
   }
 }
 
-// Calls before and after with the passes and blocks that it prepares.
+// Calls before and after with the passes and blocks that it prepares. Until it returns, some_far of
+// a run is that of the last time: `after` may not read it.
 template <class Before, class After>
 void JointSteps::prepare(const Before& before, const After& after) {
   context_.workers.in_parallel(

@@ -36,9 +36,9 @@ float impulse_of(const Contact& contact, std::span<const float> impulses,
 }  // namespace
 
 void ManifoldWriter::reserve() {
-  waiting_.reserve(kNarrowPhaseBatch);
-  order_.reserve(kNarrowPhaseBatch);
-  block_ends_.reserve(kNarrowPhaseBatch);
+  waiting_.reserve(kContactBatch);
+  order_.reserve(kContactBatch);
+  block_ends_.reserve(kContactBatch);
 }
 
 void ManifoldWriter::add(std::uint32_t contact, const collide::Manifold& manifold,
@@ -46,7 +46,7 @@ void ManifoldWriter::add(std::uint32_t contact, const collide::Manifold& manifol
   const Contact& c = s_.contact_store[contact];
   s_.contact_store.points +=
       static_cast<std::uint32_t>(std::min<int>(manifold.count, c.slot.points)) - c.count;
-  if (waiting_.size() == kNarrowPhaseBatch) write();
+  if (waiting_.size() == kContactBatch) write();
   waiting_.push_back({contact, manifold, to_impact});
 }
 

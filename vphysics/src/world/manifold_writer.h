@@ -16,9 +16,9 @@
 
 namespace vp {
 
-// Contacts that are tested in one batch, before their results are taken over: with their colliders
-// and bodies they fit into the second-level cache.
-inline constexpr std::size_t kNarrowPhaseBatch = 256;
+// Contacts that are tested, and whose slots are written, in one batch: with their colliders and
+// bodies they fit into the second-level cache.
+inline constexpr std::size_t kContactBatch = 256;
 
 class ManifoldWriter {
  public:

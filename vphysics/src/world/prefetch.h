@@ -45,16 +45,17 @@ template <class ContactAt>
   }
 }
 
-// The same in a loop over bodies that poses their colliders.
+// The same in a loop over bodies that poses their colliders. body_at(k) is kNone if the loop skips
+// k.
 template <class BodyAt>
 [[gnu::always_inline]] inline void prefetch_bodies(const Stores& s, const BodyAt& body_at,
                                                    std::size_t k, std::size_t end) {
-  constexpr std::size_t kStage = 4, kBodyLines = 4, kColliderLines = 7;
-  if (k + 2 * kStage < end) prefetch(s.bodies[body_at(k + 2 * kStage)], kBodyLines);
-  if (k + kStage < end) {
-    const std::uint32_t collider = s.bodies[body_at(k + kStage)].first_collider;
-    if (collider != kNone) prefetch(s.colliders[collider], kColliderLines);
-  }
+  constexpr std::size_t kStage = 4, kColliderLines = 7;
+  if (k + 2 * kStage < end) prefetch_slot(s.bodies, body_at(k + 2 * kStage));
+  if (k + kStage >= end) return;
+  const std::uint32_t body = body_at(k + kStage);
+  const std::uint32_t collider = body < s.bodies.size() ? s.bodies[body].first_collider : kNone;
+  if (collider != kNone) prefetch(s.colliders[collider], kColliderLines);
 }
 
 }  // namespace vp
