@@ -95,8 +95,9 @@ class ContactStore {
   template <class F>
   void take_dirty(std::vector<std::uint32_t>& taken, const F& for_each_block) {
     taken.clear();
-    if (dirty.empty()) return;
+    const bool some = !dirty.empty();
     set_dirty_bits();
+    if (!some) return;
     for_each_block([&](const solve::IndexField& contacts) {
       for (const std::uint32_t i : contacts.lane) {
         if (i == solve::kNoContact || !is_dirty_bit_set(i)) continue;
