@@ -62,11 +62,12 @@ void ManifoldWriter::write() {
     if (k == order_.size() || order_[k].block != order_[k - 1].block) block_ends_.push_back(k);
   }
   s_.workers.in_parallel(block_ends_.size(), kWriteGrain, [&](std::size_t begin, std::size_t end) {
+    solve::NewContacts contacts{};
     for (std::size_t b = begin; b < end; ++b) {
       const std::size_t first = b == 0 ? 0 : block_ends_[b - 1];
       const Contact& c = s_.contact_store[waiting_[order_[first].waiting].contact];
-      c.slot.points == 1 ? write_block<1>(first, block_ends_[b])
-                         : write_block<4>(first, block_ends_[b]);
+      c.slot.points == 1 ? write_block<1>(first, block_ends_[b], contacts)
+                         : write_block<4>(first, block_ends_[b], contacts);
     }
   });
   waiting_.clear();
@@ -103,9 +104,10 @@ solve::NewContact ManifoldWriter::take(const Waiting& waiting, std::span<const f
   return n;
 }
 
+// contacts: scratch. Lanes that are not used are computed too, from what an earlier block has left.
 template <int P>
-void ManifoldWriter::write_block(std::size_t begin, std::size_t end) {
-  solve::NewContacts contacts{};  // lanes that are not used are computed too
+void ManifoldWriter::write_block(std::size_t begin, std::size_t end, solve::NewContacts& contacts) {
+  contacts.lanes = 0;
   solve::ContactBlock<P>* block = nullptr;
   for (std::size_t k = begin; k < end; ++k) {
     prefetch_contacts(

@@ -44,7 +44,7 @@ class ManifoldWriter {
   solve::NewContact take(const Waiting& waiting, std::span<const float> impulses);
   // Those from begin to end in order_, all in one block of P points.
   template <int P>
-  void write_block(std::size_t begin, std::size_t end);
+  void write_block(std::size_t begin, std::size_t end, solve::NewContacts& contacts);
 
   const Stores s_;
   std::vector<Waiting> waiting_;
