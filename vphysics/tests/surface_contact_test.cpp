@@ -3,6 +3,7 @@
 
 #include "collide/bounds.h"
 #include "collide/compound_data.h"
+#include "collide/corner_over_face.h"
 #include "collide/distance.h"
 #include "collide/manifolds.h"
 #include "collide/support.h"
@@ -51,6 +52,62 @@ Found find(const Shape& a, const SE3& T_a, const Shape& b, const SE3& T_b, doubl
   find_manifolds(collide::make_geometry(a), T_a, collide::make_geometry(b), T_b, margin, cache, {},
                  scratch, found.manifolds);
   return found;
+}
+
+// Random triangles near boxes and hulls: what their corners and the other's faces show is what the
+// general search finds.
+TEST(CornerOverFace, AgreesWithTheGeneralSearch) {
+  Random random(52);
+  int found = 0, yes = 0, no = 0;
+  for (const Shape& shape : {Shape{Box{{0.3, 0.2, 0.1}}}, Shape{rock(random, 0.25, 12)},
+                             Shape{rock(random, 0.25, 60)}}) {
+    const Geometry b = collide::make_geometry(shape);
+    const collide::PolytopeOf polytope(b);
+    for (int i = 0; i < 20000; ++i) {
+      const double size = random.uniform(0.01, 0.3);
+      Vec3 p[3];
+      for (Vec3& corner : p) corner = size * random.direction();
+      const Geometry a = collide::triangle_geometry(p);
+      const collide::CorePair pair(a, b, SE3(random.rotation(), random.in_cube(0.4)));
+      const collide::GjkResult truth = collide::gjk(pair, {0, 0, 1}, 1e300);
+      const auto fast = collide::corner_over_face(p, polytope.view(), pair.T_a_b, 1e300);
+      if (fast) {
+        ++found;
+        ASSERT_EQ(truth.state, collide::GjkResult::State::separated);
+        EXPECT_NEAR(fast->distance, truth.distance, 1e-12);
+        EXPECT_LT(norm(fast->normal - truth.normal), 1e-5);
+        EXPECT_LT(norm(fast->on_b - fast->on_a - fast->distance * fast->normal), 1e-15);
+      }
+      const auto overlap = collide::corners_overlap(p, polytope.view(), pair.T_a_b);
+      if (!overlap) continue;
+      ++(*overlap ? yes : no);
+      EXPECT_EQ(*overlap, truth.state == collide::GjkResult::State::overlaps);
+    }
+  }
+  std::printf("of 60000: %d over a face, %d overlap, %d do not\n", found, yes, no);
+  EXPECT_GT(found, 10000);
+  EXPECT_GT(yes, 1000);
+  EXPECT_GT(no, 10000);
+}
+// Beyond the limit only that is told.
+TEST(CornerOverFace, StopsAtTheLimit) {
+  const Geometry box = collide::make_geometry(Box{{1, 1, 1}});
+  const collide::PolytopeOf polytope(box);
+  const Vec3 p[3] = {{0, 0, 1.5}, {0.1, 0, 1.6}, {0, 0.1, 1.7}};
+  const auto near = collide::corner_over_face(p, polytope.view(), SE3{}, 0.6);
+  ASSERT_TRUE(near.has_value());
+  EXPECT_EQ(near->state, collide::GjkResult::State::separated);
+  EXPECT_DOUBLE_EQ(near->distance, 0.5);
+  EXPECT_EQ(near->normal, (Vec3{0, 0, -1}));
+  EXPECT_EQ(near->on_a, p[0]);
+  const auto far = collide::corner_over_face(p, polytope.view(), SE3{}, 0.4);
+  ASSERT_TRUE(far.has_value());
+  EXPECT_EQ(far->state, collide::GjkResult::State::beyond);
+  // Closest to an edge, and inside: neither is over a face.
+  const Vec3 beside[3] = {{1.5, 0, 1.5}, {1.6, 0, 1.6}, {1.5, 0.1, 1.6}};
+  EXPECT_FALSE(collide::corner_over_face(beside, polytope.view(), SE3{}, 9.0).has_value());
+  const Vec3 inside[3] = {{0, 0, 0.5}, {0.1, 0, 0.6}, {0, 0.1, 0.7}};
+  EXPECT_FALSE(collide::corner_over_face(inside, polytope.view(), SE3{}, 9.0).has_value());
 }
 
 // The height of a shape's lowest point above z = 0.

@@ -37,6 +37,12 @@ struct ManifoldScratch {
   };
   static constexpr std::uint32_t kNoTriangle = ~0u;
   std::vector<Contact> contacts;
+  // The plane of each of `triangles`, and the shape's separation along its normal.
+  struct Plane {
+    Vec3 normal;
+    double separation;
+  };
+  std::vector<Plane> planes;
   std::vector<ManifoldPoint> points;
   // By point, 1: a manifold contains or represents it.
   std::vector<std::uint8_t> converged;
@@ -51,6 +57,7 @@ struct ManifoldScratch {
     triangles.reserve(512);
     near_triangles.reserve(512);
     contacts.reserve(128);
+    planes.reserve(512);
     points.reserve(256);
     converged.reserve(256);
   }

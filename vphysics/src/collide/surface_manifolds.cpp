@@ -40,8 +40,10 @@ void add_contact(const Contact& contact, std::vector<Contact>& contacts) {
   contacts.push_back(contact);
 }
 
-void find_contacts(const Surface& surface, const Geometry& shape, const SE3& T, double margin,
+void find_contacts(const Surface& surface, const ShapeOnSurface& on, double margin,
                    ManifoldScratch& scratch) {
+  const Geometry& shape = on.shape;
+  const SE3& T = on.T_surface_shape;
   scratch.triangles.clear();
   scratch.near_triangles.clear();
   scratch.contacts.clear();
@@ -60,7 +62,7 @@ void find_contacts(const Surface& surface, const Geometry& shape, const SE3& T, 
   for (const std::uint32_t id : scratch.near_triangles) {
     SurfaceTriangle t = surface.triangle(id);
     if (!face_towards(t, centre, surface.two_sided())) continue;
-    const TriangleContact found = collide_triangle(surface, t, shape, T, margin, scratch.points);
+    const TriangleContact found = collide_triangle(surface, t, on, margin, scratch.points);
     scratch.rough |= found.rough;
     if (found.count > 0) add_contact({found, id, 0}, scratch.contacts);
   }
@@ -70,9 +72,10 @@ void find_contacts(const Surface& surface, const Geometry& shape, const SE3& T, 
 // or a corner, triangles that do not contain it find only longer exits.
 class Pruning {
  public:
-  Pruning(const Surface& surface, const Geometry& shape, const SE3& T, double size,
-          ManifoldScratch& scratch)
-      : surface_(surface), shape_(shape), T_(T), same_(kSamePoint * size), scratch_(scratch) {}
+  Pruning(const Surface& surface, const ShapeOnSurface& on, double size, ManifoldScratch& scratch)
+      : surface_(surface), on_(on), same_(kSamePoint * size), scratch_(scratch) {
+    scratch_.planes.clear();
+  }
 
   void prune() {
     std::vector<Contact>& contacts = scratch_.contacts;
@@ -88,14 +91,15 @@ class Pruning {
   }
 
  private:
-  bool resolves(const Contact& shorter, const Contact& longer) const;
+  bool resolves(const Contact& shorter, const Contact& longer);
+  void find_planes();
   const ManifoldPoint& deepest(const Contact& c) const;
 
   const Surface& surface_;
-  const Geometry& shape_;
-  const SE3& T_;
+  const ShapeOnSurface& on_;
   double same_;
   ManifoldScratch& scratch_;
+  std::optional<std::size_t> left_overlapping_;  // a triangle
 };
 
 const ManifoldPoint& Pruning::deepest(const Contact& c) const {
@@ -105,7 +109,19 @@ const ManifoldPoint& Pruning::deepest(const Contact& c) const {
   });
 }
 
-bool Pruning::resolves(const Contact& shorter, const Contact& longer) const {
+// Of all triangles near the shape.
+void Pruning::find_planes() {
+  const SE3& T = on_.T_surface_shape;
+  int hint = 0;
+  for (const std::uint32_t id : scratch_.triangles) {
+    const SurfaceTriangle t = surface_.triangle(id);
+    const Vec3 nearest = core_support(on_.shape, -T.unrotate(t.normal), hint);
+    const Vec3 from_corner = (T.position() - t.p[0]) + T.rotate(nearest);
+    scratch_.planes.push_back({t.normal, dot(t.normal, from_corner) - core_radius(on_.shape)});
+  }
+}
+
+bool Pruning::resolves(const Contact& shorter, const Contact& longer) {
   if (shorter.triangle == ManifoldScratch::kNoTriangle) return false;
   const TriangleContact &s = shorter.contact, &l = longer.contact;
   if (!(s.separation < -same_) || s.separation <= l.separation ||
@@ -113,16 +129,30 @@ bool Pruning::resolves(const Contact& shorter, const Contact& longer) const {
     return false;
   const Vec3 offset = deepest(shorter).position - deepest(longer).position;
   if (dot(offset, offset) > kNear * kNear * l.separation * l.separation) return false;
-  const SE3 moved(T_.rotation(), T_.position() + (same_ - s.separation) * s.normal);
+  const Vec3 exit = (same_ - s.separation) * s.normal;
+  const SE3& T = on_.T_surface_shape;
+  const SE3 T_moved(T.rotation(), T.position() + exit);
+  const ShapeOnSurface moved{on_.shape, T_moved, on_.faces};
   if (l.active_part != TriangleContact::kFace) {
-    return !overlaps_triangle(surface_.triangle(longer.triangle), shape_, moved);
+    return !overlaps_triangle(surface_.triangle(longer.triangle), moved);
   }
   // A face continues over inactive edges: none of the triangles in other directions may still
-  // overlap.
-  return std::none_of(scratch_.triangles.begin(), scratch_.triangles.end(), [&](std::uint32_t id) {
-    SurfaceTriangle t = surface_.triangle(id);
-    return std::fabs(dot(t.normal, l.normal)) > kSameNormal && overlaps_triangle(t, shape_, moved);
-  });
+  // overlap. The planes of most separate them from the shape.
+  if (scratch_.planes.empty()) find_planes();
+  const auto still_overlaps = [&](std::size_t i) {
+    const ManifoldScratch::Plane& plane = scratch_.planes[i];
+    return std::fabs(dot(plane.normal, l.normal)) > kSameNormal &&
+           plane.separation + dot(exit, plane.normal) <= 0.0 &&
+           overlaps_triangle(surface_.triangle(scratch_.triangles[i]), moved);
+  };
+  // What the last exit has left overlapping, this one probably does too.
+  if (left_overlapping_ && still_overlaps(*left_overlapping_)) return false;
+  for (std::size_t i = 0; i < scratch_.planes.size(); ++i) {
+    if (!still_overlaps(i)) continue;
+    left_overlapping_ = i;
+    return false;
+  }
+  return true;
 }
 
 // Assigns each contact to the first cluster with nearly its normal or, after the last cluster, to
@@ -337,10 +367,11 @@ void collide_surface(const Surface& surface, const Geometry& shape, const SE3& T
                      ManifoldScratch& scratch, std::vector<SubManifold>& manifolds) {
   const double size = core_extent(shape) + core_radius(shape);
   scratch.ensure_capacity();
-  find_contacts(surface, shape, T, margin, scratch);
-  if (scratch.contacts.size() > 1) {
-    Pruning(surface, shape, T, size, scratch).prune();
-  }
+  std::optional<PolytopeOf> polytope;
+  if (is_polytope(shape)) polytope.emplace(shape);
+  const ShapeOnSurface on{shape, T, polytope ? &polytope->view() : nullptr};
+  find_contacts(surface, on, margin, scratch);
+  if (scratch.contacts.size() > 1) Pruning(surface, on, size, scratch).prune();
   const std::uint32_t clusters = find_clusters(scratch.contacts, scratch.crowded);
   for (std::uint32_t c = 0; c < clusters; ++c) {
     Cluster(scratch, c, size).reduce(manifolds);

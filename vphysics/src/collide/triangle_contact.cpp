@@ -1,9 +1,11 @@
 #include "collide/triangle_contact.h"
 
+#include <optional>
 #include <utility>
 
 #include "collide/bounds.h"
 #include "collide/convex_contact.h"
+#include "collide/corner_over_face.h"
 #include "collide/epa.h"
 #include "collide/mixed_name.h"
 #include "collide/triangle_axis.h"
@@ -70,13 +72,15 @@ void collide_sphere(const Surface& surface, const SurfaceTriangle& t, const Vec3
 // triangles far from the surface's origin lose no precision.
 class TriangleCollider {
  public:
-  TriangleCollider(const Surface& surface, const SurfaceTriangle& t, const Geometry& shape,
-                   const SE3& T, double margin, std::vector<ManifoldPoint>& points)
+  TriangleCollider(const Surface& surface, const SurfaceTriangle& t, const ShapeOnSurface& on,
+                   double margin, std::vector<ManifoldPoint>& points)
       : surface_(surface),
         t_(t),
+        faces_(on.faces),
         p_{{}, t.p[1] - t.p[0], t.p[2] - t.p[0]},
         body_inertia_(triangle_geometry(p_)),
-        pair_(body_inertia_, shape, SE3(T.rotation(), T.position() - t.p[0])),
+        pair_(body_inertia_, on.shape,
+              SE3(on.T_surface_shape.rotation(), on.T_surface_shape.position() - t.p[0])),
         query_(pair_, margin),
         points_(points) {}
 
@@ -94,6 +98,7 @@ class TriangleCollider {
 
   const Surface& surface_;
   const SurfaceTriangle& t_;
+  const Polytope* faces_;
   Vec3 p_[3];
   Geometry body_inertia_;
   CorePair pair_;
@@ -105,7 +110,10 @@ void TriangleCollider::find(TriangleContact& contact) {
   const double separation = separation_along(pair_, t_.normal);
   if (separation - query_.radii > query_.margin) return;
   if ((t_.active & 7u) == 0) return along_face(separation, contact);
-  const GjkResult found = gjk(pair_, t_.normal, query_.margin + query_.radii);
+  const double limit = query_.margin + query_.radii;
+  std::optional<GjkResult> nearest;
+  if (faces_) nearest = corner_over_face(p_, *faces_, pair_.T_a_b, limit);
+  const GjkResult found = nearest ? *nearest : gjk(pair_, t_.normal, limit);
   if (found.state == GjkResult::State::beyond) return;
   BestAxis best{found.distance, found.normal, found.on_a, found.on_b};
   if (found.state == GjkResult::State::overlaps) {
@@ -198,13 +206,14 @@ void TriangleCollider::finish(TriangleContact& contact, const TrianglePart& part
 }  // namespace
 
 TriangleContact collide_triangle(const Surface& surface, const SurfaceTriangle& t,
-                                 const Geometry& shape, const SE3& T, double margin,
+                                 const ShapeOnSurface& on, double margin,
                                  std::vector<ManifoldPoint>& points) {
   TriangleContact contact{{}, {}, 0.0, points.size(), 0, 0};
-  if (shape.kind == Kind::sphere) {
-    collide_sphere(surface, t, T.position(), shape.radius, margin, contact, points);
+  if (on.shape.kind == Kind::sphere) {
+    collide_sphere(surface, t, on.T_surface_shape.position(), on.shape.radius, margin, contact,
+                   points);
   } else {
-    TriangleCollider collider(surface, t, shape, T, margin, points);
+    TriangleCollider collider(surface, t, on, margin, points);
     collider.find(contact);
     contact.rough = collider.rough();
   }
@@ -220,13 +229,18 @@ double active_distance(const Surface& surface, const SurfaceTriangle& t, const V
   return active ? near.distance : kFar;
 }
 
-bool overlaps_triangle(const SurfaceTriangle& t, const Geometry& shape, const SE3& T) {
+bool overlaps_triangle(const SurfaceTriangle& t, const ShapeOnSurface& on) {
   const Vec3 p[3] = {{}, t.p[1] - t.p[0], t.p[2] - t.p[0]};
+  const SE3 T(on.T_surface_shape.rotation(), on.T_surface_shape.position() - t.p[0]);
+  if (on.faces) {
+    if (const auto known = corners_overlap(p, *on.faces, T)) return *known;
+  }
   const Geometry local = triangle_geometry(p);
-  const CorePair pair(local, shape, SE3(T.rotation(), T.position() - t.p[0]));
-  const GjkResult found = gjk(pair, t.normal, core_radius(shape));
+  const CorePair pair(local, on.shape, T);
+  const double radius = core_radius(on.shape);
+  const GjkResult found = gjk(pair, t.normal, radius);
   return found.state == GjkResult::State::overlaps ||
-         (found.state == GjkResult::State::separated && found.distance < core_radius(shape));
+         (found.state == GjkResult::State::separated && found.distance < radius);
 }
 
 }  // namespace vp::collide

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "collide/manifold.h"
+#include "collide/polytope.h"
 #include "collide/triangle_parts.h"
 
 namespace vp::collide {
@@ -26,20 +27,26 @@ struct TriangleContact {
   bool rough = false;  // CorePair::rough
 };
 
+// A convex shape that is tested with many triangles. `faces`: of a box or a hull, else null.
+struct ShapeOnSurface {
+  const Geometry& shape;
+  const SE3& T_surface_shape;
+  const Polytope* faces;
+};
+
 // Appends the points of a separation of at most margin, not reduced, in the surface's frame.
 // Triangles that share the touched edge or corner give the same feature names. count 0: no contact.
 // Precondition: the triangle's front faces the shape's centre; the shape is convex and no
 // half-space.
 TriangleContact collide_triangle(const Surface& surface, const SurfaceTriangle& triangle,
-                                 const Geometry& shape, const SE3& T_surface_shape, double margin,
+                                 const ShapeOnSurface& shape, double margin,
                                  std::vector<ManifoldPoint>& points);
 
 // The distance from a sphere's centre to the part of the triangle that it would touch; kFar if the
 // closest part is not active from there. Precondition: the triangle's front faces the centre.
 double active_distance(const Surface& surface, const SurfaceTriangle& triangle, const Vec3& centre);
 
-// Whether the shape at this pose overlaps the triangle by more than touching.
-bool overlaps_triangle(const SurfaceTriangle& triangle, const Geometry& shape,
-                       const SE3& T_surface_shape);
+// Whether the shape overlaps the triangle by more than touching.
+bool overlaps_triangle(const SurfaceTriangle& triangle, const ShapeOnSurface& shape);
 
 }  // namespace vp::collide
