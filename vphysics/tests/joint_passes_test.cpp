@@ -140,7 +140,7 @@ struct Pairs {
                                            motions.data()};
     all.find_step_motions(states.data(), start.data(), bodies.data(), bodies.size(),
                           motions.data());
-    passes.load_inertias(run);
+    passes.load_masses(run);
     passes.prepare(run);
     passes.warm_start(run);
     passes.solve_first(run, kH);

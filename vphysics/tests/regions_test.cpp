@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "joints_rig.h"
 #include "random.h"
-#include "rig.h"
 
 namespace vp::test {
 namespace {
@@ -139,6 +139,73 @@ TEST(Regions, StandAsOnePieceDoes) {
   }
 }
 
+// A net of balls on ball joints halfway between them, held along one edge.
+class Net {
+ public:
+  static constexpr int kSide = 12;
+
+  explicit Net(World& world) : world_(world) {
+    for (int j = 0; j < kSide; ++j) {
+      for (int i = 0; i < kSide; ++i) add_ball(i, j);
+    }
+  }
+  double mean_gap() const {
+    double sum = 0.0;
+    for (const Tie& tie : ties_) {
+      sum +=
+          norm(world_.pose(tie.b) * (-0.5 * tie.offset) - world_.pose(tie.a) * (0.5 * tie.offset));
+    }
+    return sum / static_cast<double>(ties_.size());
+  }
+
+ private:
+  static constexpr double kSpacing = 0.5;
+  struct Tie {
+    BodyId a, b;
+    Vec3 offset;  // of b, at the start
+  };
+
+  void add_ball(int i, int j) {
+    const SE3 at(Vec3{kSpacing * i, kSpacing * j, 0});
+    balls_.push_back(j == 0 ? add_anchor(world_, at)
+                            : add_dynamic(world_, {.shape = Sphere{0.1}, .pose = at}));
+    if (j > 0) tie(i + kSide * (j - 1), {0, kSpacing, 0});
+    if (j > 0 && i > 0) tie(i - 1 + kSide * j, {kSpacing, 0, 0});
+  }
+  void tie(int other, const Vec3& offset) {
+    const Tie tie{balls_[static_cast<std::size_t>(other)], balls_.back(), offset};
+    JointDesc desc;
+    desc.kind = BallSocket{};
+    desc.T_a_joint = SE3(0.5 * offset);
+    desc.T_b_joint = SE3(-0.5 * offset);
+    must(world_.create_joint(tie.a, tie.b, desc));
+    ties_.push_back(tie);
+  }
+
+  World& world_;
+  std::vector<BodyId> balls_;
+  std::vector<Tie> ties_;
+};
+
+// A net that swings, connected across four regions, holds as one that is solved as a single region.
+TEST(Regions, HoldJointsAsOnePieceDoes) {
+  double gap[2] = {};
+  for (const int regions : {0, 1}) {
+    World world = world_of(regions == 1 ? 48 : 2048);
+    const Net net(world);
+    constexpr int kSteps = 120;  // two swings; later ones differ by their own instability
+    for (int i = 0; i < kSteps; ++i) {
+      must(world.step(1.0 / 60));
+      gap[regions] += net.mean_gap() / kSteps;
+    }
+    EXPECT_EQ(world.counters().regions, regions == 1 ? 4u : 0u);
+  }
+  std::printf("net of 132 balls: mean gap %.4f mm in one piece, %.4f mm in 4 regions\n",
+              1e3 * gap[0], 1e3 * gap[1]);
+  EXPECT_GT(gap[0], 0.0);
+  EXPECT_LT(gap[1], 1.1 * gap[0]);
+}
+
 // An impact passes through a row of equal balls, from region to region, within a step. The last
 // ball leaves with the speed of the first.
 TEST(Regions, PassABlowOn) {
@@ -177,6 +244,7 @@ TEST(Regions, KeepMomentum) {
     part.velocity = {random.in_cube(2.0), -2.0 * at};
     part.velocity.v = transposed_times(part.pose.rotation(), part.velocity.v);
     bodies.push_back(add_dynamic(world, part));
+    if (i % 5 == 4) join(world, bodies[bodies.size() - 3], bodies.back(), BallSocket{}, part.pose);
   }
   struct Sum {
     Vec3 momentum;
@@ -213,12 +281,15 @@ TEST(Regions, AreTakenBackWithTheState) {
     World world = world_of(6);
     add_ground(world, {});
     Random random(9);
+    BodyId last;
     for (int i = 0; i < 60; ++i) {
       Part part{.shape = Box{{0.1, 0.1, 0.1}}, .material = {.restitution = i % 7 == 0 ? 0.5 : 0.0}};
       if (i % 4 == 0) part.shape = Sphere{0.1};
       part.pose =
           SE3(random.rotation(), Vec3{0.25 * (i % 4), 0.25 * (i / 4 % 4), 0.2 + 0.3 * (i / 16)});
-      add_dynamic(world, part);
+      const BodyId body = add_dynamic(world, part);
+      if (i % 8 == 7) join(world, last, body, BallSocket{}, part.pose);
+      last = body;
     }
     return world;
   };

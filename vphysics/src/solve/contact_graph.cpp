@@ -9,13 +9,6 @@
 namespace vp::solve {
 namespace {
 
-// A body that no impulse moves may still move, with the others of its region. So its region counts,
-// unless it is the world itself.
-std::uint16_t region_of(const ContactGraph::End& a, const ContactGraph::End& b) {
-  if (a.state == kWorldState) return b.region;
-  return b.state == kWorldState || a.region == b.region ? a.region : kSharedRegion;
-}
-
 template <int P>
 const ContactBlock<P>& empty_block() {
   static const ContactBlock<P> kEmpty = [] {
@@ -36,6 +29,13 @@ void clear_slot(ContactBlock<P>& block, int lane) {
 }
 
 }  // namespace
+
+// A body that no impulse moves may still move, with the others of its region. So its region counts,
+// unless it is the world itself.
+std::uint16_t region_of(const ContactGraph::End& a, const ContactGraph::End& b) {
+  if (a.state == kWorldState) return b.region;
+  return b.state == kWorldState || a.region == b.region ? a.region : kSharedRegion;
+}
 
 // With several regions, the contacts between regions belong to bodies on their faces: about 2 n^2
 // for a region of n^3 bodies, since two regions share each face.

@@ -188,4 +188,7 @@ class ContactGraph {
   std::vector<ColourSet> taken_;  // of each state: the colours of its contacts
 };
 
+// The region of a contact or joint of two bodies.
+std::uint16_t region_of(const ContactGraph::End& a, const ContactGraph::End& b);
+
 }  // namespace vp::solve

@@ -19,6 +19,7 @@
 // Source: Catto, Soft Constraints, GDC 2011; Golub and Van Loan, Matrix Computations, 4.1.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <type_traits>
 
@@ -83,6 +84,14 @@ struct TwelvePart {
 };
 template <int>
 struct NoPart {};
+// An array that may have no elements, and no size then: that of the standard library has one.
+template <class T>
+struct NoElements {
+  T& operator[](int) const { __builtin_unreachable(); }
+};
+template <class T, int kCount>
+using SomeOf =
+    std::conditional_t<kCount == 0, NoElements<T>, std::array<T, static_cast<std::size_t>(kCount)>>;
 
 // kPoint: 3 or 0, the rows of a locked point. kOthers: the maximum number of other rows. Their
 // Jacobians are along and about axes that the passes compute (kOfAxes), or are given by the caller.
@@ -91,20 +100,24 @@ struct JointBlock {
   static constexpr int kPointRows = kPoint, kOtherRows = kOthers, kAll = kPoint + kOthers;
   static constexpr bool kAxes = kOfAxes;
 
-  IndexField a, b;   // indices of the bodies' states; kWorldState in an empty slot
-  IndexField joint;  // index in the world's joints
-  FieldSym3 inertia_a, inertia_b;
-  Field active;          // 0: the last iteration has hardly changed its impulses
-  Field3 force, torque;  // on b, about its anchor: impulses accumulated over the sub-steps so far
-  Field3 anchor;         // for Jacobians given by the caller: from b's centre of mass
+  IndexField a, b;                 // indices of the bodies' states; kWorldState in an empty slot
+  IndexField joint;                // index in the world's joints
+  FieldSym3 inertia_a, inertia_b;  // inverse, as are the masses
+  Field mass_a, mass_b;
+  Field active;  // 0: the last iteration has hardly changed its impulses
+  Field3 force;  // on b: impulses accumulated over the sub-steps so far
+  // Not of a point alone: the same about b's anchor.
+  [[no_unique_address]] std::conditional_t<kOthers != 0, Field3, NoPart<3>> torque;
+  // For Jacobians given by the caller: from b's centre of mass.
+  [[no_unique_address]] std::conditional_t<kOfAxes, NoPart<2>, Field3> anchor;
   [[no_unique_address]] std::conditional_t<kOfAxes, PointPart, NoPart<0>> point;
   [[no_unique_address]] std::conditional_t<kOfAxes && kOthers != 0, AxesPart, NoPart<1>> axes;
-  // Of all rows, prepared in each sub-step: rate C; G; K_ii without G.
-  Field bias[kAll], leak[kAll], own[kAll];
+  // Of all rows, prepared in each sub-step: rate C; K_ii without G.
+  Field bias[kAll], own[kAll];
   Field factor[kAll * (kAll + 1) / 2];  // L below the diagonal; 1 / D on it
-  RowPart rows[kOthers > 0 ? kOthers : 1];
-  BoundPart bounds[kOthers > 0 ? kOthers : 1];
-  std::conditional_t<kOfAxes, Field3, TwelvePart> jacobian[kOthers > 0 ? kOthers : 1];
+  [[no_unique_address]] SomeOf<RowPart, kOthers> rows;
+  [[no_unique_address]] SomeOf<BoundPart, kOthers> bounds;
+  [[no_unique_address]] SomeOf<std::conditional_t<kOfAxes, Field3, TwelvePart>, kOthers> jacobian;
 };
 using BallBlock = JointBlock<3, 0, true>;
 using AxesBlock = JointBlock<3, 3, true>;            // a point and angular rows

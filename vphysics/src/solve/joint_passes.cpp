@@ -64,8 +64,13 @@ void for_joints(const typename JointPasses<B>::Run& run, const F& f) {
 }
 
 template <class B>
-void load_joint_inertias(const typename JointPasses<B>::Run& run) {
-  for_joints<B>(run, [](auto& c, int) { c.load_inertias(); });
+void load_joint_masses(const typename JointPasses<B>::Run& run) {
+  for_joints<B>(run, [](auto& c, int) {
+    c.load_inertias();
+    c.gather_velocities();
+    c.put(c.block().mass_a, c.inverse_mass_a());
+    c.put(c.block().mass_b, c.inverse_mass_b());
+  });
 }
 template <class B>
 [[gnu::flatten]] bool prepare_joints(const typename JointPasses<B>::Run& run) {
@@ -96,7 +101,7 @@ template <class B>
 
 template <class B>
 constexpr JointPasses<B> passes_of() {
-  return {load_joint_inertias<B>,   prepare_joints<B>,         warm_start_joints<B>,
+  return {load_joint_masses<B>,     prepare_joints<B>,         warm_start_joints<B>,
           solve_joint_run<B, true>, solve_joint_run<B, false>, relax_joints<B>};
 }
 

@@ -137,7 +137,7 @@ void find_response(const JointLanes<W, B, kRows, kLocked>& c, Lanes<W> (*K)[B::k
   using F = Lanes<W>;
   using V = Vec3T<F>;
   const auto I_a = c.get(c.block().inertia_a), I_b = c.get(c.block().inertia_b);
-  const F m_a = c.inverse_mass_a(), m_b = c.inverse_mass_b();
+  const F m_a = c.get(c.block().mass_a), m_b = c.get(c.block().mass_b);
   constexpr int kPoint = B::kPointRows;
   V arm_a, arm_b;
   if constexpr (B::kAxes) {
@@ -213,7 +213,6 @@ bool prepare_lanes(JointLanes<W, B, kRows, kLocked>& c, const StepMotion* motion
                    float max_bias_velocity) {
   using F = Lanes<W>;
   constexpr int kAll = B::kAll;
-  c.gather_velocities();
   Vec3T<F> separation;
   evaluate_lanes(c, motions, at, max_bias_velocity, separation);
   F K[kAll][kAll];
@@ -234,7 +233,6 @@ bool prepare_lanes(JointLanes<W, B, kRows, kLocked>& c, const StepMotion* motion
     const F bias = smaller(larger(c.rate(i) * residual, -max_impulse), max_impulse);
     c.put(block.bias[i], bias);
     far = either(far, abs(bias) > fastest);
-    c.put(block.leak[i], leak);
     K[i][i] += leak;
   }
   // L below the diagonal of the locked columns; the rest becomes the Schur complement.
@@ -411,7 +409,7 @@ void solve_lanes(JointLanes<W, B, kRows, kLocked>& c, float h, float max_bias_ve
   c.speeds(u);
   for (int i = 0; i < c.locked(); ++i) {
     const F bias = c.get(block.bias[i]);
-    const F lost = c.get(block.leak[i]) * c.impulse(i);
+    const F lost = (c.loss(i) * c.get(block.own[i])) * c.impulse(i);
     F target = bias + lost;
     if constexpr (kSomeFar) {
       // Clamps the bias so that its sum with the softness term is within the maximum bias velocity.
@@ -448,21 +446,23 @@ void relax_lanes(JointLanes<W, B, kRows, kLocked>& c, float h) {
   solve_rows(c, F(0.0f) < F(1.0f), u, change, h, 0.0f, false);
   c.apply_impulse(change);
   c.scatter_velocities();
-  V force = c.get(block.force), torque = c.get(block.torque);
+  V force = c.get(block.force);
   if constexpr (B::kPointRows > 0) force += c.get(block.point.impulse);
-  const V anchor = c.get(block.anchor);
-  for (int i = 0; i < c.others(); ++i) {
-    const F p = c.all_impulse(B::kPointRows + i);
-    if constexpr (B::kAxes) {
-      (c.is_along(i) ? force : torque) += p * c.get(block.jacobian[i]);
-    } else {
-      const V linear = c.get(block.jacobian[i].linear_b);
-      force += p * linear;
-      torque += p * (c.get(block.jacobian[i].angular_b) - cross(anchor, linear));
+  if constexpr (B::kOtherRows > 0) {
+    V torque = c.get(block.torque);
+    for (int i = 0; i < c.others(); ++i) {
+      const F p = c.all_impulse(B::kPointRows + i);
+      if constexpr (B::kAxes) {
+        (c.is_along(i) ? force : torque) += p * c.get(block.jacobian[i]);
+      } else {
+        const V linear = c.get(block.jacobian[i].linear_b);
+        force += p * linear;
+        torque += p * (c.get(block.jacobian[i].angular_b) - cross(c.get(block.anchor), linear));
+      }
     }
+    c.put(block.torque, torque);
   }
   c.put(block.force, force);
-  c.put(block.torque, torque);
 }
 
 }  // namespace vp::solve

@@ -117,7 +117,7 @@ struct JointPasses {
     float max_bias_velocity = 3.0f;  // for errors of hard rows [m/s]
     bool some_far = true;            // false: prepare has returned false for all
   };
-  void (*load_inertias)(const Run& run);  // before the sub-steps of a step
+  void (*load_masses)(const Run& run);  // before the sub-steps of a step
   // Returns true if an error is too large to be corrected at its full rate.
   bool (*prepare)(const Run& run);
   void (*warm_start)(const Run& run);

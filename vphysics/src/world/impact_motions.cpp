@@ -39,10 +39,8 @@ void ImpactStage::rescale_impulses(double dt) {
   pair_contacts_.scale(scale);
   for (BodyJoint& joint : s_.joints) {
     if (!joint.alive || !joint.in_rows) continue;
-    for (BodyJointRow& row : joint.rows) {
-      row.impulse = scaled(row.impulse);
-      row.stop = scaled(row.stop);
-    }
+    for (double& impulse : joint.impulse) impulse = scaled(impulse);
+    for (double& impulse : joint.stop) impulse = scaled(impulse);
   }
   for (Articulation& art : s_.articulations) {
     for (JointDof& dof : art.dofs) {

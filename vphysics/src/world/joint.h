@@ -1,7 +1,9 @@
 // A joint between two bodies, as the world stores it.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <iterator>
 #include <optional>
 #include <string>
 
@@ -37,12 +39,11 @@ struct JointSpec {
 };
 JointSpec spec_of(const JointKind& kind);
 
-// A row of a joint: its force law for one sub-step length, and its impulses, which are state.
-// solve/joint_block.h describes the fields.
+// A row of a joint: its force law for one sub-step length. solve/joint_block.h describes the
+// fields.
 struct BodyJointRow {
-  std::uint8_t slot = 0;  // index of the joint's coordinate
-  double impulse = 0.0, stop = 0.0;
   double rate = 0.0, loss = 0.0;
+  std::uint8_t slot = 0;  // index of the joint's coordinate
   bool relaxes = true;
   bool bounded_hold = false;
   double min_impulse = 0.0, max_impulse = 0.0;
@@ -63,28 +64,40 @@ struct JointEvaluation {
   double residual[solve::kJointRows] = {};
 };
 
+// The kind of block that a joint is solved in (solve/joint_block.h).
+enum class JointBlockKind : std::uint8_t { ball, axes, frames, rows };
+inline constexpr int kJointBlockKinds = 4;
+
+// A step reads the fields in their order, as far as the joint's rows go.
 struct BodyJoint {
   std::uint32_t generation = 0;
   bool alive = false;
+  bool collide = false;
+  bool in_rows = false;  // row_joints.h
+  JointBlockKind block = JointBlockKind::rows;
   std::uint32_t a = 0, b = 0;  // bodies
   // Neighbours in the joint lists of the bodies. An edge is 2 * joint + side.
   std::uint32_t next[2] = {}, previous[2] = {};
-  bool collide = false;
-  bool in_rows = false;  // row_joints.h
-  SE3 T_a_joint, T_b_joint;
-  double frequency = 0.0, damping_ratio = 1.0;
-  JointSpec spec;  // its drives are state
-  int main = -1;   // slot of its main coordinate; -1: none
-  // Angles that count full revolutions: the twist; of a gear, one for each body.
-  double rotated[2] = {};
-  SE3 start[2];  // of a gear: the bodies' poses at its creation
+  solve::JointForm form;  // of its rows
   // The first `locked` rows are locked. In a joint with a locked point, rows 0 to 2 have the
   // point's impulse along the world's axes.
-  BodyJointRow rows[solve::kJointRows];
   int count = 0, locked = 0;
   double rows_sub_step = 0.0;  // the sub-step length of the rows; 0: the rows must be laid out
   Vec3 force, torque;          // of the last step
+  double impulse[solve::kJointRows] = {}, stop[solve::kJointRows] = {};  // of each row: state
+  SE3 T_a_joint, T_b_joint;
+  // Angles that count full revolutions: the twist; of a gear, one for each body.
+  double rotated[2] = {};
+  BodyJointRow rows[solve::kJointRows];
+  double frequency = 0.0, damping_ratio = 1.0;
+  int main = -1;   // slot of its main coordinate; -1: none
+  SE3 start[2];    // of a gear: the bodies' poses at its creation
+  JointSpec spec;  // its drives are state
 
+  void forget_impulses() {
+    std::fill(std::begin(impulse), std::end(impulse), 0.0);
+    std::fill(std::begin(stop), std::end(stop), 0.0);
+  }
   bool holds_point() const {
     return spec.form == JointSpec::Form::axes && locked >= 3 && rows[2].slot == 2;
   }

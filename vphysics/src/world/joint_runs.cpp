@@ -1,72 +1,116 @@
 #include "world/joint_runs.h"
 
-#include <algorithm>
 #include <bit>
-#include <type_traits>
+#include <numeric>
+
+#include "solve/body_state.h"
 
 namespace vp {
 
-void JointRuns::clear(std::size_t states) {
-  std::apply([](auto&... kind) { ((kind.used = 0), ...); }, kinds_);
-  for (auto& colour : by_colour_) colour.clear();
+void JointRuns::reserve(std::size_t joints) {
+  added_.reserve(joints);
+  lanes_.reserve(joints);
+  joined_.reserve(2 * joints);
+  bodies_.reserve(2 * joints);
+}
+
+void JointRuns::clear(std::size_t states, std::size_t regions) {
+  added_runs_.clear();
+  added_.clear();
+  joined_.clear();
   taken_.assign(states, 0);
+  noted_.assign(states, 0);
+  last_run_.assign(regions, kNone);
 }
 
 // The lowest colour that is free for both. If a body has more joints than there are colours, the
 // rest go to the last colour, whose blocks are solved sequentially.
-int JointRuns::colour_for(std::uint32_t state_a, bool moves_a, std::uint32_t state_b,
-                          bool moves_b) {
-  const std::uint64_t taken = (moves_a ? taken_[state_a] : 0) | (moves_b ? taken_[state_b] : 0);
+int JointRuns::colour_for(const End& a, const End& b) {
+  const std::uint64_t taken = (a.moves ? taken_[a.state] : 0) | (b.moves ? taken_[b.state] : 0);
   const int colour = std::min(std::countr_one(taken), kLastColour);
   if (colour == kLastColour) return colour;
-  if (moves_a) taken_[state_a] |= 1ull << colour;
-  if (moves_b) taken_[state_b] |= 1ull << colour;
+  for (const End& end : {a, b}) {
+    if (end.moves) taken_[end.state] |= 1ull << colour;
+  }
   return colour;
 }
 
-template <class BLOCK>
-JointRuns::Lane<BLOCK> JointRuns::add(const solve::JointForm& form, std::uint32_t joint,
-                                      std::uint32_t state_a, bool moves_a, std::uint32_t state_b,
-                                      bool moves_b) {
-  constexpr std::uint8_t kKind = std::is_same_v<BLOCK, solve::BallBlock>    ? 0
-                                 : std::is_same_v<BLOCK, solve::AxesBlock>  ? 1
-                                 : std::is_same_v<BLOCK, solve::FrameBlock> ? 2
-                                                                            : 3;
-  auto& kind = std::get<kKind>(kinds_);
-  const int colour = colour_for(state_a, moves_a, state_b, moves_b);
-  auto& refs = by_colour_[static_cast<std::size_t>(colour)];
-  const auto is_its = [&](const Ref& ref) {
-    return ref.kind == kKind && kind.runs[ref.index].form == form;
-  };
-  auto found = std::find_if(refs.begin(), refs.end(), is_its);
-  if (found == refs.end()) {
-    if (kind.used == kind.runs.size()) kind.runs.emplace_back();
-    JointRun<BLOCK>& fresh = kind.runs[kind.used];
-    fresh.form = form;
-    fresh.lanes = 0;
-    fresh.alone = colour == kLastColour;
-    fresh.blocks.clear();
-    found = refs.insert(refs.end(), Ref{kKind, static_cast<std::uint32_t>(kind.used++)});
-  }
-  JointRun<BLOCK>& run = kind.runs[found->index];
-  const int at = run.alone ? 0 : static_cast<int>(run.lanes % solve::kLanes);
-  if (at == 0) run.blocks.emplace_back();  // its lanes refer to kWorldState
-  ++run.lanes;
-  BLOCK& block = run.blocks.back();
-  block.a.lane[at] = state_a;
-  block.b.lane[at] = state_b;
-  block.joint.lane[at] = joint;
-  return {block, at};
+void JointRuns::note_body(const End& end) {
+  if (end.state == solve::kWorldState || noted_[end.state] != 0) return;
+  noted_[end.state] = 1;
+  joined_.push_back({end.state - 1, end.region});
 }
 
-template JointRuns::Lane<solve::BallBlock> JointRuns::add(const solve::JointForm&, std::uint32_t,
-                                                          std::uint32_t, bool, std::uint32_t, bool);
-template JointRuns::Lane<solve::AxesBlock> JointRuns::add(const solve::JointForm&, std::uint32_t,
-                                                          std::uint32_t, bool, std::uint32_t, bool);
-template JointRuns::Lane<solve::FrameBlock> JointRuns::add(const solve::JointForm&, std::uint32_t,
-                                                           std::uint32_t, bool, std::uint32_t,
-                                                           bool);
-template JointRuns::Lane<solve::RowsBlock> JointRuns::add(const solve::JointForm&, std::uint32_t,
-                                                          std::uint32_t, bool, std::uint32_t, bool);
+void JointRuns::add(JointBlockKind kind, const solve::JointForm& form, std::uint32_t joint,
+                    const End& a, const End& b) {
+  const auto colour = static_cast<std::uint8_t>(colour_for(a, b));
+  const std::uint16_t region = solve::region_of(a, b);
+  note_body(a);
+  note_body(b);
+  std::uint32_t& last = last_run_[region];
+  std::uint32_t run = last;
+  const auto is_its = [&](const Run& of) {
+    return of.colour == colour && of.kind == kind && of.form == form;
+  };
+  while (run != kNone && !is_its(added_runs_[run])) run = added_runs_[run].next;
+  if (run == kNone) {
+    run = static_cast<std::uint32_t>(added_runs_.size());
+    added_runs_.push_back({form, kind, colour, region, last});
+    last = run;
+  }
+  ++added_runs_[run].lanes;
+  added_.push_back({{joint, a.state, b.state}, run});
+}
+
+void JointRuns::lay_out() {
+  sort_runs();
+  sort_lanes();
+  sort_bodies();
+}
+
+void JointRuns::sort_runs() {
+  order_.resize(added_runs_.size());
+  std::iota(order_.begin(), order_.end(), 0u);
+  std::sort(order_.begin(), order_.end(), [&](std::uint32_t i, std::uint32_t j) {
+    const Run &a = added_runs_[i], &b = added_runs_[j];
+    return std::tuple(a.region, a.colour, i) < std::tuple(b.region, b.colour, j);
+  });
+  runs_.clear();
+  first_run_.assign(last_run_.size() + 1, 0);
+  std::uint32_t lanes = 0, blocks[kJointBlockKinds] = {};
+  for (const std::uint32_t i : order_) {
+    Run& run = runs_.emplace_back(added_runs_[i]);
+    ++first_run_[run.region + 1u];
+    run.first_lane = lanes;
+    lanes += run.lanes;
+    std::uint32_t& end = blocks[static_cast<int>(run.kind)];
+    run.first_block = end;
+    end += run.blocks();
+  }
+  std::partial_sum(first_run_.begin(), first_run_.end(), first_run_.begin());
+  const auto enlarge = [](auto& of, std::uint32_t count) {
+    if (of.size() < count) of.resize(count);
+  };
+  enlarge(std::get<0>(blocks_), blocks[0]);
+  enlarge(std::get<1>(blocks_), blocks[1]);
+  enlarge(std::get<2>(blocks_), blocks[2]);
+  enlarge(std::get<3>(blocks_), blocks[3]);
+}
+
+void JointRuns::sort_lanes() {
+  ends_.resize(added_runs_.size());
+  for (std::size_t i = 0; i < runs_.size(); ++i) ends_[order_[i]] = runs_[i].first_lane;
+  lanes_.resize(added_.size());
+  for (const Added& added : added_) lanes_[ends_[added.run]++] = added.lane;
+}
+
+void JointRuns::sort_bodies() {
+  first_body_.assign(last_run_.size() + 1, 0);
+  for (const JoinedBody& joined : joined_) ++first_body_[joined.region + 1u];
+  std::partial_sum(first_body_.begin(), first_body_.end(), first_body_.begin());
+  ends_.assign(first_body_.begin(), first_body_.end() - 1);
+  bodies_.resize(joined_.size());
+  for (const JoinedBody& joined : joined_) bodies_[ends_[joined.region]++] = joined.body;
+}
 
 }  // namespace vp

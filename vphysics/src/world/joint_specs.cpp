@@ -244,6 +244,25 @@ std::optional<std::string> problem_in(const UserConstraint& user) {
   return std::nullopt;
 }
 
+solve::JointForm form_of(const BodyJoint& joint) {
+  solve::JointForm form;
+  const int point = joint.holds_point() ? 3 : 0;
+  form.rows = static_cast<std::uint8_t>(joint.count - point);
+  form.locked = static_cast<std::uint8_t>(joint.locked - point);
+  if (joint.spec.form != JointSpec::Form::axes) return form;
+  for (int i = 0; i < form.rows; ++i) {
+    const BodyJointRow& row = joint.rows[point + i];
+    const bool of_cone = joint.spec.cone && row.slot == solve::kSwingX;
+    form.slot[i] = of_cone ? solve::kCone : row.slot;
+  }
+  return form;
+}
+JointBlockKind block_of(const BodyJoint& joint) {
+  if (joint.spec.form != JointSpec::Form::axes) return JointBlockKind::rows;
+  if (!joint.holds_point()) return JointBlockKind::frames;
+  return joint.form.rows == 0 ? JointBlockKind::ball : JointBlockKind::axes;
+}
+
 }  // namespace
 
 ConstraintRowDesc PairConstraint::row_desc(int) const {
@@ -276,6 +295,7 @@ int main_slot(const JointKind& kind) {
 void build_rows(BodyJoint& joint, double h) {
   const bool user = joint.spec.form == JointSpec::Form::user;
   Rows laid = user ? rows_of_user(joint.spec, h) : rows_of_axes(joint.spec, h);
+  double impulse[solve::kJointRows] = {}, stop[solve::kJointRows] = {};
   for (int i = 0; i < laid.count; ++i) {
     BodyJointRow& row = laid.rows[i];
     if (user) {
@@ -286,13 +306,17 @@ void build_rows(BodyJoint& joint, double h) {
     }
     for (int k = 0; k < joint.count; ++k) {
       if (joint.rows[k].slot != row.slot) continue;
-      row.impulse = joint.rows[k].impulse;
-      row.stop = joint.rows[k].stop;
+      impulse[i] = joint.impulse[k];
+      stop[i] = joint.stop[k];
     }
   }
   std::copy_n(laid.rows, laid.count, joint.rows);
+  std::copy_n(impulse, solve::kJointRows, joint.impulse);
+  std::copy_n(stop, solve::kJointRows, joint.stop);
   joint.count = laid.count;
   joint.locked = laid.locked;
+  joint.form = form_of(joint);
+  joint.block = block_of(joint);
 }
 
 std::optional<std::string> problem_with(const JointDesc& desc) {

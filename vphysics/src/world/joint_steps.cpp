@@ -19,25 +19,13 @@ using solve::kLanes;
 constexpr std::size_t kBlockGrain = 16;  // blocks: some microseconds
 // Blocks that are passed to all passes of one loop before the next ones: they stay in the cache.
 constexpr std::size_t kTile = 8;
-constexpr std::size_t kAhead = 6;  // joints, whose bodies are requested ahead of their use
+constexpr std::size_t kAhead = 6;  // joints, which are requested ahead of their use
+// Cache lines of a joint: those with its impulses, and all that a ball joint needs.
+constexpr std::size_t kImpulseLines = 3, kJointLines = 7;
 
 // The nearest multiple of 2 pi.
 double revolutions_of(double angle) {
   return 2.0 * kPi * std::floor(angle / (2.0 * kPi) + 0.5);
-}
-
-solve::JointForm form_of(const BodyJoint& joint) {
-  solve::JointForm form;
-  const int point = joint.holds_point() ? 3 : 0;
-  form.rows = static_cast<std::uint8_t>(joint.count - point);
-  form.locked = static_cast<std::uint8_t>(joint.locked - point);
-  if (joint.spec.form != JointSpec::Form::axes) return form;
-  for (int i = 0; i < form.rows; ++i) {
-    const BodyJointRow& row = joint.rows[point + i];
-    const bool of_cone = joint.spec.cone && row.slot == solve::kSwingX;
-    form.slot[i] = of_cone ? solve::kCone : row.slot;
-  }
-  return form;
 }
 
 // rotated: full revolutions [rad] that are subtracted from the coordinate of a twist.
@@ -47,14 +35,14 @@ void fill_rows(BLOCK& block, int lane, const BodyJoint& joint, double rotated) {
   for (int i = kPoint; i < joint.count; ++i) {
     const BodyJointRow& from = joint.rows[i];
     solve::RowPart& row = block.rows[i - kPoint];
-    put(row.impulse, lane, from.impulse);
+    put(row.impulse, lane, joint.impulse[i]);
     put(row.rate, lane, from.rate);
     put(row.loss, lane, from.loss);
     put(row.relaxes, lane, from.relaxes ? 1.0 : 0.0);
     if (i < joint.locked) continue;
     solve::BoundPart& bound = block.bounds[i - kPoint];
     const double from_rotation = from.slot == solve::kTwist ? rotated : 0.0;
-    put(bound.stop, lane, from.stop);
+    put(bound.stop, lane, joint.stop[i]);
     put(bound.holds, lane, from.bounded_hold ? 1.0 : 0.0);
     put(bound.min_impulse, lane, from.min_impulse);
     put(bound.max_impulse, lane, from.max_impulse);
@@ -73,7 +61,7 @@ void fill_point(solve::PointPart& point, int lane, const BodyJoint& joint, const
   put(point.start_arm_a, lane, p_a - a.centre);
   put(point.start_arm_b, lane, p_b - b.centre);
   put(point.start_separation, lane, p_b - p_a);
-  put(point.impulse, lane, {joint.rows[0].impulse, joint.rows[1].impulse, joint.rows[2].impulse});
+  put(point.impulse, lane, {joint.impulse[0], joint.impulse[1], joint.impulse[2]});
   put(point.rate, lane, joint.rows[0].rate);
   put(point.loss, lane, joint.rows[0].loss);
   put(point.relaxes, lane, joint.rows[0].relaxes ? 1.0 : 0.0);
@@ -97,29 +85,31 @@ void take_rows(const BLOCK& block, int lane, BodyJoint& joint) {
   constexpr int kPoint = BLOCK::kPointRows;
   if constexpr (kPoint > 0) {
     const Vec3 p = get(block.point.impulse, lane);
-    joint.rows[0].impulse = p.x;
-    joint.rows[1].impulse = p.y;
-    joint.rows[2].impulse = p.z;
-  }
-  for (int i = kPoint; i < joint.count; ++i) {
-    joint.rows[i].impulse = get(block.rows[i - kPoint].impulse, lane);
-    if (i >= joint.locked) joint.rows[i].stop = get(block.bounds[i - kPoint].stop, lane);
+    joint.impulse[0] = p.x;
+    joint.impulse[1] = p.y;
+    joint.impulse[2] = p.z;
   }
   joint.force = get(block.force, lane);
-  joint.torque = get(block.torque, lane);
+  if constexpr (BLOCK::kOtherRows > 0) {
+    for (int i = kPoint; i < joint.count; ++i) {
+      joint.impulse[i] = get(block.rows[i - kPoint].impulse, lane);
+      if (i >= joint.locked) joint.stop[i] = get(block.bounds[i - kPoint].stop, lane);
+    }
+    joint.torque = get(block.torque, lane);
+  }
 }
 
-// The passes for a run.
-const auto& passes_for(const JointRun<solve::BallBlock>&) {
+// The passes over blocks of a kind.
+const auto& passes_for(std::span<solve::BallBlock>) {
   return solve::joint_passes().ball;
 }
-const auto& passes_for(const JointRun<solve::AxesBlock>&) {
+const auto& passes_for(std::span<solve::AxesBlock>) {
   return solve::joint_passes().axes;
 }
-const auto& passes_for(const JointRun<solve::FrameBlock>&) {
+const auto& passes_for(std::span<solve::FrameBlock>) {
   return solve::joint_passes().frames;
 }
-const auto& passes_for(const JointRun<solve::RowsBlock>&) {
+const auto& passes_for(std::span<solve::RowsBlock>) {
   return solve::joint_passes().rows;
 }
 
@@ -131,22 +121,52 @@ bool JointSteps::is_active(const BodyJoint& joint) const {
   return joint.alive && !joint.in_rows && !(is_still(a) && is_still(b));
 }
 
-// Calls f(passes, run of at most kTile blocks), one colour after the other. The blocks of a colour
-// run in parallel, except those that share bodies.
+JointSteps::JointSteps(const JointContext& context, JointScratch& scratch, double h)
+    : context_(context), scratch_(scratch), h_(h) {
+  const Bodies& bodies = context_.bodies;
+  Joints& joints = context_.joints;
+  if (joints.empty()) return;
+  scratch_.runs.clear(context_.states.size(), context_.regions);
+  for (std::uint32_t i = 0; i < joints.size(); ++i) {
+    BodyJoint& joint = joints[i];
+    if (i + 2 * kAhead < joints.size()) prefetch(joints[i + 2 * kAhead], 2);
+    if (i + kAhead < joints.size()) {
+      const BodyJoint& next = joints[i + kAhead];
+      prefetch_slot(bodies, next.a);
+      prefetch_slot(bodies, next.b);
+    }
+    if (!is_active(joint)) continue;
+    if (joint.rows_sub_step != h) build_rows(joint, h);
+    joint.rows_sub_step = h;
+    scratch_.runs.add(joint.block, joint.form, i, end_of(bodies, joint.a), end_of(bodies, joint.b));
+    is_empty_ = false;
+  }
+  if (empty()) return;
+  scratch_.runs.lay_out();
+  scratch_.motions.resize(context_.states.size(),
+                          solve::StepMotion{{0.0f, 0.0f, 0.0f, 1.0f}, {}, 0.0f});
+  scratch_.some_far.assign(context_.regions, 1);
+}
+
+// Calls f(passes, at most kTile blocks as the passes take them, their first block, the run), one
+// colour after the other. In kSharedRegion the blocks of a colour run in parallel, except those
+// that share bodies.
 template <class F>
-void JointSteps::for_runs(const F& f) {
-  scratch_.runs.for_each([&](auto& run) {
-    const auto& passes = passes_for(run);
+void JointSteps::for_parts_of(std::size_t region, const F& f) {
+  scratch_.runs.for_each(region, [&](const auto& run) {
+    const auto& passes = passes_for(run.blocks);
     const auto part = [&](std::size_t begin, std::size_t end) {
       using Run = typename std::remove_cvref_t<decltype(passes)>::Run;
       for (std::size_t b = begin; b < end; b += kTile) {
         f(passes,
-          Run{run.blocks.data() + b, std::min(kTile, end - b), &run.form, context_.states.data(),
+          Run{&run.blocks[b], std::min(kTile, end - b), &run.form, context_.states.data(),
               scratch_.motions.data(),
-              static_cast<float>(kMaxJointCorrectionSpeed * context_.speed_unit), some_are_far_});
+              static_cast<float>(kMaxJointCorrectionSpeed * context_.speed_unit),
+              scratch_.some_far[region] != 0},
+          b, run);
       }
     };
-    if (run.alone) {
+    if (run.alone || region != solve::kSharedRegion) {
       part(0, run.blocks.size());
     } else {
       context_.workers.in_parallel(run.blocks.size(), kBlockGrain, part);
@@ -154,68 +174,59 @@ void JointSteps::for_runs(const F& f) {
   });
 }
 
-void JointSteps::fill(std::uint32_t index) {
-  BodyJoint& joint = context_.joints[index];
-  const solve::JointForm form = form_of(joint);
-  const auto a = end_of(context_.bodies, joint.a), b = end_of(context_.bodies, joint.b);
-  const auto add = [&]<class BLOCK>() {
-    return scratch_.runs.add<BLOCK>(form, index, a.state, a.moves, b.state, b.moves);
-  };
-  if (joint.spec.form != JointSpec::Form::axes) {
-    const auto [block, lane] = add.operator()<solve::RowsBlock>();
-    return fill_rows(block, lane, joint, 0.0);
-  }
-  const BodyPose at_a = pose_of(context_.bodies[joint.a]), at_b = pose_of(context_.bodies[joint.b]);
-  if (joint.holds_point() && form.rows == 0) {
-    const auto [block, lane] = add.operator()<solve::BallBlock>();
-    return fill_point(block.point, lane, joint, at_a, at_b);
-  }
-  count_revolutions(joint, at_a, at_b);
-  const double rotated = revolutions_of(joint.rotated[0]);
-  const auto fill = [&](auto& block, int lane) {
-    fill_point(block.point, lane, joint, at_a, at_b);
-    fill_axes(block.axes, lane, joint, at_a, at_b, rotated);
-    fill_rows(block, lane, joint, rotated);
-  };
-  if (joint.holds_point()) {
-    const auto [block, lane] = add.operator()<solve::AxesBlock>();
-    fill(block, lane);
+template <class BLOCK>
+void JointSteps::fill_lane(BLOCK& block, int lane, const JointLane& from) {
+  BodyJoint& joint = context_.joints[from.joint];
+  block.a.lane[lane] = from.state_a;
+  block.b.lane[lane] = from.state_b;
+  block.joint.lane[lane] = from.joint;
+  if constexpr (!BLOCK::kAxes) {
+    fill_rows(block, lane, joint, 0.0);
   } else {
-    const auto [block, lane] = add.operator()<solve::FrameBlock>();
-    fill(block, lane);
+    const BodyPose a = pose_of(context_.bodies[joint.a]), b = pose_of(context_.bodies[joint.b]);
+    fill_point(block.point, lane, joint, a, b);
+    if constexpr (BLOCK::kOtherRows > 0) {
+      count_revolutions(joint, a, b);
+      const double rotated = revolutions_of(joint.rotated[0]);
+      fill_axes(block.axes, lane, joint, a, b, rotated);
+      fill_rows(block, lane, joint, rotated);
+    }
   }
 }
 
-JointSteps::JointSteps(const JointContext& context, JointScratch& scratch, double h)
-    : context_(context), scratch_(scratch), h_(h) {
-  const Bodies& bodies = context_.bodies;
-  Joints& joints = context_.joints;
-  scratch_.active.clear();
-  scratch_.joined_bodies.clear();
-  if (joints.empty()) return;
-  scratch_.runs.clear(context_.states.size());
-  for (std::uint32_t i = 0; i < joints.size(); ++i) {
-    BodyJoint& joint = joints[i];
-    if (i + kAhead < joints.size()) {
-      const BodyJoint& next = joints[i + kAhead];
-      prefetch_slot(bodies, next.a);
-      prefetch_slot(bodies, next.b);
-    }
-    if (!is_active(joint)) continue;
-    scratch_.active.push_back(i);
-    if (joint.rows_sub_step != h) build_rows(joint, h);
-    joint.rows_sub_step = h;
-    fill(i);
+// Before the lane i of a run is read.
+void JointSteps::request(std::span<const JointLane> lanes, std::size_t i) const {
+  if (i + 2 * kAhead < lanes.size())
+    prefetch(context_.joints[lanes[i + 2 * kAhead].joint], kJointLines);
+  if (i + kAhead >= lanes.size()) return;
+  for (const std::uint32_t state : {lanes[i + kAhead].state_a, lanes[i + kAhead].state_b}) {
+    if (state != solve::kWorldState) prefetch_slot(context_.bodies, state - 1);
   }
+}
+
+template <class BLOCK>
+void JointSteps::fill(BLOCK& block, const JointRun<BLOCK>& run, std::size_t index) {
+  const JointRange range = run.lanes_of(index);
+  if (range.count < kLanes) {
+    block = {};  // empty lanes refer to kWorldState
+  } else {
+    block.force = {};
+    if constexpr (BLOCK::kOtherRows > 0) block.torque = {};
+  }
+  for (std::size_t i = 0; i < range.count; ++i) {
+    request(run.lanes, range.first + i);
+    fill_lane(block, static_cast<int>(i), run.lanes[range.first + i]);
+  }
+}
+
+void JointSteps::begin(std::size_t region) {
   if (empty()) return;
-  scratch_.motions.resize(context_.states.size(),
-                          solve::StepMotion{{0.0f, 0.0f, 0.0f, 1.0f}, {}, 0.0f});
-  for (std::uint32_t i = 0; i < bodies.size(); ++i) {
-    if (bodies[i].first_joint != kNone && joins_sub_steps(bodies[i]))
-      scratch_.joined_bodies.push_back(i);
-  }
-  prepare([](const auto& passes, const auto& run) { passes.load_inertias(run); },
-          [](const auto&, const auto&) {});
+  prepare(region, [&](const auto& passes, const auto& part, std::size_t first, const auto& run) {
+    for (std::size_t i = 0; i < part.count; ++i) fill(part.blocks[i], run, first + i);
+    passes.load_masses(part);
+    evaluate_rows(part);
+    return passes.prepare(part);
+  });
 }
 
 BodyPose pose_within_step(const Body& body, const solve::BodyState& state,
@@ -233,8 +244,14 @@ BodyPose JointSteps::pose_within_step(std::uint32_t body) const {
                               context_.start_displacements[body]);
 }
 
-// For rows that the SIMD passes do not evaluate.
-void JointSteps::evaluate_rows(solve::RowsBlock& block) {
+// Residuals and Jacobians that the SIMD passes do not evaluate.
+template <class Part>
+void JointSteps::evaluate_rows(const Part& part) {
+  if constexpr (std::is_same_v<Part, solve::JointPasses<solve::RowsBlock>::Run>) {
+    for (std::size_t i = 0; i < part.count; ++i) evaluate_block(part.blocks[i]);
+  }
+}
+void JointSteps::evaluate_block(solve::RowsBlock& block) {
   JointEvaluation found;
   for (int lane = 0; lane < kLanes; ++lane) {
     if (block.a.lane[lane] + block.b.lane[lane] == 2 * solve::kWorldState) return;  // empty
@@ -254,41 +271,47 @@ void JointSteps::evaluate_rows(solve::RowsBlock& block) {
   }
 }
 
-// Calls before and after with the passes and blocks that it prepares. Until it returns, some_far of
-// a run is that of the last time: `after` may not read it.
-template <class Before, class After>
-void JointSteps::prepare(const Before& before, const After& after) {
-  context_.workers.in_parallel(
-      scratch_.joined_bodies.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
-        solve::joint_passes().find_step_motions(
-            context_.states.data(), context_.start_displacements.data(),
-            scratch_.joined_bodies.data() + begin, end - begin, scratch_.motions.data());
-      });
+// Calls f(passes, part, its first block, run), which prepares a part and returns whether some of
+// its joints are far.
+template <class F>
+void JointSteps::prepare(std::size_t region, const F& f) {
+  const std::span<const std::uint32_t> bodies = scratch_.runs.bodies_of(region);
+  const auto find_motions = [&](std::size_t begin, std::size_t end) {
+    solve::joint_passes().find_step_motions(
+        context_.states.data(), context_.start_displacements.data(), bodies.data() + begin,
+        end - begin, scratch_.motions.data());
+  };
+  if (region != solve::kSharedRegion) {
+    find_motions(0, bodies.size());
+  } else {
+    context_.workers.in_parallel(bodies.size(), kBodyGrain, find_motions);
+  }
   std::atomic<bool> far = false;
-  for_runs([&](const auto& passes, const auto& run) {
-    before(passes, run);
-    if constexpr (std::is_same_v<decltype(run.blocks), solve::RowsBlock*>) {
-      for (std::size_t i = 0; i < run.count; ++i) evaluate_rows(run.blocks[i]);
-    }
-    if (passes.prepare(run)) far.store(true, std::memory_order_relaxed);
-    after(passes, run);
+  for_parts_of(region, [&](const auto&... of) {
+    if (f(of...)) far.store(true, std::memory_order_relaxed);
   });
-  some_are_far_ = far;
+  scratch_.some_far[region] = far ? 1 : 0;
 }
-void JointSteps::warm_start() {
+void JointSteps::warm_start(std::size_t region) {
   if (empty()) return;
-  for_runs([](const auto& passes, const auto& run) { passes.warm_start(run); });
-}
-void JointSteps::solve(int iteration) {
-  if (empty()) return;
-  for_runs([&](const auto& passes, const auto& run) {
-    (iteration == 0 ? passes.solve_first : passes.solve_again)(run, static_cast<float>(h_));
+  for_parts_of(region, [](const auto& passes, const auto& part, std::size_t, const auto&) {
+    passes.warm_start(part);
   });
 }
-void JointSteps::prepare_and_relax() {
+void JointSteps::solve(std::size_t region, int iteration) {
   if (empty()) return;
-  prepare([](const auto&, const auto&) {},
-          [&](const auto& passes, const auto& run) { passes.relax(run, static_cast<float>(h_)); });
+  for_parts_of(region, [&](const auto& passes, const auto& part, std::size_t, const auto&) {
+    (iteration == 0 ? passes.solve_first : passes.solve_again)(part, static_cast<float>(h_));
+  });
+}
+void JointSteps::prepare_and_relax(std::size_t region) {
+  if (empty()) return;
+  prepare(region, [&](const auto& passes, const auto& part, std::size_t, const auto&) {
+    evaluate_rows(part);
+    const bool some_far = passes.prepare(part);
+    passes.relax(part, static_cast<float>(h_));
+    return some_far;
+  });
 }
 
 // Whether a hard constraint of the joint is open by more than kMaxJointSeparation times the smaller
@@ -322,6 +345,7 @@ bool JointSteps::is_far_open(const BodyJoint& joint, const BLOCK& block, int lan
     if (is_open(norm(T_b * joint.T_b_joint.position() - T_a * joint.T_a_joint.position())))
       return true;
   }
+  if constexpr (BLOCK::kOtherRows == 0) return false;
   for (int i = kPoint; i < joint.locked; ++i) {
     const BodyJointRow& row = joint.rows[i];
     const bool linear = joint.spec.form == JointSpec::Form::distance || row.slot < solve::kSwingX;
@@ -332,27 +356,33 @@ bool JointSteps::is_far_open(const BodyJoint& joint, const BLOCK& block, int lan
   return false;
 }
 
-bool JointSteps::end(double dt) {
-  if (empty()) return false;
-  bool some_are_far_open = false;
-  scratch_.runs.for_each([&](const auto& run) {
-    const std::uint32_t each = run.alone ? 1 : std::uint32_t{kLanes};
-    for (std::uint32_t i = 0; i < run.lanes; ++i) {
-      const auto& block = run.blocks[i / each];
-      const int lane = static_cast<int>(i % each);
-      BodyJoint& joint = context_.joints[block.joint.lane[lane]];
-      take_rows(block, lane, joint);
-      if (some_are_far_ && !some_are_far_open) some_are_far_open = is_far_open(joint, block, lane);
-      joint.force *= 1.0 / dt;
-      joint.torque *= 1.0 / dt;
-      if (!in_range(joint.force) || !in_range(joint.torque)) joint.force = joint.torque = {};
-      if constexpr (std::is_same_v<decltype(block.axes), solve::AxesPart>) {
-        const double rotated = revolutions_of(joint.rotated[0]) + get(block.axes.twist, lane);
-        if (in_range(rotated)) joint.rotated[0] = rotated;  // else the bodies are restored
+template <class BLOCK>
+void JointSteps::take(const BLOCK& block, int lane, double dt, bool some_far) {
+  BodyJoint& joint = context_.joints[block.joint.lane[lane]];
+  take_rows(block, lane, joint);
+  if (some_far && !some_are_far_open_ && is_far_open(joint, block, lane)) some_are_far_open_ = true;
+  joint.force *= 1.0 / dt;
+  joint.torque *= 1.0 / dt;
+  if (!in_range(joint.force) || !in_range(joint.torque)) joint.force = joint.torque = {};
+  if constexpr (std::is_same_v<decltype(block.axes), solve::AxesPart>) {
+    const double rotated = revolutions_of(joint.rotated[0]) + get(block.axes.twist, lane);
+    if (in_range(rotated)) joint.rotated[0] = rotated;  // else the bodies are restored
+  }
+}
+
+void JointSteps::end(std::size_t region, double dt) {
+  if (empty()) return;
+  const bool some_far = scratch_.some_far[region] != 0;
+  for_parts_of(region, [&](const auto&, const auto& part, std::size_t first, const auto& run) {
+    for (std::size_t block = 0; block < part.count; ++block) {
+      const JointRange range = run.lanes_of(first + block);
+      for (std::size_t i = 0; i < range.count; ++i) {
+        if (range.first + i + kAhead < run.lanes.size())
+          prefetch(context_.joints[run.lanes[range.first + i + kAhead].joint], kImpulseLines);
+        take(part.blocks[block], static_cast<int>(i), dt, some_far);
       }
     }
   });
-  return some_are_far_open;
 }
 
 }  // namespace vp

@@ -1,8 +1,8 @@
-// Joints between bodies: their part of the sub-steps of a step. The constructor copies impulses
-// into the blocks; end() copies them back.
+// Joints between bodies: their part of the sub-steps of a step.
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -21,6 +21,7 @@ namespace vp {
 struct JointContext {
   const Bodies& bodies;
   Joints& joints;
+  std::size_t regions;  // with kSharedRegion
   std::span<solve::BodyState> states;
   std::span<const std::array<float, 6>> start_displacements;  // of each body
   const Workers& workers;
@@ -30,8 +31,8 @@ struct JointContext {
 // Keeps its capacity between steps.
 struct JointScratch {
   JointRuns runs;
-  std::vector<std::uint32_t> active, joined_bodies;
   solve::LargeVector<solve::StepMotion> motions;  // by index of the state, for bodies with joints
+  std::vector<std::uint8_t> some_far;             // of each region: JointPasses::Run::some_far
 };
 
 // Data of the sub-steps of a step. Keeps its capacity between steps.
@@ -52,33 +53,49 @@ struct SubStepScratch {
 BodyPose pose_within_step(const Body& body, const solve::BodyState& state,
                           const std::array<float, 6>& start_displacement);
 
+// All operations on a region work on the joints and bodies of that region alone, so regions other
+// than kSharedRegion may run in parallel.
 class JointSteps {
  public:
+  // h: the length of a sub-step.
   JointSteps(const JointContext& context, JointScratch& scratch, double h);
-  bool empty() const { return scratch_.active.empty(); }
-  void warm_start();
-  void solve(int iteration);
+  bool empty() const { return is_empty_; }
+  // Copies the joints into blocks and prepares them.
+  void begin(std::size_t region);
+  void warm_start(std::size_t region);
+  void solve(std::size_t region, int iteration);
   // After the bodies have moved.
-  void prepare_and_relax();
-  // Copies the impulses back. Returns whether any joint is far open.
-  bool end(double dt);
+  void prepare_and_relax(std::size_t region);
+  // Copies the impulses back to the joints.
+  void end(std::size_t region, double dt);
+  // After end(): whether any joint is far open.
+  bool some_are_far_open() const { return some_are_far_open_; }
 
  private:
   bool is_active(const BodyJoint& joint) const;
+  void request(std::span<const JointLane> lanes, std::size_t i) const;
   BodyPose pose_within_step(std::uint32_t body) const;
   template <class F>
-  void for_runs(const F& f);
-  template <class Before, class After>
-  void prepare(const Before& before, const After& after);
-  void fill(std::uint32_t joint);
-  void evaluate_rows(solve::RowsBlock& block);
+  void for_parts_of(std::size_t region, const F& f);
+  template <class F>
+  void prepare(std::size_t region, const F& f);
+  template <class BLOCK>
+  void fill(BLOCK& block, const JointRun<BLOCK>& run, std::size_t index);
+  template <class BLOCK>
+  void fill_lane(BLOCK& block, int lane, const JointLane& from);
+  template <class Part>
+  void evaluate_rows(const Part& part);
+  void evaluate_block(solve::RowsBlock& block);
+  template <class BLOCK>
+  void take(const BLOCK& block, int lane, double dt, bool some_far);
   template <class BLOCK>
   bool is_far_open(const BodyJoint& joint, const BLOCK& block, int lane) const;
 
   const JointContext context_;
   JointScratch& scratch_;
   const double h_;
-  bool some_are_far_ = false;  // JointPasses::Run::some_far
+  bool is_empty_ = true;
+  std::atomic<bool> some_are_far_open_ = false;
 };
 
 }  // namespace vp

@@ -190,7 +190,7 @@ JointForce World::joint_force(JointId id) const {
 
 void forget_joints(const Body& body, Joints& joints) {
   for (std::uint32_t e = body.first_joint; e != kNone; e = joints[e / 2].next[e % 2]) {
-    for (BodyJointRow& row : joints[e / 2].rows) row.impulse = row.stop = 0.0;
+    joints[e / 2].forget_impulses();
   }
 }
 

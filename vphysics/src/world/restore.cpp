@@ -137,8 +137,8 @@ void adopt(BodyJoint& joint, const JointState& state) {
     BodyJointRow& row = joint.rows[joint.count++];
     row = {};
     row.slot = static_cast<std::uint8_t>(i);
-    row.impulse = state.impulse[i];
-    row.stop = state.stop[i];
+    joint.impulse[i] = state.impulse[i];
+    joint.stop[i] = state.stop[i];
   }
 }
 

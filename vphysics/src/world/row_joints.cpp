@@ -70,9 +70,9 @@ class RowsOfJoint {
     pair.row = static_cast<std::uint32_t>(i);
     pair.of_stop = of_stop;
     pair.anchor = anchor_;
-    const BodyJointRow& from = joint_.rows[i];
     if (step_.with_memory()) {
-      row.impulse = std::clamp(step_.fraction * (of_stop ? from.stop : from.impulse), lower, upper);
+      const double before = of_stop ? joint_.stop[i] : joint_.impulse[i];
+      row.impulse = std::clamp(step_.fraction * before, lower, upper);
     }
     return {row, pair};
   }
@@ -187,7 +187,7 @@ void add_rows(BodyJoint& joint, std::uint32_t index, const RowEnd& a, const RowE
   RowsOfJoint added(joint, index, step, anchor, measure, speeds, curves, rows, pairs);
   for (int i = 0; i < joint.count; ++i) added.add(i);
   if (!step.with_memory()) return;
-  for (BodyJointRow& row : joint.rows) row.impulse = row.stop = 0.0;
+  joint.forget_impulses();
 }
 
 void take_back(std::span<const solve::JointRow> rows, std::span<const solve::JointPair> pairs,
@@ -203,8 +203,7 @@ void take_back(std::span<const solve::JointRow> rows, std::span<const solve::Joi
     joint.force += force;
     joint.torque += torque;
     if (!step.with_memory()) continue;
-    BodyJointRow& to = joint.rows[pair.row];
-    (pair.of_stop ? to.stop : to.impulse) += full_impulse;
+    (pair.of_stop ? joint.stop : joint.impulse)[pair.row] += full_impulse;
   }
 }
 

@@ -93,9 +93,8 @@ void put(Sink& sink, const BodyJoint& joint) {
   }
   double impulse[6] = {}, stop[6] = {};
   for (int i = 0; i < joint.count; ++i) {
-    const BodyJointRow& row = joint.rows[i];
-    impulse[row.slot] = row.impulse;
-    stop[row.slot] = row.stop;
+    impulse[joint.rows[i].slot] = joint.impulse[i];
+    stop[joint.rows[i].slot] = joint.stop[i];
   }
   for (int i = 0; i < 6; ++i) {
     if (joint.spec.form == JointSpec::Form::axes) {

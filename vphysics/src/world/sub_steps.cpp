@@ -42,10 +42,8 @@ void rescale_impulses(solve::ContactGraph& graph, Joints& joints, double ratio) 
   }
   for (BodyJoint& joint : joints) {
     if (joint.in_rows) continue;
-    for (BodyJointRow& row : joint.rows) {
-      row.impulse *= ratio;
-      row.stop *= ratio;
-    }
+    for (double& impulse : joint.impulse) impulse *= ratio;
+    for (double& impulse : joint.stop) impulse *= ratio;
   }
 }
 
@@ -130,10 +128,6 @@ class SubSteps {
       if (p.relax(part, soft)) some_too_deep_.store(true, std::memory_order_relaxed);
     });
   }
-  void move_and_relax(std::size_t region, bool last) {
-    move(region);
-    relax(region, last);
-  }
   bool has_deep_contacts() const { return some_too_deep_; }
   // Call it after the first sub-step: from then on the recorded impulses accumulate.
   void accumulate_impulses() { soft_.keeps_load = 1.0f; }
@@ -208,16 +202,22 @@ void World::Impl::take_sub_steps(double dt, int n) {
                   .fastest_shift = static_cast<float>(kMaxCorrectionSpeed * speed_unit),
                   .h = h,
                   .idle_speed = static_cast<float>(speed_unit)});
-  JointSteps joint_steps(
-      {bodies, joints, body_states, sub_step.start_displacements, workers, speed_unit},
-      sub_step.joints, h);
+  JointSteps joint_steps({bodies, joints, contact_store.graph.regions(), body_states,
+                          sub_step.start_displacements, workers, speed_unit},
+                         sub_step.joints, h);
   const bool links = !link_contacts.empty();
   if (links) link_contacts.begin_sub_steps(dt, n);
-  const bool contacts_alone = !links && joint_steps.empty();
   // The next sub-step applies the velocity changes by the contacts of the last one again, body by
   // body. Not if joints or links take part, which rotate within the step.
-  const bool repeats = contacts_alone && n > 1;
-  runs.everywhere([&](std::size_t region) { steps.load_inertias(region); });
+  const bool repeats = !links && joint_steps.empty() && n > 1;
+  const auto iterate = [&](std::size_t region, int iteration) {
+    joint_steps.solve(region, iteration);
+    steps.solve_contacts(region, iteration);
+  };
+  runs.everywhere([&](std::size_t region) {
+    steps.load_inertias(region);
+    joint_steps.begin(region);
+  });
   for (int k = 0; k < n; ++k) {
     const bool last = k == n - 1;
     runs.everywhere([&](std::size_t region) { steps.accelerate(region, repeats && k > 0); });
@@ -236,40 +236,41 @@ void World::Impl::take_sub_steps(double dt, int n) {
       warm_starts |= changed.has_old_slots;
     }
     if (links) link_contacts.begin_sub_step(h);
-    joint_steps.warm_start();
+    runs.everywhere([&](std::size_t region) { joint_steps.warm_start(region); });
     if (repeats) {
       runs.everywhere([&](std::size_t region) {
         warm_starts ? steps.keep_velocities(region) : steps.repeat_velocity_changes(region);
       });
     }
     if (warm_starts) runs.everywhere([&](std::size_t region) { steps.warm_start(region); });
-    if (contacts_alone) {
-      // All consecutive operations on one region are done at once, so that its contacts are read
-      // from memory once, except by the restitution pass and the first warm start.
-      for (int iteration = 0; iteration < kIterations; ++iteration)
-        steps.solve_contacts(solve::kSharedRegion, iteration);
-      runs.for_regions([&](std::size_t region) {
-        for (int iteration = 0; iteration < kIterations; ++iteration)
-          steps.solve_contacts(region, iteration);
-        steps.move_and_relax(region, last);
-      });
-      steps.move_and_relax(solve::kSharedRegion, last);
-    } else {
+    const auto move_and_relax = [&](std::size_t region) {
+      steps.move(region);
+      joint_steps.prepare_and_relax(region);
+      steps.relax(region, last);
+    };
+    if (links) {
       for (int iteration = 0; iteration < kIterations; ++iteration) {
-        joint_steps.solve(iteration);
-        runs.everywhere([&](std::size_t region) { steps.solve_contacts(region, iteration); });
-        if (links) link_contacts.iterate(h);
+        runs.everywhere([&](std::size_t region) { iterate(region, iteration); });
+        link_contacts.iterate(h);
       }
-      if (links) link_contacts.move(h);
-      runs.everywhere([&](std::size_t region) { steps.move(region); });
-      joint_steps.prepare_and_relax();
-      runs.everywhere([&](std::size_t region) { steps.relax(region, last); });
-      if (links) link_contacts.relax(h);
+      link_contacts.move(h);
+      runs.everywhere(move_and_relax);
+      link_contacts.relax(h);
+    } else {
+      // All consecutive operations on one region are done at once, so that its contacts and joints
+      // are read from memory once, except by the restitution pass and the warm start.
+      for (int iteration = 0; iteration < kIterations; ++iteration)
+        iterate(solve::kSharedRegion, iteration);
+      runs.for_regions([&](std::size_t region) {
+        for (int iteration = 0; iteration < kIterations; ++iteration) iterate(region, iteration);
+        move_and_relax(region);
+      });
+      move_and_relax(solve::kSharedRegion);
     }
     steps.accumulate_impulses();
   }
-  const bool some_are_far_open = joint_steps.end(dt);
-  if (steps.has_deep_contacts() || some_are_far_open) position_error_now = true;
+  runs.everywhere([&](std::size_t region) { joint_steps.end(region, dt); });
+  if (steps.has_deep_contacts() || joint_steps.some_are_far_open()) position_error_now = true;
 }
 
 }  // namespace vp
