@@ -206,6 +206,31 @@ TEST(Regions, HoldJointsAsOnePieceDoes) {
   EXPECT_LT(gap[1], 1.1 * gap[0]);
 }
 
+// Chains whose joints alternate between a region and the space between regions come to rest.
+TEST(Regions, HoldChainsOfAFewLinksEach) {
+  for (const int region_bodies : {1, 2, 3}) {
+    for (const int links : {8, 16, 31, 63}) {
+      World world = world_of(region_bodies);
+      BodyId last = add_anchor(world);
+      std::vector<BodyId> chain;
+      for (int i = 1; i <= links; ++i) {
+        const BodyId link =
+            add_dynamic(world, {.shape = Sphere{0.1}, .pose = SE3(Vec3{0, 0, -0.4 * i})});
+        JointDesc desc;
+        desc.kind = BallSocket{};
+        desc.T_a_joint = i == 1 ? SE3{} : SE3(Vec3{0, 0, -0.2});
+        desc.T_b_joint = i == 1 ? SE3(Vec3{0, 0, 0.4}) : SE3(Vec3{0, 0, 0.2});
+        must(world.create_joint(last, link, desc));
+        chain.push_back(last = link);
+      }
+      for (int i = 0; i < 600; ++i) must(world.step(1.0 / 60));
+      double fastest = 0.0;
+      for (const BodyId link : chain) fastest = std::max(fastest, norm(world.velocity(link).v));
+      EXPECT_LT(fastest, 0.05) << region_bodies << ' ' << links;
+    }
+  }
+}
+
 // An impact passes through a row of equal balls, from region to region, within a step. The last
 // ball leaves with the speed of the first.
 TEST(Regions, PassABlowOn) {

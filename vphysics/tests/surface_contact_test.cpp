@@ -89,6 +89,20 @@ TEST(CornerOverFace, AgreesWithTheGeneralSearch) {
   EXPECT_GT(yes, 1000);
   EXPECT_GT(no, 10000);
 }
+// Faces merged with a tolerance do not fill their planes.
+TEST(CornerOverFace, IsNotUsedForHullsWithMergedFaces) {
+  Random random(53);
+  std::vector<Vec3> points;
+  for (int i = 0; i < 60; ++i) points.push_back(0.25 * random.direction());
+  for (const double tolerance : {0.0, 1e-2}) {
+    const ConvexHull hull = ConvexHull::of(points, {.tolerance = tolerance}).value();
+    const bool few = hull.faces().size() <= 64;
+    EXPECT_EQ(has_few_flat_faces(collide::make_geometry(hull)), few && tolerance == 0.0);
+  }
+  EXPECT_TRUE(has_few_flat_faces(collide::make_geometry(rock(random, 0.25, 30))));
+  EXPECT_FALSE(has_few_flat_faces(collide::make_geometry(rock(random, 0.25, 200))));
+  EXPECT_FALSE(has_few_flat_faces(collide::make_geometry(Capsule{0.1, 0.2})));
+}
 // Beyond the limit only that is told.
 TEST(CornerOverFace, StopsAtTheLimit) {
   const Geometry box = collide::make_geometry(Box{{1, 1, 1}});

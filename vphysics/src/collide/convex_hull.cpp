@@ -141,6 +141,10 @@ void set_faces(HullData& hull, std::span<const Loop> loops) {
     for (const Vec3& v : hull.vertices) face.offset = std::max(face.offset, dot(face.normal, v));
     face.vertices = std::span(hull.corners).subspan(first, loop.size());
     first += loop.size();
+    for (const std::uint16_t v : face.vertices) {
+      hull.max_face_depth =
+          std::max(hull.max_face_depth, face.offset - dot(face.normal, hull.vertices[v]));
+    }
     hull.faces.push_back(face);
   }
 }

@@ -6,6 +6,14 @@
 
 namespace vp::collide {
 
+bool has_few_flat_faces(const Geometry& shape) {
+  constexpr std::size_t kFew = 64;
+  constexpr double kFlat = 1e-6;  // fraction of the radius
+  if (shape.kind == Kind::box) return true;
+  return shape.kind == Kind::hull && shape.hull->faces.size() <= kFew &&
+         shape.hull->max_face_depth <= kFlat * shape.hull->radius;
+}
+
 std::optional<GjkResult> corner_over_face(const Vec3 p[3], const Polytope& b, const SE3& T_a_b,
                                           double limit) {
   const Vec3 corners[3] = {inverse_times(T_a_b, p[0]), inverse_times(T_a_b, p[1]),

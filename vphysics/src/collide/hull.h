@@ -29,6 +29,9 @@ struct HullData {
   std::vector<std::uint16_t> corner_edges, first_corner;
   // Faces and neighbours of vertex v: the range from first_around[v] to first_around[v + 1].
   std::vector<std::uint16_t> faces_around, neighbours, first_around;
+  // Of a corner behind the plane of its face, the maximum. More than a rounding error only if faces
+  // have been merged (HullOptions::tolerance).
+  double max_face_depth = 0.0;
   Vec3 lower, upper;  // bounds
   Vec3 centre;        // of mass
   double radius;      // of the bounding sphere about centre

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "collide/bounds.h"
+#include "collide/corner_over_face.h"
 #include "collide/support.h"
 #include "collide/triangle_cull.h"
 
@@ -136,7 +137,7 @@ bool Pruning::resolves(const Contact& shorter, const Contact& longer) {
   if (l.active_part != TriangleContact::kFace) {
     return !overlaps_triangle(surface_.triangle(longer.triangle), moved);
   }
-  // A face continues over inactive edges: none of the triangles in other directions may still
+  // A face continues over inactive edges: none of the triangles along its normal may still
   // overlap. The planes of most separate them from the shape.
   if (scratch_.planes.empty()) find_planes();
   const auto still_overlaps = [&](std::size_t i) {
@@ -368,7 +369,7 @@ void collide_surface(const Surface& surface, const Geometry& shape, const SE3& T
   const double size = core_extent(shape) + core_radius(shape);
   scratch.ensure_capacity();
   std::optional<PolytopeOf> polytope;
-  if (is_polytope(shape)) polytope.emplace(shape);
+  if (has_few_flat_faces(shape)) polytope.emplace(shape);
   const ShapeOnSurface on{shape, T, polytope ? &polytope->view() : nullptr};
   find_contacts(surface, on, margin, scratch);
   if (scratch.contacts.size() > 1) Pruning(surface, on, size, scratch).prune();

@@ -27,7 +27,7 @@ struct TriangleContact {
   bool rough = false;  // CorePair::rough
 };
 
-// A convex shape that is tested with many triangles. `faces`: of a box or a hull, else null.
+// A convex shape that is tested with many triangles. `faces`: if has_few_flat_faces(), else null.
 struct ShapeOnSurface {
   const Geometry& shape;
   const SE3& T_surface_shape;

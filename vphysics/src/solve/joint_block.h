@@ -12,9 +12,9 @@
 // then the locked rows by back substitution.
 //
 // All joints of a block have the same rows in the same order: first the three of a locked point,
-// along the world's axes, then other locked rows, then bounded ones. No body except the fixed world
-// is in two slots of a block. A block lives for one step: its impulses come from the world's joints
-// and are written back to them.
+// along the world's axes, then other locked rows, then bounded ones. No body that an impulse
+// moves is in two slots of a block. The contents of a block are those of one step: its impulses
+// come from the world's joints and are written back to them.
 //
 // Source: Catto, Soft Constraints, GDC 2011; Golub and Van Loan, Matrix Computations, 4.1.
 #pragma once

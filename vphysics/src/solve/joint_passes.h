@@ -394,7 +394,7 @@ void warm_start_lanes(JointLanes<W, B, kRows, kLocked>& c) {
 }
 
 // An iteration with bias velocities. Iterations after the first of a sub-step skip converged
-// joints. kSomeFar: some joints of the world have errors too large to be corrected at their full
+// joints. kSomeFar: some joints of the region have errors too large to be corrected at their full
 // rate.
 template <bool kSomeFar, int W, class B, int kRows, int kLocked>
 void solve_lanes(JointLanes<W, B, kRows, kLocked>& c, float h, float max_bias_velocity,

@@ -7,7 +7,14 @@
 
 namespace vp {
 
-void JointRuns::reserve(std::size_t joints) {
+void JointRuns::reserve(std::size_t joints, std::size_t regions) {
+  runs_.reserve(joints);
+  added_runs_.reserve(joints);
+  order_.reserve(joints);
+  ends_.reserve(std::max(joints, regions));
+  last_run_.reserve(regions);
+  first_run_.reserve(regions + 1);
+  first_body_.reserve(regions + 1);
   added_.reserve(joints);
   lanes_.reserve(joints);
   joined_.reserve(2 * joints);
@@ -88,13 +95,14 @@ void JointRuns::sort_runs() {
     end += run.blocks();
   }
   std::partial_sum(first_run_.begin(), first_run_.end(), first_run_.begin());
-  const auto enlarge = [](auto& of, std::uint32_t count) {
+  const auto enlarge = [&]<class BLOCK>(solve::LargeVector<BLOCK>& of, JointBlockKind kind) {
+    const std::uint32_t count = blocks[static_cast<int>(kind)];
     if (of.size() < count) of.resize(count);
   };
-  enlarge(std::get<0>(blocks_), blocks[0]);
-  enlarge(std::get<1>(blocks_), blocks[1]);
-  enlarge(std::get<2>(blocks_), blocks[2]);
-  enlarge(std::get<3>(blocks_), blocks[3]);
+  enlarge(std::get<solve::LargeVector<solve::BallBlock>>(blocks_), JointBlockKind::ball);
+  enlarge(std::get<solve::LargeVector<solve::AxesBlock>>(blocks_), JointBlockKind::axes);
+  enlarge(std::get<solve::LargeVector<solve::FrameBlock>>(blocks_), JointBlockKind::frames);
+  enlarge(std::get<solve::LargeVector<solve::RowsBlock>>(blocks_), JointBlockKind::rows);
 }
 
 void JointRuns::sort_lanes() {

@@ -48,9 +48,9 @@ class JointRuns {
   using End = solve::ContactGraph::End;
   static constexpr int kColours = 64, kLastColour = kColours - 1;
 
-  // For that many joints, so that a step in which more of them wake up allocates nothing but
+  // For at most that many, so that a step in which more joints wake up allocates nothing but
   // blocks.
-  void reserve(std::size_t joints);
+  void reserve(std::size_t joints, std::size_t regions);
   // Removes all joints. states: the number of body states.
   void clear(std::size_t states, std::size_t regions);
   // Precondition: at least one of the two bodies moves.
@@ -70,6 +70,7 @@ class JointRuns {
       if (run.kind == JointBlockKind::rows) f(run_of<solve::RowsBlock>(run));
     }
   }
+  bool has_joints(std::size_t region) const { return runs_in(region) > 0; }
   // The bodies of a region that have joints, except the fixed world.
   std::span<const std::uint32_t> bodies_of(std::size_t region) const {
     return std::span(bodies_).subspan(first_body_[region],

@@ -117,8 +117,10 @@ const auto& passes_for(std::span<solve::RowsBlock>) {
 
 // Whether the joint is in a block. Joints of sleeping bodies are not, and keep their impulses.
 bool JointSteps::is_active(const BodyJoint& joint) const {
-  const Body &a = context_.bodies[joint.a], &b = context_.bodies[joint.b];
-  return joint.alive && !joint.in_rows && !(is_still(a) && is_still(b));
+  const auto moves = [&](std::uint32_t body) {
+    return context_.bodies[body].motion == Motion::dynamic && !context_.bodies[body].asleep;
+  };
+  return joint.alive && !joint.in_rows && (moves(joint.a) || moves(joint.b));
 }
 
 JointSteps::JointSteps(const JointContext& context, JointScratch& scratch, double h)

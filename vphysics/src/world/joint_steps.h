@@ -53,13 +53,18 @@ struct SubStepScratch {
 BodyPose pose_within_step(const Body& body, const solve::BodyState& state,
                           const std::array<float, 6>& start_displacement);
 
-// All operations on a region work on the joints and bodies of that region alone, so regions other
-// than kSharedRegion may run in parallel.
+// An operation on a region writes the joints and bodies of that region alone, so regions other than
+// kSharedRegion may run in parallel. begin() and prepare_and_relax() of all of them come before
+// that of kSharedRegion, whose joints read how the bodies of others have moved.
 class JointSteps {
  public:
   // h: the length of a sub-step.
   JointSteps(const JointContext& context, JointScratch& scratch, double h);
   bool empty() const { return is_empty_; }
+  // Whether a joint is in kSharedRegion.
+  bool connect_regions() const {
+    return !is_empty_ && scratch_.runs.has_joints(solve::kSharedRegion);
+  }
   // Copies the joints into blocks and prepares them.
   void begin(std::size_t region);
   void warm_start(std::size_t region);

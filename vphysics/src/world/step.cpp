@@ -64,7 +64,7 @@ void World::Impl::begin_step(double dt) {
     row_solve.begin_step(capacity);
     impacts.begin_step(dt, capacity);
   }
-  sub_step.joints.runs.reserve(joints.size());
+  sub_step.joints.runs.reserve(joints.size(), contact_store.graph.regions());
   events.report_destroyed(colliders);
   finds_contacts = contact_search.is_needed();
   if (lists.some_sub_stepped) load_states(dt);
