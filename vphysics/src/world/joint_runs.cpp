@@ -69,7 +69,16 @@ void JointRuns::add(JointBlockKind kind, const solve::JointForm& form, std::uint
   added_.push_back({{joint, a.state, b.state}, run});
 }
 
+// If a joint connects regions, all joints are in kSharedRegion.
+void JointRuns::join_regions() {
+  const auto connects = [](const Run& run) { return run.region == solve::kSharedRegion; };
+  if (std::none_of(added_runs_.begin(), added_runs_.end(), connects)) return;
+  for (Run& run : added_runs_) run.region = solve::kSharedRegion;
+  for (JoinedBody& joined : joined_) joined.region = solve::kSharedRegion;
+}
+
 void JointRuns::lay_out() {
+  join_regions();
   sort_runs();
   sort_lanes();
   sort_bodies();

@@ -1,8 +1,9 @@
 // The joints of a step in blocks of SIMD lanes, sorted by region, in a region by colour, and in a
 // colour by form. No two joints of a colour share a body that moves, and no two regions share a
-// body (world/regions.h): joints between regions are in kSharedRegion. The blocks depend only on
-// which joints take part, on their order and on the regions of their bodies, so the order of
-// solving is a function of the state.
+// body (world/regions.h). If a joint connects two regions, all joints are in kSharedRegion: solved
+// region by region, chains that cross from one to the other would gain energy. The blocks depend
+// only on which joints take part, on their order and on the regions of their bodies, so the order
+// of solving is a function of the state.
 #pragma once
 
 #include <algorithm>
@@ -111,6 +112,7 @@ class JointRuns {
   }
   int colour_for(const End& a, const End& b);
   void note_body(const End& end);
+  void join_regions();
   void sort_runs();
   void sort_lanes();
   void sort_bodies();

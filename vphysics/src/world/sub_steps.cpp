@@ -210,14 +210,8 @@ void World::Impl::take_sub_steps(double dt, int n) {
   // The next sub-step applies the velocity changes by the contacts of the last one again, body by
   // body. Not if joints or links take part, which rotate within the step.
   const bool repeats = !links && joint_steps.empty() && n > 1;
-  // Regions take turns in each iteration if hard constraints connect them. If joints between
-  // regions were solved only once before the regions, a chain that changes region every two links
-  // would gain energy. Contacts are soft enough.
+  // All regions take turns in each iteration if links or joints connect them.
   const bool takes_turns = links || joint_steps.connect_regions();
-  const auto iterate = [&](std::size_t region, int iteration) {
-    joint_steps.solve(region, iteration);
-    steps.solve_contacts(region, iteration);
-  };
   runs.everywhere([&](std::size_t region) {
     steps.load_inertias(region);
     joint_steps.begin(region);
@@ -247,26 +241,34 @@ void World::Impl::take_sub_steps(double dt, int n) {
       });
     }
     if (warm_starts) runs.everywhere([&](std::size_t region) { steps.warm_start(region); });
-    const auto move_and_relax = [&](std::size_t region) {
-      steps.move(region);
-      joint_steps.prepare_and_relax(region);
-      steps.relax(region, last);
-    };
     if (takes_turns) {
       for (int iteration = 0; iteration < kIterations; ++iteration) {
-        runs.everywhere([&](std::size_t region) { iterate(region, iteration); });
+        runs.everywhere([&](std::size_t region) { joint_steps.solve(region, iteration); });
+        runs.everywhere([&](std::size_t region) { steps.solve_contacts(region, iteration); });
         if (links) link_contacts.iterate(h);
       }
       if (links) link_contacts.move(h);
-      runs.everywhere(move_and_relax);
+      runs.everywhere([&](std::size_t region) { steps.move(region); });
+      runs.everywhere([&](std::size_t region) { joint_steps.prepare_and_relax(region); });
+      runs.everywhere([&](std::size_t region) { steps.relax(region, last); });
       if (links) link_contacts.relax(h);
     } else {
       // All consecutive operations on one region are done at once, so that its contacts and joints
       // are read from memory once, except by the restitution pass and the warm start.
-      for (int iteration = 0; iteration < kIterations; ++iteration)
-        iterate(solve::kSharedRegion, iteration);
+      const auto iterate = [&](std::size_t region) {
+        for (int iteration = 0; iteration < kIterations; ++iteration) {
+          joint_steps.solve(region, iteration);
+          steps.solve_contacts(region, iteration);
+        }
+      };
+      const auto move_and_relax = [&](std::size_t region) {
+        steps.move(region);
+        joint_steps.prepare_and_relax(region);
+        steps.relax(region, last);
+      };
+      iterate(solve::kSharedRegion);
       runs.for_regions([&](std::size_t region) {
-        for (int iteration = 0; iteration < kIterations; ++iteration) iterate(region, iteration);
+        iterate(region);
         move_and_relax(region);
       });
       move_and_relax(solve::kSharedRegion);
