@@ -526,6 +526,23 @@ TEST(Joints, WhatHoldsNothingLeavesABodyToFall) {
   }
 }
 
+// A sleeping body keeps the force of its joint, also to a kinematic body, which never sleeps.
+TEST(Joints, ASleepingBodyKeepsItsForce) {
+  for (const Motion motion : {Motion::fixed, Motion::kinematic}) {
+    WorldDesc settings;
+    settings.sleep_after = 0.5;
+    World world(settings);
+    BodyDesc desc;
+    desc.motion = motion;
+    const BodyId hook = must(world.create_body(desc));
+    const BodyId ball = add_mass(world, Inertia(2.0, Vec3{1, 1, 1}), SE3(Vec3{0, 0, -0.5}));
+    const JointId joint = join(world, hook, ball, BallSocket{}, SE3{});
+    for (int i = 0; i < 600; ++i) must(world.step(1.0 / 60));
+    ASSERT_TRUE(world.is_asleep(ball));
+    EXPECT_NEAR(norm(world.joint_force(joint).force), 2.0 * 9.81, 0.01);
+  }
+}
+
 // More joints than there are colours.
 TEST(Joints, AHubHoldsAHundredBalls) {
   World world;
