@@ -92,13 +92,16 @@ TEST(CornerOverFace, AgreesWithTheGeneralSearch) {
 // Faces merged with a tolerance do not fill their planes.
 TEST(CornerOverFace, IsNotUsedForHullsWithMergedFaces) {
   Random random(53);
-  std::vector<Vec3> points;
-  for (int i = 0; i < 60; ++i) points.push_back(0.25 * random.direction());
-  for (const double tolerance : {0.0, 1e-2}) {
-    const ConvexHull hull = ConvexHull::of(points, {.tolerance = tolerance}).value();
-    const bool few = hull.faces().size() <= 64;
-    EXPECT_EQ(has_few_flat_faces(collide::make_geometry(hull)), few && tolerance == 0.0);
-  }
+  std::vector<Vec3> corners;  // of a box, one of them moved into it
+  for (int i = 0; i < 8; ++i)
+    corners.push_back({i & 1 ? 0.25 : -0.25, i & 2 ? 0.25 : -0.25, i & 4 ? 0.25 : -0.25});
+  corners.back() -= Vec3{0, 0, 1e-3};
+  const ConvexHull exact = ConvexHull::of(corners, {.tolerance = 0.0}).value();
+  EXPECT_GT(exact.faces().size(), 6u);
+  EXPECT_TRUE(has_few_flat_faces(collide::make_geometry(exact)));
+  const ConvexHull merged = ConvexHull::of(corners, {.tolerance = 1e-2}).value();
+  EXPECT_EQ(merged.faces().size(), 6u);
+  EXPECT_FALSE(has_few_flat_faces(collide::make_geometry(merged)));
   EXPECT_TRUE(has_few_flat_faces(collide::make_geometry(rock(random, 0.25, 30))));
   EXPECT_FALSE(has_few_flat_faces(collide::make_geometry(rock(random, 0.25, 200))));
   EXPECT_FALSE(has_few_flat_faces(collide::make_geometry(Capsule{0.1, 0.2})));

@@ -22,6 +22,7 @@ void JointRuns::reserve(std::size_t joints, std::size_t regions) {
 }
 
 void JointRuns::clear(std::size_t states, std::size_t regions) {
+  connect_regions_ = false;
   added_runs_.clear();
   added_.clear();
   joined_.clear();
@@ -52,6 +53,8 @@ void JointRuns::add(JointBlockKind kind, const solve::JointForm& form, std::uint
                     const End& a, const End& b) {
   const auto colour = static_cast<std::uint8_t>(colour_for(a, b));
   const std::uint16_t region = solve::region_of(a, b);
+  const bool of_two = a.state != solve::kWorldState && b.state != solve::kWorldState;
+  connect_regions_ |= of_two && a.region != b.region;
   note_body(a);
   note_body(b);
   std::uint32_t& last = last_run_[region];
@@ -71,8 +74,7 @@ void JointRuns::add(JointBlockKind kind, const solve::JointForm& form, std::uint
 
 // If a joint connects regions, all joints are in kSharedRegion.
 void JointRuns::join_regions() {
-  const auto connects = [](const Run& run) { return run.region == solve::kSharedRegion; };
-  if (std::none_of(added_runs_.begin(), added_runs_.end(), connects)) return;
+  if (!connect_regions_) return;
   for (Run& run : added_runs_) run.region = solve::kSharedRegion;
   for (JoinedBody& joined : joined_) joined.region = solve::kSharedRegion;
 }

@@ -71,7 +71,9 @@ class JointRuns {
       if (run.kind == JointBlockKind::rows) f(run_of<solve::RowsBlock>(run));
     }
   }
-  bool has_joints(std::size_t region) const { return runs_in(region) > 0; }
+  // Whether a joint is between bodies of two regions. Bodies that are in no region yet count as
+  // one.
+  bool connect_regions() const { return connect_regions_; }
   // The bodies of a region that have joints, except the fixed world.
   std::span<const std::uint32_t> bodies_of(std::size_t region) const {
     return std::span(bodies_).subspan(first_body_[region],
@@ -117,6 +119,7 @@ class JointRuns {
   void sort_lanes();
   void sort_bodies();
 
+  bool connect_regions_ = false;
   // Blocks keep their contents, and memory, between steps.
   std::tuple<solve::LargeVector<solve::BallBlock>, solve::LargeVector<solve::AxesBlock>,
              solve::LargeVector<solve::FrameBlock>, solve::LargeVector<solve::RowsBlock>>

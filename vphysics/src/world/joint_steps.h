@@ -61,10 +61,7 @@ class JointSteps {
   // h: the length of a sub-step.
   JointSteps(const JointContext& context, JointScratch& scratch, double h);
   bool empty() const { return is_empty_; }
-  // Whether a joint is in kSharedRegion.
-  bool connect_regions() const {
-    return !is_empty_ && scratch_.runs.has_joints(solve::kSharedRegion);
-  }
+  bool connect_regions() const { return !is_empty_ && scratch_.runs.connect_regions(); }
   // Copies the joints into blocks and prepares them.
   void begin(std::size_t region);
   void warm_start(std::size_t region);
