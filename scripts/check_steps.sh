@@ -76,6 +76,12 @@ build_with_tests() {
 step_gcc() { build_with_tests release ON all; }
 step_clang() { build_with_tests clang OFF numbers_tests foosball-replay; }
 
+# A missing include, or a name that shadows another, is not found where sources are compiled together.
+step_alone() {
+  configure alone "$LOGS/alone-configure.log" -DSF_WERROR=ON -DSF_BUILD_TESTS=OFF -DSF_FIRMWARE=OFF
+  build alone "$LOGS/alone-build.log" all
+}
+
 # run_tests PRESET [ctest options]: under a virtual display; leaves the numbers for the totals.
 run_tests() {
   local preset=$1 junit=$PWD/$LOGS/$STEP.xml status=0
