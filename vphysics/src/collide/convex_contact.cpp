@@ -1,7 +1,9 @@
 #include "collide/convex_contact.h"
 
+#include <cmath>
 #include <limits>
 
+#include "collide/corner_over_face.h"
 #include "collide/epa.h"
 #include "collide/polytope.h"
 
@@ -96,6 +98,20 @@ void collide_polytopes(const ContactQuery& q, PairCache& cache, Manifold& m) {
   }
 }
 
+// Whether p is in the polytope; false for hulls of many or merged faces.
+bool holds(const Geometry& polytope, const Vec3& p) {
+  if (polytope.kind == Kind::box) {
+    const Vec3& half = polytope.half;
+    return std::fabs(p.x) <= half.x && std::fabs(p.y) <= half.y && std::fabs(p.z) <= half.z;
+  }
+  return has_few_flat_faces(polytope) &&
+         planes_behind(polytope.hull->scanned_faces, 0, p, p, 0.0) == 0;
+}
+// Proves that two overlap. p: a corner of each.
+bool one_has_corner_of_other(const CorePair& pair, const CorePoint& p) {
+  return holds(pair.a, p.b()) || holds(pair.b, inverse_times(pair.T_a_b, p.a));
+}
+
 bool is_direction(const Vec3& v) {
   const double n2 = dot(v, v);
   return n2 > 0.5 && n2 < 2.0;  // false for NaN
@@ -160,7 +176,12 @@ void collide_separated(const ContactQuery& q, const GjkResult& found, PairCache&
 void collide_convex(const CorePair& pair, double margin, PairCache& cache, Manifold& m) {
   const ContactQuery q(pair, margin);
   const Vec3 last = first_direction(pair, cache);
-  const GjkResult found = gjk(pair, last, margin + q.radii);
+  const CorePoint first = support_of(pair, last);
+  if (is_polytope(pair.a) && is_polytope(pair.b) && dot(last, first.w) >= 0.0 &&
+      one_has_corner_of_other(pair, first)) {
+    return collide_polytopes(q, cache, m);
+  }
+  const GjkResult found = gjk(pair, last, first, margin + q.radii);
   if (found.state != GjkResult::State::overlaps) {
     collide_separated(q, found, cache, m);
   } else if (is_polytope(pair.a) && is_polytope(pair.b)) {

@@ -227,14 +227,16 @@ void set_mass(HullData& hull) {
   hull.volume = m.volume;
   hull.centre = reference + (1.0 / m.volume) * m.first;
   hull.unit = Inertia(m.volume, m.first, about_centre).about(-reference);
-  if (hull.vertices.size() <= collide::kMaxSupport) {
-    const std::size_t n = hull.vertices.size(), lanes = collide::kSupportLanes;
-    for (std::size_t i = 0; i < (n + lanes - 1) / lanes * lanes; ++i) {
-      const Vec3& v = hull.vertices[i < n ? i : 0];
-      hull.support_x.push_back(v.x);
-      hull.support_y.push_back(v.y);
-      hull.support_z.push_back(v.z);
-    }
+  if (hull.vertices.size() <= collide::kMaxScanned) {
+    for (const Vec3& v : hull.vertices) hull.scanned_vertices.add(v);
+    while (!hull.scanned_vertices.is_whole()) hull.scanned_vertices.add(hull.vertices[0]);
+  }
+  collide::ScanPlanes& planes = hull.scanned_faces;
+  for (const ConvexHull::Face& face : hull.faces) planes.normal.add(face.normal);
+  for (const ConvexHull::Face& face : hull.faces) planes.offset.push_back(face.offset);
+  while (!planes.normal.is_whole()) {
+    planes.normal.add({});
+    planes.offset.push_back(collide::kFar);
   }
   hull.radius = 0.0;
   for (const Vec3& v : hull.vertices) hull.radius = std::max(hull.radius, norm(v - hull.centre));

@@ -149,10 +149,10 @@ void set_separated(GjkResult& r, const Vec3& v, double distance) {
 
 }  // namespace
 
-GjkResult gjk(const CorePair& pair, const Vec3& start, double limit) {
+GjkResult gjk(const CorePair& pair, const Vec3& start, const CorePoint& first, double limit) {
   GjkResult r;
   r.state = GjkResult::State::overlaps;
-  CorePoint next = support_of(pair, start);
+  CorePoint next = first;
   const double first_separation = -dot(start, next.w);
   if (first_separation > limit) {
     r.state = GjkResult::State::beyond;

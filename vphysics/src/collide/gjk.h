@@ -73,7 +73,11 @@ struct GjkResult {
   Simplex simplex;  // for overlaps: contains or touches the origin
 };
 
-// start: any unit direction, preferably from a to b. Stops if a separation exceeds limit.
-GjkResult gjk(const CorePair& pair, const Vec3& start, double limit);
+// start: any unit direction, preferably from a to b. Stops if a separation exceeds limit. first:
+// the support point along start.
+GjkResult gjk(const CorePair& pair, const Vec3& start, const CorePoint& first, double limit);
+inline GjkResult gjk(const CorePair& pair, const Vec3& start, double limit) {
+  return gjk(pair, start, support_of(pair, start), limit);
+}
 
 }  // namespace vp::collide

@@ -4,11 +4,13 @@
 #include <cstdint>
 #include <vector>
 
+#include "collide/hull_scan.h"
 #include "vphysics/convex_hull.h"
 
 namespace vp::collide {
 
-inline constexpr std::size_t kSupportLanes = 4, kMaxSupport = 64;
+// The vertices of larger hulls are not scanned, but searched from neighbour to neighbour.
+inline constexpr std::size_t kMaxScanned = 64;
 
 // An edge between two vertices, v0 < v1. Seen from outside, the face on its left has v0 before v1.
 struct HullEdge {
@@ -19,10 +21,11 @@ struct HullEdge {
 
 struct HullData {
   std::vector<Vec3> vertices;
-  // For hulls that support_vertex() scans in full: the vertices' x, y and z, each padded with the
-  // first vertex to a multiple of kSupportLanes; else empty.
-  std::vector<double> support_x, support_y, support_z;
+  // The vertices again, padded with the first; empty if they are more than kMaxScanned.
+  ScanList scanned_vertices;
   std::vector<ConvexHull::Face> faces;  // sorted by their corners
+  // Their planes again, padded with planes that nothing is in front of.
+  ScanPlanes scanned_faces;
   std::vector<std::uint16_t> corners;   // of all faces, face by face
   std::vector<HullEdge> edges;          // sorted by their vertices
   // The edge from each corner to the next of its face. Those of face f start at first_corner[f].

@@ -7,6 +7,7 @@
 //
 // Source: Gregorius, The Separating Axis Test between Convex Polyhedra, GDC 2013; the bound is
 // derived here.
+#include <bit>
 #include <cmath>
 
 #include "collide/convex_contact.h"
@@ -16,7 +17,7 @@ namespace vp::collide {
 namespace {
 
 constexpr int kMaxCornersOf = 256;
-constexpr int kMaxEdgesOf = 3 * kMaxCornersOf;
+constexpr int kMaxEdgesOf = 3 * kMaxCornersOf;  // a multiple of kScanLanes
 // The squared sine below which edges are parallel and give no axis.
 constexpr double kParallelEdges = 1e-16;
 
@@ -26,52 +27,57 @@ struct View {
   const Polytope& b;
 };
 
+// The face of one of the two that separates them farthest. Along its normal every point of the
+// other is at least as far as its closest one. So its centre rules out the faces on the far side;
+// the closest point of the best face so far, which is where the shapes meet, nearly all others.
 class FaceSearch {
  public:
-  explicit FaceSearch(const View& view) : v_(view) {
-    centre_a_ = witness_a_ = core_centre(v_.pair.a);
-    centre_b_ = witness_b_ = v_.pair.T_a_b * core_centre(v_.pair.b);
+  // towards: the other, in A's frame. The face that points there is tried first.
+  FaceSearch(const View& view, bool of_a, const Vec3& towards)
+      : v_(view), of_a_(of_a), own_(of_a ? view.a : view.b) {
+    const Vec3 centre =
+        of_a ? v_.pair.T_a_b * core_centre(v_.pair.b) : in_b(core_centre(v_.pair.a));
+    try_face(face_towards(own_, of_a ? towards : v_.pair.T_a_b.unrotate(towards)));
+    for (std::size_t first = 0; first < own_.faces.size(); first += 64) {
+      std::uint64_t left = faces_behind(own_, first, centre, witness_, best.separation);
+      for (; left != 0; left &= left - 1) {
+        const std::size_t f = first + static_cast<std::size_t>(std::countr_zero(left));
+        // Again: a face tried since may have changed the closest point.
+        if (is_behind(own_.faces[f], centre, witness_, best.separation))
+          try_face(static_cast<int>(f));
+      }
+    }
   }
 
-  // Along the normal every point of the other is at least as far as its closest one. Its centre
-  // rules out the faces on the far side; the closest point of the best face so far, which is where
-  // the shapes meet, nearly all others.
-  void try_face(bool of_a, int f) {
-    const ConvexHull::Face& face = (of_a ? v_.a : v_.b).faces[static_cast<std::size_t>(f)];
-    const SE3& T = v_.pair.T_a_b;
-    const Vec3 n = of_a ? face.normal : T.rotate(face.normal);
-    const double offset = of_a ? face.offset : face.offset + dot(n, T.position());
-    FaceAxis& best = of_a ? best_a : best_b;
-    bool& found = of_a ? found_a : found_b;
-    Vec3& witness = of_a ? witness_b_ : witness_a_;
-    if (found && (dot(n, of_a ? centre_b_ : centre_a_) - offset <= best.separation ||
-                  dot(n, witness) - offset <= best.separation))
-      return;
-    const Vec3 nearest = of_a ? v_.pair.support_b(-n) : v_.pair.support_a(-n);
-    const double separation = dot(n, nearest) - offset;
-    if (found && !(separation > best.separation)) return;
-    found = true;
-    witness = nearest;
-    best = {separation, of_a ? n : -n, of_a, f};
-  }
-
-  FaceAxis best_a, best_b;
+  FaceAxis best;
 
  private:
+  Vec3 in_b(const Vec3& p) const { return inverse_times(v_.pair.T_a_b, p); }
+  void try_face(int f) {
+    const ConvexHull::Face& face = own_.faces[static_cast<std::size_t>(f)];
+    const SE3& T = v_.pair.T_a_b;
+    const Vec3 n = of_a_ ? face.normal : T.rotate(face.normal);
+    const double offset = of_a_ ? face.offset : face.offset + dot(n, T.position());
+    const Vec3 nearest = of_a_ ? v_.pair.support_b(-n) : v_.pair.support_a(-n);
+    const double separation = dot(n, nearest) - offset;
+    if (found_ && !(separation > best.separation)) return;
+    found_ = true;
+    witness_ = of_a_ ? nearest : in_b(nearest);
+    best = {separation, of_a_ ? n : -n, of_a_, f};
+  }
+
   const View& v_;
-  Vec3 centre_a_, centre_b_, witness_a_, witness_b_;
-  bool found_a = false, found_b = false;
+  bool of_a_, found_ = false;
+  const Polytope& own_;
+  Vec3 witness_;  // in the frame of own_
 };
 
 FaceAxis best_face(const View& v, double bias, const PairCache& cache) {
-  FaceSearch search(v);
-  const int faces_a = static_cast<int>(v.a.faces.size()),
-            faces_b = static_cast<int>(v.b.faces.size());
-  if (cache.feature == PairCache::face_of_a && cache.i < faces_a) search.try_face(true, cache.i);
-  if (cache.feature == PairCache::face_of_b && cache.i < faces_b) search.try_face(false, cache.i);
-  for (int f = 0; f < faces_a; ++f) search.try_face(true, f);
-  for (int f = 0; f < faces_b; ++f) search.try_face(false, f);
-  return search.best_b.separation > search.best_a.separation + bias ? search.best_b : search.best_a;
+  const Vec3 last{cache.normal[0], cache.normal[1], cache.normal[2]};
+  const Vec3 between = v.pair.T_a_b * core_centre(v.pair.b) - core_centre(v.pair.a);
+  const FaceSearch of_a(v, true, dot(last, last) > 0.0 ? last : between);
+  const FaceSearch of_b(v, false, -of_a.best.normal);
+  return of_b.best.separation > of_a.best.separation + bias ? of_b.best : of_a.best;
 }
 
 struct EdgeList {
@@ -122,29 +128,64 @@ void set_nearest_points(const EdgeLine& a, const EdgeLine& b, BestAxis& axis) {
   axis.on_b = b.p + std::clamp((ab * s + rb) / bb, 0.0, 1.0) * b.d;
 }
 
+// The directions of edges, padded with zero to a multiple of kScanLanes.
+struct EdgeDirections {
+  EdgeDirections(const Polytope& p, const EdgeList& list) {
+    for (int i = 0; i < list.count; ++i) {
+      const HullEdge& e = p.edges[list.edges[i]];
+      put(static_cast<std::size_t>(i), p.vertices[e.v1] - p.vertices[e.v0]);
+    }
+    count = static_cast<std::size_t>(list.count);
+    for (; count % kScanLanes != 0; ++count) put(count, {});
+  }
+  // Of the 64 edges from index `first` on: a bit for each whose plane on the Gauss map the arc of b
+  // crosses.
+  std::uint64_t across(std::size_t first, const EdgeLine& b) const {
+    return vectors_between(x + first, y + first, z + first,
+                           std::min<std::size_t>(64, count - first), b.left, b.right);
+  }
+  std::size_t count;
+
+ private:
+  void put(std::size_t i, const Vec3& d) {
+    x[i] = d.x;
+    y[i] = d.y;
+    z[i] = d.z;
+  }
+  double x[kMaxEdgesOf], y[kMaxEdgesOf], z[kMaxEdgesOf];
+};
+
 void find_edge_axis(const View& v, const FaceAxis& face, EdgeAxis& best) {
   const double depth = 2.0 * std::fabs(face.separation) + 1e-9 * v.pair.extent;
   EdgeList near_a, near_b;
   find_near_edges(v.a, face.normal, depth, near_a);
   find_near_edges(v.b, -v.pair.T_a_b.unrotate(face.normal), depth, near_b);
+  const EdgeDirections directions(v.a, near_a);
   double largest = face.separation;
+  const auto try_edges = [&](int i, int k, const EdgeLine& b) {
+    const EdgeLine a = line_of(v.a, i, nullptr);
+    if (!arcs_cross(a, b)) return;
+    const Vec3 c = cross(a.d, b.d);
+    const double c2 = dot(c, c);
+    if (!(c2 > kParallelEdges * dot(a.d, a.d) * dot(b.d, b.d))) return;
+    const double sign = dot(c, a.left + a.right) < 0.0 ? -1.0 : 1.0;
+    const Vec3 n = (sign / std::sqrt(c2)) * c;
+    if (!(dot(n, b.p - a.p) > largest)) return;
+    const double separation =
+        separation_along(v.pair, n);  // computed again, in case the arcs cross by rounding only
+    if (!(separation > largest)) return;
+    largest = separation;
+    best = {true, i, k, {separation, n, {}, {}}};
+    set_nearest_points(a, b, best.axis);
+  };
   for (int k = 0; k < near_b.count; ++k) {
     const EdgeLine b = line_of(v.b, near_b.edges[k], &v.pair.T_a_b);
-    for (int i = 0; i < near_a.count; ++i) {
-      const EdgeLine a = line_of(v.a, near_a.edges[i], nullptr);
-      if (!arcs_cross(a, b)) continue;
-      const Vec3 c = cross(a.d, b.d);
-      const double c2 = dot(c, c);
-      if (!(c2 > kParallelEdges * dot(a.d, a.d) * dot(b.d, b.d))) continue;
-      const double sign = dot(c, a.left + a.right) < 0.0 ? -1.0 : 1.0;
-      const Vec3 n = (sign / std::sqrt(c2)) * c;
-      if (!(dot(n, b.p - a.p) > largest)) continue;
-      const double separation =
-          separation_along(v.pair, n);  // computed again, in case the arcs cross by rounding only
-      if (!(separation > largest)) continue;
-      largest = separation;
-      best = {true, near_a.edges[i], near_b.edges[k], {separation, n, {}, {}}};
-      set_nearest_points(a, b, best.axis);
+    for (std::size_t first = 0; first < directions.count; first += 64) {
+      std::uint64_t left = directions.across(first, b);
+      for (; left != 0; left &= left - 1) {
+        const std::size_t i = first + static_cast<std::size_t>(std::countr_zero(left));
+        try_edges(near_a.edges[i], near_b.edges[k], b);
+      }
     }
   }
 }

@@ -13,7 +13,19 @@ struct Polytope {
   std::span<const Vec3> vertices;
   std::span<const ConvexHull::Face> faces;
   std::span<const HullEdge> edges;
+  const ScanPlanes* planes;  // of the faces; null for a box
 };
+// The first of the faces whose normals point farthest along d.
+int face_towards(const Polytope& p, const Vec3& d);
+// Whether the face's plane has both x and y in front of it, farther than `distance`.
+inline bool is_behind(const ConvexHull::Face& face, const Vec3& x, const Vec3& y, double distance) {
+  return dot(face.normal, x) - face.offset > distance &&
+         dot(face.normal, y) - face.offset > distance;
+}
+// A bit for each such face of the 64 from index `first` on. Precondition: first is a multiple
+// of 64.
+std::uint64_t faces_behind(const Polytope& p, std::size_t first, const Vec3& x, const Vec3& y,
+                           double distance);
 
 inline bool is_polytope(const Geometry& g) {
   return g.kind == Kind::box || g.kind == Kind::hull;
