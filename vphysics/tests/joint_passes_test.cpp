@@ -42,7 +42,7 @@ Vec3 random_axis(vp::test::Random& random) {
 template <class B>
 struct Pairs {
   std::vector<BodyState> states{2 * kHanging + 1};
-  std::vector<std::array<float, 6>> start{2 * kHanging};
+  std::vector<solve::StartDisplacement> start{2 * kHanging};
   std::vector<std::uint32_t> bodies{std::vector<std::uint32_t>(2 * kHanging)};
   std::vector<StepMotion> motions{2 * kHanging + 1};
   std::vector<B> blocks{3};
@@ -61,7 +61,7 @@ struct Pairs {
       state.velocity[kInverseMass] = body % 9 == 0 ? 0.0f : number(0.5, 2.0);
       for (int k = 0; k < 3; ++k) state.inertia[k] = body % 9 == 0 ? 0.0f : number(4.0, 8.0);
       for (int k = 3; k < 6; ++k) state.inertia[k] = body % 9 == 0 ? 0.0f : number(-1.0, 1.0);
-      for (int k = 0; k < 6; ++k) start[body][static_cast<std::size_t>(k)] = number(-0.1, 0.1);
+      for (int k = 0; k < 6; ++k) start[body].displacement[k] = number(-0.1, 0.1);
       for (int k = 0; k < 6; ++k) state.displacement[k] = number(-0.4, 0.4);
     }
     for (std::uint32_t pair = 0; pair < kHanging; ++pair) fill(pair, random);

@@ -25,6 +25,10 @@ struct alignas(64) BodyState {
   // Contribution of the forces: acceleration [m/s^2], angular acceleration [rad/s^2]; then 0, 0.
   float rate[8];
 };
+// A copy of the displacements of a state, from the start of the step.
+struct alignas(32) StartDisplacement {
+  float displacement[8] = {};
+};
 inline constexpr int kInverseMass = 6, kFalls = 7;           // in velocity
 inline constexpr int kKeepLinear = 6, kKeepAngular = 7;      // in inertia
 inline constexpr int kSupported = 6, kFractionMinusOne = 7;  // in displacement

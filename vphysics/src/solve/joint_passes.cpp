@@ -12,31 +12,25 @@ namespace {
 
 constexpr int kWidth = VP_LANES;
 
-void find_step_motions(const BodyState* states, const std::array<float, 6>* start,
+void find_step_motions(const BodyState* states, const StartDisplacement* start,
                        const std::uint32_t* bodies, std::size_t count, StepMotion* motions) {
   using F = Lanes<kWidth>;
   for (std::size_t first = 0; first < count; first += kWidth) {
-    const int some = static_cast<int>(std::min<std::size_t>(kWidth, count - first));
-    Vec3T<F> displacement, theta, q;
+    // The last group is filled up with its last body.
+    const auto body = [&](int i) {
+      return bodies[std::min(first + static_cast<std::size_t>(i), count - 1)];
+    };
+    F to[8], from[8];
+    lanes::gather8<kWidth>([&](int i) { return states[body(i) + 1].displacement; }, to);
+    lanes::gather8<kWidth>([&](int i) { return start[body(i)].displacement; }, from);
+    for (int k = 0; k < 6; ++k) to[k] -= from[k];
+    Vec3T<F> q;
     F w;
-    for (int i = 0; i < some; ++i) {
-      const std::uint32_t body = bodies[first + static_cast<std::size_t>(i)];
-      const float* to = states[body + 1].displacement;
-      const auto& from = start[body];
-      displacement.x.set(i, to[0] - from[0]);
-      displacement.y.set(i, to[1] - from[1]);
-      displacement.z.set(i, to[2] - from[2]);
-      theta.x.set(i, to[3] - from[3]);
-      theta.y.set(i, to[4] - from[4]);
-      theta.z.set(i, to[5] - from[5]);
-    }
-    quaternion_of<kWidth>(theta, q, w);
-    for (int i = 0; i < some; ++i) {
-      motions[bodies[first + static_cast<std::size_t>(i)] + 1] = {
-          {q.x[i], q.y[i], q.z[i], w[i]},
-          {displacement.x[i], displacement.y[i], displacement.z[i]},
-          0.0f};
-    }
+    quaternion_of<kWidth>({to[3], to[4], to[5]}, q, w);
+    const F motion[8] = {q.x, q.y, q.z, w, to[0], to[1], to[2], F(0.0f)};
+    lanes::scatter8<kWidth>(
+        [&](int i) { return reinterpret_cast<float*>(&motions[body(i) + 1]); }, motion,
+        [](int) { return true; });
   }
 }
 

@@ -128,7 +128,7 @@ struct JointPasses {
 };
 struct AllJointPasses {
   // Over bodies: their motion since the states' displacements were `start`.
-  void (*find_step_motions)(const BodyState* states, const std::array<float, 6>* start,
+  void (*find_step_motions)(const BodyState* states, const StartDisplacement* start,
                             const std::uint32_t* bodies, std::size_t count, StepMotion* motions);
   JointPasses<BallBlock> ball;
   JointPasses<AxesBlock> axes;

@@ -153,7 +153,7 @@ void restart_displacement(const Stores& s, std::uint32_t index) {
     if (is_speculative(c) && !c.dirty) s.contact_store.use_clearance(c, s.body_set);
   });
   std::fill_n(s.body_states[index + 1].displacement, 6, 0.0f);
-  std::fill_n(s.start_displacements[index].begin(), 6, 0.0f);
+  s.start_displacements[index] = {};
   std::fill_n(s.bodies[index].bounded_at, 6, 1e9f);
   s.contact_store.for_each_of(s.bodies[index], [&](std::uint32_t contact, const Contact& c) {
     const bool speculative = is_speculative(c);

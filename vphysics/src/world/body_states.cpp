@@ -20,7 +20,7 @@ namespace {
 // A state's displacement restarts at zero beyond kMaxDisplacement [length units] plus kFarSteps
 // more steps of motion, so that single precision resolves small steps. It also restarts beyond
 // kMaxRotation [rad], since rotations are added as vectors.
-constexpr float kMaxDisplacement = 0.0625f, kFarSteps = 8.0f, kMaxRotation = 0.25f;
+constexpr float kMaxDisplacement = 0.0625f, kFarSteps = 32.0f, kMaxRotation = 0.25f;
 
 // A body that will deviate by more than this many of its half extents within the step from the
 // motion by which its contacts were searched for has them searched for again. Up to about that much
@@ -129,7 +129,7 @@ bool BodyStates::load(Body& body, std::uint32_t index) const {
     const Vec3 gyroscopic = gyroscopic_acceleration(body, dt);
     put(state.rate + 3, loads.is_torqued(body) ? gyroscopic + a.w : gyroscopic);
   }
-  std::copy_n(displacement, 6, start_displacements[index].begin());
+  std::copy_n(displacement, 8, start_displacements[index].displacement);
   note_searched(index);
   set_search_limits(body, index);
   const float* v = state.velocity;
@@ -167,7 +167,7 @@ void BodyStates::note_searched(std::uint32_t index) const {
 
 void BodyStates::copy_to_body(Body& body, std::uint32_t index) const {
   const solve::BodyState& state = states[index + 1];
-  const float* start = start_displacements[index].data();
+  const float* start = start_displacements[index].displacement;
   const Vec3 x = reference_point(body) + vector_of(state.displacement) - vector_of(start);
   const Vec3 rotation = vector_of(state.displacement + 3) - vector_of(start + 3);
   body.v = vector_of(state.velocity);
@@ -193,7 +193,7 @@ bool BodyStates::leave_untouched(Body& body, std::uint32_t index) const {
   const FreeRotation rotation =
       free_rotation(body.central, body.inverse_central, transposed_times(R, body.w), dt);
   put(state.displacement + 3,
-      vector_of(start_displacements[index].data() + 3) + R * mean_rotation(rotation));
+      vector_of(start_displacements[index].displacement + 3) + R * mean_rotation(rotation));
   return body.untouched = true;
 }
 
@@ -213,7 +213,7 @@ bool BodyStates::settle(Body& body, std::uint32_t index, Velocity& more) const {
     if (torqued) more.w = w + half * a.w - body.w;
     return true;
   }
-  const float* start = start_displacements[index].data();
+  const float* start = start_displacements[index].displacement;
   body.v = vector_of(state.velocity);
   const double per_step = 1.0 / dt;
   more.v = per_step * (vector_of(state.displacement) - vector_of(start)) - body.v;
@@ -229,7 +229,7 @@ bool BodyStates::settle(Body& body, std::uint32_t index, Velocity& more) const {
 
 bool BodyStates::advance(Body& body, std::uint32_t index) const {
   const solve::BodyState& state = states[index + 1];
-  const float* start = start_displacements[index].data();
+  const float* start = start_displacements[index].displacement;
   const Vec3 v = vector_of(state.velocity), w = vector_of(state.velocity + 3);
   const Vec3 displacement = vector_of(state.displacement) - vector_of(start),
              rotation = vector_of(state.displacement + 3) - vector_of(start + 3);

@@ -1,7 +1,6 @@
 // Copies bodies to their states in the sub-stepped solver and back, in one step.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 
@@ -14,7 +13,7 @@ namespace vp {
 
 struct BodyStates {
   std::span<solve::BodyState> states;  // state i + 1 is of body i
-  std::span<std::array<float, 6>>
+  std::span<solve::StartDisplacement>
       start_displacements;  // of each body: displacement of its state when the step began
   std::span<solve::SearchedMotion> searched;  // of each body
   const BodyLoads& loads;

@@ -61,7 +61,7 @@ class FastRotation {
 
   void shorten(const ShortenedMotion& motion) const {
     float* displacement = on_.body_states[motion.body + 1].displacement;
-    const float* start = on_.start_displacements[motion.body].data();
+    const float* start = on_.start_displacements[motion.body].displacement;
     for (int i = 0; i < 6; ++i)
       displacement[i] = start[i] + motion.fraction * (displacement[i] - start[i]);
     on_.bodies[motion.body].shortened = true;
@@ -70,7 +70,7 @@ class FastRotation {
  private:
   Displacement displacement_of(std::uint32_t index) const {
     const float* at = on_.body_states[index + 1].displacement;
-    const float* start = on_.start_displacements[index].data();
+    const float* start = on_.start_displacements[index].displacement;
     return {vector_of(at) - vector_of(start), vector_of(at + 3) - vector_of(start + 3)};
   }
 

@@ -232,9 +232,9 @@ void JointSteps::begin(std::size_t region) {
 }
 
 BodyPose pose_within_step(const Body& body, const solve::BodyState& state,
-                          const std::array<float, 6>& start_displacement) {
+                          const solve::StartDisplacement& start_displacement) {
   if (body.motion == Motion::fixed) return pose_of(body);
-  const float *displacement = state.displacement, *start = start_displacement.data();
+  const float *displacement = state.displacement, *start = start_displacement.displacement;
   const auto since = [&](int i) { return vector_of(displacement + i) - vector_of(start + i); };
   const Vec3 centre = reference_point(body) + since(0);
   const Mat3 R = rotated(body.T.rotation(), since(3));

@@ -23,7 +23,7 @@ struct JointContext {
   Joints& joints;
   std::size_t regions;  // with kSharedRegion
   std::span<solve::BodyState> states;
-  std::span<const std::array<float, 6>> start_displacements;  // of each body
+  std::span<const solve::StartDisplacement> start_displacements;  // of each body
   const Workers& workers;
   double speed_unit;
 };
@@ -40,7 +40,7 @@ struct SubStepScratch {
   BlockBits blocks;
   solve::LargeVector<solve::VelocityChange>
       velocity_changes;  // of each body, by the contacts of a sub-step
-  std::vector<std::array<float, 6>>
+  std::vector<solve::StartDisplacement>
       start_displacements;  // of each body: displacement of its state at the start of the step
   solve::LargeVector<solve::SearchedMotion> searched;  // of each body
   FastRotationScratch fast_rotation;
@@ -51,7 +51,7 @@ struct SubStepScratch {
 
 // The body's pose, advanced by its state's displacement since the start of the step.
 BodyPose pose_within_step(const Body& body, const solve::BodyState& state,
-                          const std::array<float, 6>& start_displacement);
+                          const solve::StartDisplacement& start_displacement);
 
 // An operation on a region writes the joints and bodies of that region alone, so regions other than
 // kSharedRegion may run in parallel. begin() and prepare_and_relax() of all of them come before

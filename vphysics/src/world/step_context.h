@@ -1,7 +1,6 @@
 // What the parts of a step work on. World::Impl owns all of it.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -51,7 +50,7 @@ struct Stores {
   solve::LargeVector<solve::BodyState>& body_states;  // 0: the world; i + 1: body i
   const BodySet& body_set;
   // Of each body: displacement of its state when the step began; its motion in the last search.
-  std::vector<std::array<float, 6>>& start_displacements;
+  std::vector<solve::StartDisplacement>& start_displacements;
   solve::LargeVector<solve::SearchedMotion>& searched;
   ContactStore& contact_store;
   collide::PairFinder& finder;
