@@ -1,6 +1,7 @@
 #include "listeners.h"
 
 #include <poll.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -38,6 +39,20 @@ void drain(Listener& listener, ListenerTotals& totals) {
   while (server::wait_readable(listener.client.udp(), 0)) take(listener, totals);
 }
 
+bool is_closed(int tcp) {
+  std::byte next{};
+  return ::recv(tcp, &next, 1, MSG_PEEK | MSG_DONTWAIT) == 0;
+}
+
+// Whether the server has said Bye or closed. Nothing to receive does not mean that: a client
+// discards some messages.
+bool has_ended(Listener& listener) {
+  while (const auto message = listener.client.receive(0)) {
+    if (std::holds_alternative<wire::Bye>(*message)) return true;
+  }
+  return is_closed(listener.client.tcp());
+}
+
 // One poll over all sockets, on one thread; ends when each connection has ended.
 void listen(std::vector<Listener>& listeners, ListenerTotals& totals) {
   std::size_t open = listeners.size();
@@ -51,9 +66,8 @@ void listen(std::vector<Listener>& listeners, ListenerTotals& totals) {
       Listener& l = listeners[i];
       if (polled[2 * i].revents != 0) drain(l, totals);
       if (polled[2 * i + 1].revents == 0 || l.over) continue;
-      const auto message = l.client.receive(0);
-      if (message && !std::holds_alternative<wire::Bye>(*message)) continue;
-      if (message) drain(l, totals);  // everything was sent before the Bye
+      if (!has_ended(l)) continue;
+      drain(l, totals);  // everything was sent before the Bye
       l.over = true;
       polled[2 * i + 1].fd = -1;
       --open;

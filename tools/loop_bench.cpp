@@ -98,6 +98,7 @@ int measure(const Options& options) {
   const auto totals = listeners.totals();
   if (!totals || !totals->complete) return fail("the listeners ended before they were told to");
 
+  if (totals->received == 0) return fail("the listeners received nothing");
   const auto counters = (*server)->counters();
   const auto table = rows(loop.stats(), (*server)->sending(), counters.snapshots_sent, *totals);
   std::printf("%d listeners, %.0f s, %zu bytes a snapshot\n", options.listeners,

@@ -465,7 +465,8 @@ void ControlServer::send_goodbye() {
   const auto unsent = [](const auto& c) {
     return c->flush() && (c->wants_to_send() || os::unacknowledged(c->fd()));
   };
-  while (std::any_of(connections_.begin(), connections_.end(), unsent) &&
+  // Each is flushed in each round, whether or not one before it is still unsent.
+  while (std::count_if(connections_.begin(), connections_.end(), unsent) > 0 &&
          os::monotonic_us() < until) {
     ::poll(nullptr, 0, 1);
   }

@@ -362,6 +362,24 @@ TEST(Control, SaysByeBeforeItEnds) {
   EXPECT_TRUE(client.sees_close());
 }
 
+// Nobody's Bye waits until those before have acknowledged theirs, which takes them up to 40 ms
+// each.
+TEST(Control, SaysByeToEachOfMany) {
+  constexpr int kClients = 16;
+  Lockstep table;
+  std::vector<ProbeClient> clients;
+  for (int i = 0; i < kClients; ++i) {
+    clients.emplace_back(table.port());
+    ASSERT_TRUE(clients.back().join());
+  }
+  table->finish(wire::Sentence::untranslated("closing time"));
+  for (ProbeClient& client : clients) {
+    const auto bye = client.receive_a<wire::Bye>();
+    ASSERT_TRUE(bye);
+    EXPECT_EQ(bye->reason, "closing time");
+  }
+}
+
 // Limits the descriptors to those open now, plus a number.
 class DescriptorLimit {
  public:
