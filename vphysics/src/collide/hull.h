@@ -26,8 +26,8 @@ struct HullData {
   std::vector<ConvexHull::Face> faces;  // sorted by their corners
   // Their planes again, padded with planes that nothing is in front of.
   ScanPlanes scanned_faces;
-  std::vector<std::uint16_t> corners;   // of all faces, face by face
-  std::vector<HullEdge> edges;          // sorted by their vertices
+  std::vector<std::uint16_t> corners;  // of all faces, face by face
+  std::vector<HullEdge> edges;         // sorted by their vertices
   // The edge from each corner to the next of its face. Those of face f start at first_corner[f].
   std::vector<std::uint16_t> corner_edges, first_corner;
   // Faces and neighbours of vertex v: the range from first_around[v] to first_around[v + 1].

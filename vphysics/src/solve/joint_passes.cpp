@@ -28,9 +28,8 @@ void find_step_motions(const BodyState* states, const StartDisplacement* start,
     F w;
     quaternion_of<kWidth>({to[3], to[4], to[5]}, q, w);
     const F motion[8] = {q.x, q.y, q.z, w, to[0], to[1], to[2], F(0.0f)};
-    lanes::scatter8<kWidth>(
-        [&](int i) { return reinterpret_cast<float*>(&motions[body(i) + 1]); }, motion,
-        [](int) { return true; });
+    lanes::scatter8<kWidth>([&](int i) { return reinterpret_cast<float*>(&motions[body(i) + 1]); },
+                            motion, [](int) { return true; });
   }
 }
 
