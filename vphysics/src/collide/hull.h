@@ -24,7 +24,8 @@ struct HullData {
   // The vertices again, padded with the first; empty if they are more than kMaxScanned.
   ScanList scanned_vertices;
   std::vector<ConvexHull::Face> faces;  // sorted by their corners
-  // Their planes again, padded with planes that nothing is in front of.
+  // Their planes again, padded with planes without a normal that nothing is in front of. A real
+  // normal points more along any direction: the hull is closed.
   ScanPlanes scanned_faces;
   std::vector<std::uint16_t> corners;  // of all faces, face by face
   std::vector<HullEdge> edges;         // sorted by their vertices

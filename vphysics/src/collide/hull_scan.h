@@ -1,4 +1,4 @@
-// Scans over all vertices or all faces of a hull, eight at a time where the machine can. The
+// Scans over all vertices or all faces of a hull, four or eight at a time. The
 // results do not depend on the instruction set.
 #pragma once
 
@@ -31,7 +31,7 @@ struct ScanPlanes {
   std::vector<double> offset;
 };
 
-// The first of the vectors that are farthest along d; 0 if d is not finite.
+// The first of the vectors that are farthest along d; 0 if d is not a number.
 int farthest_along(const ScanList& list, const Vec3& d);
 
 // Of the 64 planes from index `first` on: a bit for each that has both p and q in front of it,

@@ -59,8 +59,7 @@ void quaternion_of(const Vec3T<Lanes<W>>& theta, Vec3T<Lanes<W>>& q, Lanes<W>& w
   const F r = (half - turns * F(3.140625f)) - turns * F(9.67653589793e-4f), s = r * r;
   const auto series = [&](int first) {  // of x^k / k!, every other k from first + 10 down
     F sum(1.0f);
-    for (int k = first + 10; k > first; k -= 2)
-      sum = F(1.0f) - s * sum * F(1.0f / static_cast<float>(k * (k - 1)));
+    for (int k = first + 10; k > first; k -= 2) sum = F(1.0f) - s * sum / F(k * (k - 1));
     return sum;
   };
   const F sine = series(1);  // over r

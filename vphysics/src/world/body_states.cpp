@@ -20,7 +20,7 @@ namespace {
 // A state's displacement restarts at zero beyond kMaxDisplacement [length units] plus kFarSteps
 // more steps of motion, so that single precision resolves small steps. It also restarts beyond
 // kMaxRotation [rad], since rotations are added as vectors.
-constexpr float kMaxDisplacement = 0.0625f, kFarSteps = 32.0f, kMaxRotation = 0.25f;
+constexpr float kMaxDisplacement = 0.0625f, kFarSteps = 8.0f, kMaxRotation = 0.25f;
 
 // A body that will deviate by more than this many of its half extents within the step from the
 // motion by which its contacts were searched for has them searched for again. Up to about that much
