@@ -18,6 +18,7 @@ struct Four {
   static constexpr Numbers kIndices = {0, 1, 2, 3};
   static constexpr Words kBits = {1, 2, 4, 8};
 };
+#ifdef VP_INSTRUCTION_SETS
 struct Eight {
   using Numbers [[gnu::vector_size(64)]] = double;
   using Words [[gnu::vector_size(64)]] = std::int64_t;
@@ -25,6 +26,7 @@ struct Eight {
   static constexpr Numbers kIndices = {0, 1, 2, 3, 4, 5, 6, 7};
   static constexpr Words kBits = {1, 2, 4, 8, 16, 32, 64, 128};
 };
+#endif
 
 template <class Numbers>
 [[gnu::always_inline]] inline void load(Numbers& to, const double* from) {
