@@ -22,6 +22,7 @@ LAYERS = {
     'vphysics/src/lie/': 'lie',
     'vphysics/include/vphysics/assert.h': 'lie',
     'vphysics/src/assert.cpp': 'lie',
+    'vphysics/src/cpu_level.h': 'lie',
     'vphysics/include/vphysics/error.h': 'lie',
     'vphysics/include/vphysics/ids.h': 'lie',
     'vphysics/include/vphysics/lie.h': 'lie',

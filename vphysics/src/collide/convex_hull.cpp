@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "collide/bounds.h"
 #include "collide/hull.h"
 #include "collide/hull_faces.h"
 #include "collide/quickhull.h"

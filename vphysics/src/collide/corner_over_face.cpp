@@ -7,7 +7,7 @@
 namespace vp::collide {
 
 bool has_few_flat_faces(const Geometry& shape) {
-  constexpr std::size_t kFew = 64;
+  constexpr std::size_t kFew = kScanBits;
   constexpr double kFlat = 1e-6;  // fraction of the radius
   if (shape.kind == Kind::box) return true;
   return shape.kind == Kind::hull && shape.hull->faces.size() <= kFew &&

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "collide/bounds.h"
+#include "cpu_level.h"
 
 namespace vp::collide {
 namespace {
@@ -99,7 +100,7 @@ template <class P>
   using Numbers = typename P::Numbers;
   using Words = typename P::Words;
   Words found{}, bit = P::kBits;
-  const std::size_t end = std::min(planes.offset.size(), first + 64);
+  const std::size_t end = std::min(planes.offset.size(), first + kScanBits);
   for (std::size_t i = first; i < end; i += P::kWidth) {
     Numbers x, y, z, offset;
     load(x, &planes.normal.x[i]);
@@ -169,13 +170,9 @@ VP_SCANS(avx512, Eight, [[gnu::target("avx512f,avx512vl,avx512dq,avx512bw")]])
 
 Scans scans_of_this_machine() {
 #ifdef VP_INSTRUCTION_SETS
-  __builtin_cpu_init();
-  const bool avx2 = __builtin_cpu_supports("avx2");
-  if (avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
-      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw")) {
-    return k_avx512;
-  }
-  if (avx2) return k_avx2;
+  const CpuLevel level = cpu_level();
+  if (level == CpuLevel::avx512) return k_avx512;
+  if (level == CpuLevel::avx2) return k_avx2;
 #endif
   return k_baseline;
 }

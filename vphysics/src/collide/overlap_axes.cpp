@@ -7,6 +7,7 @@
 //
 // Source: Gregorius, The Separating Axis Test between Convex Polyhedra, GDC 2013; the bound is
 // derived here.
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -17,7 +18,8 @@ namespace vp::collide {
 namespace {
 
 constexpr int kMaxCornersOf = 256;
-constexpr int kMaxEdgesOf = 3 * kMaxCornersOf;  // a multiple of kScanLanes
+constexpr int kMaxEdgesOf = 3 * kMaxCornersOf;
+static_assert(kMaxEdgesOf % kScanLanes == 0);
 // The squared sine below which edges are parallel and give no axis.
 constexpr double kParallelEdges = 1e-16;
 
@@ -38,7 +40,7 @@ class FaceSearch {
     const Vec3 centre =
         of_a ? v_.pair.T_a_b * core_centre(v_.pair.b) : in_b(core_centre(v_.pair.a));
     try_face(face_towards(own_, of_a ? towards : v_.pair.T_a_b.unrotate(towards)));
-    for (std::size_t first = 0; first < own_.faces.size(); first += 64) {
+    for (std::size_t first = 0; first < own_.faces.size(); first += kScanBits) {
       std::uint64_t left = faces_behind(own_, first, centre, witness_, best.separation);
       for (; left != 0; left &= left - 1) {
         const std::size_t f = first + static_cast<std::size_t>(std::countr_zero(left));
@@ -138,11 +140,11 @@ struct EdgeDirections {
     count = static_cast<std::size_t>(list.count);
     for (; count % kScanLanes != 0; ++count) put(count, {});
   }
-  // Of the 64 edges from index `first` on: a bit for each whose plane on the Gauss map the arc of b
-  // crosses.
+  // Of the kScanBits edges from index `first` on: a bit for each whose plane on the Gauss map the
+  // arc of b crosses.
   std::uint64_t across(std::size_t first, const EdgeLine& b) const {
-    return vectors_between(x + first, y + first, z + first,
-                           std::min<std::size_t>(64, count - first), b.left, b.right);
+    return vectors_between(x + first, y + first, z + first, std::min(kScanBits, count - first),
+                           b.left, b.right);
   }
   std::size_t count;
 
@@ -180,7 +182,7 @@ void find_edge_axis(const View& v, const FaceAxis& face, EdgeAxis& best) {
   };
   for (int k = 0; k < near_b.count; ++k) {
     const EdgeLine b = line_of(v.b, near_b.edges[k], &v.pair.T_a_b);
-    for (std::size_t first = 0; first < directions.count; first += 64) {
+    for (std::size_t first = 0; first < directions.count; first += kScanBits) {
       std::uint64_t left = directions.across(first, b);
       for (; left != 0; left &= left - 1) {
         const std::size_t i = first + static_cast<std::size_t>(std::countr_zero(left));

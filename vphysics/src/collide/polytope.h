@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <span>
 
 #include "collide/geometry.h"
@@ -22,8 +23,8 @@ inline bool is_behind(const ConvexHull::Face& face, const Vec3& x, const Vec3& y
   return dot(face.normal, x) - face.offset > distance &&
          dot(face.normal, y) - face.offset > distance;
 }
-// A bit for each such face of the 64 from index `first` on. Precondition: first is a multiple
-// of 64.
+// A bit for each such face of the kScanBits from index `first` on. Precondition: first is a
+// multiple of kScanBits.
 std::uint64_t faces_behind(const Polytope& p, std::size_t first, const Vec3& x, const Vec3& y,
                            double distance);
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "cpu_level.h"
 #include "vphysics/multibody/data.h"
 
 namespace vp::detail {
@@ -17,18 +18,16 @@ enum class InstructionSet : std::uint8_t {
 
 // The wider sets use fused multiply-add and therefore round differently: not for reproducible
 // results.
-inline InstructionSet instruction_set_for([[maybe_unused]] Arithmetic arithmetic) {
-#ifdef VP_INSTRUCTION_SETS
+inline InstructionSet instruction_set_for(Arithmetic arithmetic) {
   const bool same_bits = arithmetic == Arithmetic::reproducible;
-  __builtin_cpu_init();
-  const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
-                    __builtin_cpu_supports("bmi2");
-  if (avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
-      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw")) {
-    return same_bits ? InstructionSet::avx512_same_bits : InstructionSet::avx512;
+  switch (cpu_level()) {
+    case CpuLevel::avx512:
+      return same_bits ? InstructionSet::avx512_same_bits : InstructionSet::avx512;
+    case CpuLevel::avx2:
+      return same_bits ? InstructionSet::avx2_same_bits : InstructionSet::avx2;
+    case CpuLevel::baseline:
+      break;
   }
-  if (avx2) return same_bits ? InstructionSet::avx2_same_bits : InstructionSet::avx2;
-#endif
   return InstructionSet::baseline;
 }
 

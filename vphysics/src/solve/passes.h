@@ -5,7 +5,6 @@
 // that the sets share has its addresses and layouts in a namespace that keeps its name.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 

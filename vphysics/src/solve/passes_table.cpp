@@ -1,4 +1,5 @@
 // Selects the instruction set for this machine.
+#include "cpu_level.h"
 #include "solve/dense_passes.h"
 #include "solve/passes.h"
 
@@ -13,13 +14,9 @@ struct Tables {
 
 Tables best() {
 #ifdef VP_INSTRUCTION_SETS
-  __builtin_cpu_init();
-  const bool avx2 = __builtin_cpu_supports("avx2");
-  if (avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
-      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw")) {
-    return {&kAvx512, &kAvx512Joints, &vphysics_dense::kAvx512};
-  }
-  if (avx2) return {&kAvx2, &kAvx2Joints, &vphysics_dense::kAvx2};
+  const CpuLevel level = cpu_level();
+  if (level == CpuLevel::avx512) return {&kAvx512, &kAvx512Joints, &vphysics_dense::kAvx512};
+  if (level == CpuLevel::avx2) return {&kAvx2, &kAvx2Joints, &vphysics_dense::kAvx2};
 #endif
   return {&kBaseline, &kBaselineJoints, &vphysics_dense::kBaseline};
 }

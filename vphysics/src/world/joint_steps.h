@@ -1,7 +1,6 @@
 // Joints between bodies: their part of the sub-steps of a step.
 #pragma once
 
-#include <array>
 #include <atomic>
 #include <cstdint>
 #include <span>
