@@ -151,5 +151,28 @@ TEST(OverlapAxes, AreTheBestOfAllFacesAndEdges) {
   EXPECT_GT(overlapping, 200);
 }
 
+// A corner inside all planes proves an overlap, but not with merged faces: their corners lie behind
+// the planes, and what is between is outside.
+TEST(OverlapAxes, AreNotSearchedBetweenAMergedFaceAndItsCorners) {
+  std::vector<Vec3> corners;  // of a box, one of them moved into it
+  for (int i = 0; i < 8; ++i)
+    corners.push_back({i & 1 ? 0.25 : -0.25, i & 2 ? 0.25 : -0.25, i & 4 ? 0.25 : -0.25});
+  corners.back() -= Vec3{0, 0, 1e-3};
+  const ConvexHull merged = ConvexHull::of(corners, {.tolerance = 1e-2}).value();
+  ASSERT_EQ(merged.faces().size(), 6u);
+  const std::vector<Vec3> points{{0, 0, 0}, {0.1, 0, 0.3}, {-0.1, 0.1, 0.3}, {-0.1, -0.1, 0.3}};
+  const ConvexHull tip = ConvexHull::of(points).value();
+  const Geometry a = collide::make_geometry(merged), b = collide::make_geometry(tip);
+  const Vec3 between{0.2499, 0.2499, 0.2495};
+  const collide::CorePair pair(a, b, SE3(between));
+  const double distance = collide::gjk(pair, {0, 0, 1}, 1.0).distance;
+  ASSERT_GT(distance, 1e-4);
+  collide::PairCache cache;
+  cache.normal[2] = 1.0f;
+  collide::Manifold manifold;
+  collide::collide_convex(pair, 0.01, cache, manifold);
+  EXPECT_NEAR(manifold.min_separation, distance, 1e-12);
+}
+
 }  // namespace
 }  // namespace vp::test
