@@ -72,6 +72,29 @@ inline MeshPoints random_plane(Random& random, std::uint32_t cells, double size)
   return m;
 }
 
+// Waves of the given height about z = 0, on a square grid of cells about the origin.
+inline double wave(double x, double y, double height) {
+  return height * std::sin(3.0 * x) * std::sin(2.0 * y + 1.0);
+}
+inline MeshPoints wave_mesh(std::uint32_t cells, double cell, double height) {
+  MeshPoints m;
+  const double corner = -0.5 * cells * cell;
+  for (std::uint32_t j = 0; j <= cells; ++j) {
+    for (std::uint32_t i = 0; i <= cells; ++i) {
+      const double x = corner + i * cell, y = corner + j * cell;
+      m.vertices.push_back({x, y, wave(x, y, height)});
+    }
+  }
+  for (std::uint32_t j = 0; j < cells; ++j) {
+    for (std::uint32_t i = 0; i < cells; ++i) {
+      const std::uint32_t a = j * (cells + 1) + i, c = a + cells + 2;
+      m.triangles.push_back({a, a + 1, c});
+      m.triangles.push_back({a, c, c - 1});
+    }
+  }
+  return m;
+}
+
 // A sphere about the origin, of 20 * 4^levels triangles.
 inline MeshPoints sphere_mesh(double radius, int levels) {
   const double g = 0.5 * (1.0 + std::sqrt(5.0));

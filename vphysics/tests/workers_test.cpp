@@ -5,8 +5,10 @@
 #include <atomic>
 #include <barrier>
 #include <thread>
+#include <vector>
 
 #include "joints_rig.h"
+#include "surfaces.h"
 #include "vphysics/task_scheduler.h"
 // The thread sanitizer does not see how Debian's oneTBB, built without it, hands tasks over.
 #if defined(VP_TEST_TBB) && defined(__has_feature)
@@ -78,8 +80,19 @@ class Threads final : public TaskScheduler {
   std::vector<std::thread> others_;
 };
 
+// Dumbbells on waves.
+void add_waves(World& world, const Vec3& at) {
+  add_fixed(world, wave_mesh(24, 0.25, 0.1).made(), {}, SE3(at));
+  const std::vector<CompoundPart> parts{{Sphere{0.08}, SE3(Vec3{0.1, 0, 0})},
+                                        {Box{{0.08, 0.06, 0.05}}, SE3(Vec3{-0.1, 0, 0})}};
+  const Compound dumbbell = Compound::of(parts).value();
+  for (int i = 0; i < 100; ++i)
+    add_dynamic(world, {.shape = dumbbell,
+                        .pose = SE3(at + Vec3{0.5 * (i % 10 - 5), 0.5 * (i / 10 - 5), 0.22})});
+}
+
 // Enough objects that each loop is shared: boxes and balls that fall on one another and on a belt,
-// chains, and a corner that falls asleep.
+// chains, dumbbells on waves, and a corner that falls asleep.
 World busy_world(int region_bodies) {
   WorldDesc desc;
   desc.sleep_after = 0.05;
@@ -101,6 +114,7 @@ World busy_world(int region_bodies) {
       if (i % 8 == 0) join(world, low, high, BallSocket{}, SE3(part.pose.position()));
     }
   }
+  add_waves(world, {20.0, 0.0, 0.5});
   return world;
 }
 

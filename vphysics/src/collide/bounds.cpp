@@ -74,6 +74,19 @@ Bounds bounds_of(const Geometry& g, const SE3& T) {
   return {T.position() - e, T.position() + e};
 }
 
+double min_half_extent(const Geometry& g) {
+  if (is_surface(g)) return 0.0;
+  if (g.kind == Kind::compound) {
+    double smallest = kFar;
+    for (const Geometry& part : g.compound->geometries)
+      smallest = std::min(smallest, min_half_extent(part));
+    return smallest;
+  }
+  const Bounds own = bounds_of(g, SE3{});
+  const Vec3 extents = own.upper - own.lower;
+  return 0.5 * std::min({extents.x, extents.y, extents.z});
+}
+
 Bounds transformed(const SE3& T, const Bounds& inner) {
   if (empty(inner)) return inner;
   const Vec3 centre = T * (0.5 * (inner.lower + inner.upper));

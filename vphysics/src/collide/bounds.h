@@ -48,6 +48,9 @@ inline Vec3 rotated_extents(const Mat3& R, const Vec3& h) {
 }
 
 Bounds bounds_of(const Geometry& geometry, const SE3& T);
+// Half of the smallest extent of the bounds in the shape's frame: of a compound, of its smallest
+// part. 0 for surfaces.
+double min_half_extent(const Geometry& geometry);
 // The bounds in the outer frame of bounds given in an inner frame.
 Bounds transformed(const SE3& T, const Bounds& inner);
 

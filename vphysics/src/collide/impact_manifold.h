@@ -13,13 +13,6 @@
 
 namespace vp::collide {
 
-struct PairMotion {
-  Motion a, b;
-  double dt;  // [s]
-  // An overlap [m] that counts as none: within it, the impact may be at another face.
-  double tolerance;
-};
-
 // How far the points `x` of the two motions move until the impact [m].
 struct MotionToImpact {
   Vec3 a, b;

@@ -22,13 +22,15 @@ void to_world(const SE3& T, Manifold& m) {
 class Finder {
  public:
   Finder(const SearchMargin& margin, std::span<const KnownPart> known, ManifoldScratch& scratch,
-         std::vector<SubManifold>& out, const PairMotion* motion)
-      : search_(margin),
-        margin_(margin.largest),
-        known_(known),
-        scratch_(scratch),
-        out_(out),
-        motion_(motion) {}
+         std::vector<SubManifold>& out)
+      : search_(margin), bounds_(margin.all()), known_(known), scratch_(scratch), out_(out) {}
+
+  // Restricts the search to where a convex shape of the pair is.
+  void restrict_to(const Geometry& shape, const SE3& T) {
+    if (!is_convex_body(shape)) return;
+    const ApproachBounds there = search_.bounds_of(shape, T);
+    if (there.largest <= bounds_.largest) bounds_ = there;
+  }
 
   // Precondition: neither a nor b is a compound.
   void find(const Geometry& a, const SE3& T_a, const Geometry& b, const SE3& T_b,
@@ -41,11 +43,12 @@ class Finder {
     SubManifold found;
     found.sub_a = sub_a_;
     found.sub_b = sub_b_;
-    find_manifold(a, T_a, b, T_b, margin_, cache, found.manifold);
+    find_manifold(a, T_a, b, T_b, bounds_.largest, cache, found.manifold);
     found.cache = cache;
     if (found.manifold.count == 0) return;
-    if (motion_)
-      found.to_impact = move_to_impact(a, T_a, b, T_b, *motion_, margin_, found.manifold);
+    if (search_.motion() != nullptr)
+      found.to_impact =
+          move_to_impact(a, T_a, b, T_b, *search_.motion(), bounds_.largest, found.manifold);
     out_.push_back(found);
   }
 
@@ -53,7 +56,7 @@ class Finder {
   void find_of_parts(const Geometry& of, const SE3& T_of, const Geometry& other, const SE3& T_other,
                      bool swapped) {
     const CompoundData& compound = *of.compound;
-    const Bounds near = grown(bounds_of(other, relative_pose(T_of, T_other)), margin_);
+    const Bounds near = grown(bounds_of(other, relative_pose(T_of, T_other)), bounds_.largest);
     const std::size_t begin = scratch_.parts.size();
     compound.tree.overlapping(rounded_outward(near),
                               [&](std::uint32_t i) { scratch_.parts.push_back(i); });
@@ -64,9 +67,8 @@ class Finder {
       const std::size_t first = out_.size();
       const SE3 T = T_of * compound.parts[i].T_compound_part;
       const Geometry& part = compound.geometries[i];
-      const double margin_of_all = margin_;
-      margin_ = std::min(
-          margin_, search_.within(T * core_centre(part), core_extent(part) + core_radius(part)));
+      const ApproachBounds bounds_of_all = bounds_;
+      restrict_to(part, T);
       (swapped ? sub_b_ : sub_a_) = i;
       PairCache cache = known_cache();
       if (other.kind == Kind::compound) {
@@ -76,7 +78,7 @@ class Finder {
       } else {
         find(part, T, other, T_other, cache);
       }
-      margin_ = margin_of_all;
+      bounds_ = bounds_of_all;
       for (std::size_t m = first; m < out_.size(); ++m) {
         (swapped ? out_[m].sub_b : out_[m].sub_a) = i;
         for (ManifoldPoint& p : std::span(out_[m].manifold.points)
@@ -98,8 +100,8 @@ class Finder {
   void find_on_surface(const Geometry& surface, const SE3& T_surface, const Geometry& shape,
                        const SE3& T_shape, bool surface_is_b) {
     const std::size_t first = out_.size();
-    collide_surface(surface_of(surface), shape, relative_pose(T_surface, T_shape), margin_,
-                    scratch_, out_);
+    collide_surface(surface_of(surface), shape, relative_pose(T_surface, T_shape),
+                    search_.swept(bounds_, !surface_is_b, T_surface), scratch_, out_);
     for (std::size_t i = first; i < out_.size(); ++i) {
       to_world(T_surface, out_[i].manifold);
       if (!surface_is_b) continue;
@@ -109,11 +111,10 @@ class Finder {
   }
 
   const SearchMargin& search_;
-  double margin_;  // for the current parts
+  ApproachBounds bounds_;  // of the current parts
   std::span<const KnownPart> known_;
   ManifoldScratch& scratch_;
   std::vector<SubManifold>& out_;
-  const PairMotion* motion_;
   std::uint32_t sub_a_ = 0, sub_b_ = 0;  // current parts of the compounds
 };
 
@@ -121,9 +122,10 @@ class Finder {
 
 void find_manifolds(const Geometry& a, const SE3& T_a, const Geometry& b, const SE3& T_b,
                     const SearchMargin& margin, PairCache& cache, std::span<const KnownPart> known,
-                    ManifoldScratch& scratch, std::vector<SubManifold>& manifolds,
-                    const PairMotion* motion) {
-  Finder finder(margin, known, scratch, manifolds, motion);
+                    ManifoldScratch& scratch, std::vector<SubManifold>& manifolds) {
+  Finder finder(margin, known, scratch, manifolds);
+  finder.restrict_to(a, T_a);
+  finder.restrict_to(b, T_b);
   if (a.kind == Kind::compound) {
     finder.find_of_parts(a, T_a, b, T_b, false);
   } else if (b.kind == Kind::compound) {

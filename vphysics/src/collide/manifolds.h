@@ -1,12 +1,12 @@
 // Manifolds of any two shapes: one for two convex shapes, any number if a shape has parts.
 #pragma once
 
-#include <algorithm>
 #include <span>
 #include <vector>
 
 #include "collide/impact_manifold.h"
 #include "collide/manifold.h"
+#include "collide/search_margin.h"
 #include "collide/triangle_contact.h"
 
 namespace vp::collide {
@@ -63,44 +63,18 @@ struct ManifoldScratch {
   }
 };
 
-// The search distance [m] of contacts. It is large enough that whatever closes in before the next
-// search is found now.
-struct SearchMargin {
-  // The same everywhere.
-  SearchMargin(double everywhere) : largest(everywhere), at_rest(everywhere) {}
-  // b moves relative to a by displacement + rotation x (point - about), world frame [m], [rad].
-  SearchMargin(double largest_of_all, double at_rest_of_all, const Vec3& displacement_of_b,
-               const Vec3& rotation_of_b, const Vec3& about_point)
-      : largest(largest_of_all),
-        at_rest(at_rest_of_all),
-        displacement(displacement_of_b),
-        rotation(rotation_of_b),
-        about(about_point) {}
-
-  // For a contact within a ball, world frame.
-  double within(const Vec3& centre, double radius) const {
-    const double moved = norm(displacement + cross(rotation, centre - about)) +
-                         radius * std::min(norm(rotation), 2.0);  // rotation keeps it in its ball
-    return std::min(largest, at_rest + moved);
-  }
-
-  double largest, at_rest;
-  Vec3 displacement, rotation, about;
-};
-
 // The maximum number of distinct normals between a surface and one convex shape.
 inline constexpr std::size_t kMaxClusters = 12;
 
-// Appends the manifolds with points of a separation of at most margin, in an order that depends on
-// the shapes and poses alone. Each part of a compound has its own; coplanar triangles, within 2
+// Appends the manifolds with points of a separation of at most the margin, in an order that depends
+// on the shapes and poses alone. Each part of a compound has its own; coplanar triangles, within 2
 // degrees, share one. Feature names are unique among the manifolds of the pair, except for
 // collisions with a probability of one in 2^32. cache is used if both shapes are convex; known, in
-// any order, if they have parts. Two surfaces, or a surface and a half-space, have no manifolds.
-// With a motion, those of convex parts that will collide are found where they will.
+// any order, if they have parts. Two surfaces, or a surface and a half-space, have no manifolds. If
+// the margin has a motion, those of convex parts that will collide are found where they will.
 void find_manifolds(const Geometry& a, const SE3& T_a, const Geometry& b, const SE3& T_b,
                     const SearchMargin& margin, PairCache& cache, std::span<const KnownPart> known,
-                    ManifoldScratch& scratch, std::vector<SubManifold>& manifolds,
-                    const PairMotion* motion = nullptr);
+                    ManifoldScratch& scratch, std::vector<SubManifold>& manifolds);
 
 // A lower bound of the distance of two shapes of which at least one has parts: the distance between
 // the bounds of the nearest part and the bounds of the other shape [m]. 0 if it is not cheap to

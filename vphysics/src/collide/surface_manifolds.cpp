@@ -41,7 +41,13 @@ void add_contact(const Contact& contact, std::vector<Contact>& contacts) {
   contacts.push_back(contact);
 }
 
-void find_contacts(const Surface& surface, const ShapeOnSurface& on, double margin,
+Bounds searched_bounds(const ShapeOnSurface& on, const SweptMargin& margin) {
+  Bounds box = bounds_of(on.shape, on.T_surface_shape);
+  if (margin.moves()) box = merged(box, bounds_of(on.shape, margin.to_end() * on.T_surface_shape));
+  return grown(box, margin.bounds.slack);
+}
+
+void find_contacts(const Surface& surface, const ShapeOnSurface& on, const SweptMargin& margin,
                    ManifoldScratch& scratch) {
   const Geometry& shape = on.shape;
   const SE3& T = on.T_surface_shape;
@@ -50,15 +56,17 @@ void find_contacts(const Surface& surface, const ShapeOnSurface& on, double marg
   scratch.contacts.clear();
   scratch.points.clear();
   scratch.converged.clear();
+  surface.overlapping(searched_bounds(on, margin),
+                      [&](std::uint32_t id) { scratch.triangles.push_back(id); });
+  if (scratch.triangles.empty()) return;
+  scratch.triangles_tested += static_cast<std::uint32_t>(scratch.triangles.size());
   const TriangleCull cull(shape, T, margin);
-  surface.overlapping(grown(bounds_of(shape, T), margin), [&](std::uint32_t id) {
-    scratch.triangles.push_back(id);
+  for (const std::uint32_t id : scratch.triangles) {
     Vec3 p[3];
     surface.corners(id, p);
     if (cull.may_overlap(p)) scratch.near_triangles.push_back(id);
-  });
+  }
   std::sort(scratch.near_triangles.begin(), scratch.near_triangles.end());
-  scratch.triangles_tested += static_cast<std::uint32_t>(scratch.triangles.size());
   const Vec3 centre = T * core_centre(shape);
   for (const std::uint32_t id : scratch.near_triangles) {
     SurfaceTriangle t = surface.triangle(id);
@@ -364,8 +372,9 @@ SubManifold Cluster::reduced() const {
 
 }  // namespace
 
-void collide_surface(const Surface& surface, const Geometry& shape, const SE3& T, double margin,
-                     ManifoldScratch& scratch, std::vector<SubManifold>& manifolds) {
+void collide_surface(const Surface& surface, const Geometry& shape, const SE3& T,
+                     const SweptMargin& margin, ManifoldScratch& scratch,
+                     std::vector<SubManifold>& manifolds) {
   const double size = core_extent(shape) + core_radius(shape);
   scratch.ensure_capacity();
   std::optional<PolytopeOf> polytope;

@@ -9,6 +9,15 @@ namespace vp::collide {
 // about it at w.
 struct Motion {
   Vec3 x, v, w;  // world frame [m, m/s, rad/s]
+
+  Vec3 velocity(const Vec3& at) const { return v + cross(w, at - x); }
+};
+
+struct PairMotion {
+  Motion a, b;
+  double dt;  // [s]
+  // An overlap [m] that counts as none: within it, the impact may be at another face.
+  double tolerance;
 };
 
 struct SweepQuery {

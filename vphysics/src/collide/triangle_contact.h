@@ -10,6 +10,7 @@
 
 #include "collide/manifold.h"
 #include "collide/polytope.h"
+#include "collide/search_margin.h"
 #include "collide/triangle_parts.h"
 
 namespace vp::collide {
@@ -34,12 +35,13 @@ struct ShapeOnSurface {
   const Polytope* faces;
 };
 
-// Appends the points of a separation of at most margin, not reduced, in the surface's frame.
+// Appends the points that may touch within the margin, not reduced, in the surface's frame. margin:
+// of the surface and the shape, in that order and frame.
 // Triangles that share the touched edge or corner give the same feature names. count 0: no contact.
 // Precondition: the triangle's front faces the shape's centre; the shape is convex and no
 // half-space.
 TriangleContact collide_triangle(const Surface& surface, const SurfaceTriangle& triangle,
-                                 const ShapeOnSurface& shape, double margin,
+                                 const ShapeOnSurface& shape, const SweptMargin& margin,
                                  std::vector<ManifoldPoint>& points);
 
 // The distance from a sphere's centre to the part of the triangle that it would touch; kFar if the

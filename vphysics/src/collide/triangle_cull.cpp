@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "collide/bounds.h"
+#include "collide/polytope.h"
 #include "collide/support.h"
 
 namespace vp::collide {
@@ -14,99 +15,123 @@ constexpr double kRounding = 2e-6;
 
 }  // namespace
 
-TriangleCull::TriangleCull(const Geometry& shape, const SE3& T, double margin) {
+TriangleCull::TriangleCull(const Geometry& shape, const SE3& T, const SweptMargin& margin)
+    : slack_(static_cast<float>(margin.bounds.slack + core_radius(shape))) {
+  now_.place(shape, T, slack_);
+  if (!margin.moves()) return;
+  at_end_.emplace().place(shape, margin.to_end() * T, slack_);
+}
+
+// The planes are those of the core: the radius of the sphere that sweeps it is part of the slack.
+void TriangleCull::Placed::place(const Geometry& shape, const SE3& T, float slack) {
   const Mat3& R = T.rotation();
-  // For a core swept by a sphere, the planes are those of the core; the sphere's radius is part of
-  // the margin.
-  const double radius = core_radius(shape);
-  margin_ = static_cast<float>(margin + radius);
-  centre_ = T.position();
+  centre = T.position();
   if (shape.kind == Kind::hull) {
     const HullData& hull = *shape.hull;
-    const Vec3 centre = 0.5 * (hull.lower + hull.upper);
-    centre_ = T * centre;
+    const Vec3 middle = 0.5 * (hull.lower + hull.upper);
+    centre = T * middle;
     if (hull.faces.size() <= kMaxPlanes) {
-      for (std::size_t f = 0; f < hull.faces.size(); ++f) {
-        const ConvexHull::Face& face = hull.faces[f];
-        add_plane(R * face.normal, face.offset - dot(face.normal, centre));
-      }
+      for (const ConvexHull::Face& face : hull.faces)
+        add_plane(R * face.normal, face.offset - dot(face.normal, middle), slack);
     } else {
-      add_box(R, 0.5 * (hull.upper - hull.lower));
+      add_box(R, 0.5 * (hull.upper - hull.lower), slack);
     }
     if (hull.vertices.size() <= kMaxCorners) {
-      for (const Vec3& v : hull.vertices) add_corner(R * (v - centre));
+      for (const Vec3& v : hull.vertices) add_corner(R * (v - middle));
     }
   } else if (shape.kind == Kind::box) {
-    add_box(R, shape.half);
-    for (int i = 0; i < 8; ++i) {
-      const auto along = [&](int axis) {
-        return (i >> axis & 1) != 0 ? shape.half[axis] : -shape.half[axis];
-      };
-      add_corner(R * Vec3{along(0), along(1), along(2)});
-    }
+    add_box(R, shape.half, slack);
+    for (int i = 0; i < 8; ++i) add_corner(R * box_corner(shape.half, i));
   } else if (shape.kind == Kind::capsule) {
-    add_box(R, shape.half);
+    add_box(R, shape.half, slack);
     add_corner(shape.half.z * R.cz);
     add_corner(-shape.half.z * R.cz);
   } else {  // sphere, cylinder, cone
     const double radial = shape.kind == Kind::sphere ? 0.0 : shape.radius;
-    add_box(R, {radial, radial, shape.half.z});
+    add_box(R, {radial, radial, shape.half.z}, slack);
   }
+  extent += static_cast<double>(slack);
 }
 
-void TriangleCull::add_plane(const Vec3& outward, double offset) {
-  plane_[0][planes_] = static_cast<float>(outward.x);
-  plane_[1][planes_] = static_cast<float>(outward.y);
-  plane_[2][planes_] = static_cast<float>(outward.z);
-  plane_[3][planes_] = static_cast<float>(offset) + margin_;
-  ++planes_;
-  extent_ = std::max(extent_, std::fabs(offset));
+void TriangleCull::Placed::add_plane(const Vec3& outward, double offset, float slack) {
+  plane[0][planes] = static_cast<float>(outward.x);
+  plane[1][planes] = static_cast<float>(outward.y);
+  plane[2][planes] = static_cast<float>(outward.z);
+  plane[3][planes] = static_cast<float>(offset) + slack;
+  ++planes;
+  extent = std::max(extent, std::fabs(offset));
 }
 
-void TriangleCull::add_box(const Mat3& R, const Vec3& half) {
+void TriangleCull::Placed::add_box(const Mat3& R, const Vec3& half, float slack) {
   for (int axis = 0; axis < 3; ++axis) {
     const Vec3& along = axis == 0 ? R.cx : axis == 1 ? R.cy : R.cz;
-    add_plane(along, half[axis]);
-    add_plane(-along, half[axis]);
+    add_plane(along, half[axis], slack);
+    add_plane(-along, half[axis], slack);
   }
 }
 
-void TriangleCull::add_corner(const Vec3& corner) {
-  for (int i = 0; i < 3; ++i) corner_[i][corners_] = static_cast<float>(corner[i]);
-  ++corners_;
-  extent_ = std::max(extent_, norm(corner));
+void TriangleCull::Placed::add_corner(const Vec3& at) {
+  for (int i = 0; i < 3; ++i) corner[i][corners] = static_cast<float>(at[i]);
+  ++corners;
+  extent = std::max(extent, norm(at));
 }
+
+// A triangle, relative to the centre of the placed shape.
+struct TriangleCull::Seen {
+  float q[3][3];
+  float rounding;  // of a distance [m]
+
+  Seen(const Placed& placed, const Vec3 p[3]) {
+    double farthest = placed.extent;
+    for (int i = 0; i < 3; ++i) {
+      const Vec3 from_centre = p[i] - placed.centre;
+      for (int k = 0; k < 3; ++k) {
+        q[i][k] = static_cast<float>(from_centre[k]);
+        farthest = std::max(farthest, std::fabs(from_centre[k]));
+      }
+    }
+    rounding = static_cast<float>(kRounding * farthest);
+  }
+};
 
 bool TriangleCull::may_overlap(const Vec3 p[3]) const {
-  float q[3][3];
-  double farthest = extent_ + static_cast<double>(margin_);
-  for (int i = 0; i < 3; ++i) {
-    const Vec3 from_centre = p[i] - centre_;
-    for (int k = 0; k < 3; ++k) {
-      q[i][k] = static_cast<float>(from_centre[k]);
-      farthest = std::max(farthest, std::fabs(from_centre[k]));
-    }
+  const Seen now(now_, p);
+  const std::uint64_t beyond = planes_beyond(now_, now);
+  if (beyond != 0) {
+    if (!at_end_) return false;
+    if ((beyond & planes_beyond(*at_end_, Seen(*at_end_, p))) != 0) return false;
   }
-  const auto slack = static_cast<float>(kRounding * farthest);
-  return !is_beyond_a_plane(q, slack) && !is_off_its_plane(q, slack);
+  const Sides sides = sides_of(now_, now);
+  if (!sides.above && !sides.below) return true;
+  if (!at_end_) return false;
+  const Sides at_end = sides_of(*at_end_, Seen(*at_end_, p));
+  return !(sides.above && at_end.above) && !(sides.below && at_end.below);
 }
 
-bool TriangleCull::is_beyond_a_plane(const float q[3][3], float slack) const {
-  unsigned beyond = 0;
-  for (int k = 0; k < planes_; ++k) {
+// A bit for each plane of the shape that separates the triangle.
+std::uint64_t TriangleCull::planes_beyond(const Placed& placed, const Seen& t) {
+  unsigned beyond[kMaxPlanes];
+  unsigned any = 0;
+  for (int k = 0; k < placed.planes; ++k) {
     const auto along = [&](int i) {
-      return plane_[0][k] * q[i][0] + plane_[1][k] * q[i][1] + plane_[2][k] * q[i][2];
+      return placed.plane[0][k] * t.q[i][0] + placed.plane[1][k] * t.q[i][1] +
+             placed.plane[2][k] * t.q[i][2];
     };
     const float a = along(0), b = along(1), c = along(2);
     const float ab = a < b ? a : b, nearest = ab < c ? ab : c;
-    beyond |= nearest > plane_[3][k] + slack ? 1u : 0u;
+    beyond[k] = nearest > placed.plane[3][k] + t.rounding ? 1u : 0u;
+    any |= beyond[k];
   }
-  return beyond != 0;
+  if (any == 0) return 0;
+  std::uint64_t bits = 0;
+  for (int k = 0; k < placed.planes; ++k) bits |= std::uint64_t{beyond[k]} << k;
+  return bits;
 }
 
-// Whether the shape is entirely on one side of the triangle's plane.
-bool TriangleCull::is_off_its_plane(const float q[3][3], float slack) const {
-  if (corners_ == 0) return false;
+// The side of the triangle's plane on which the entire shape is, if any.
+TriangleCull::Sides TriangleCull::sides_of(const Placed& placed, const Seen& t) const {
+  if (placed.corners == 0) return {};
+  const float(&q)[3][3] = t.q;
   float e[2][3];
   for (int k = 0; k < 3; ++k) {
     e[0][k] = q[1][k] - q[0][k];
@@ -119,14 +144,15 @@ bool TriangleCull::is_off_its_plane(const float q[3][3], float slack) const {
   // For thin triangles the normal itself is inaccurate: by rounding errors of the longer edges.
   const float longest = std::max(e[0][0] * e[0][0] + e[0][1] * e[0][1] + e[0][2] * e[0][2],
                                  e[1][0] * e[1][0] + e[1][1] * e[1][1] + e[1][2] * e[1][2]);
-  const float far = size * (margin_ + slack) + slack * longest;
+  const float far = size * (slack_ + t.rounding) + t.rounding * longest;
   unsigned above = 1, below = 1;
-  for (int k = 0; k < corners_; ++k) {
-    const float d = n[0] * corner_[0][k] + n[1] * corner_[1][k] + n[2] * corner_[2][k] - height;
+  for (int k = 0; k < placed.corners; ++k) {
+    const float d = n[0] * placed.corner[0][k] + n[1] * placed.corner[1][k] +
+                    n[2] * placed.corner[2][k] - height;
     above &= d > far ? 1u : 0u;
     below &= d < -far ? 1u : 0u;
   }
-  return (above | below) != 0;
+  return {above != 0, below != 0};
 }
 
 }  // namespace vp::collide

@@ -3,36 +3,53 @@
 // the triangle.
 #pragma once
 
-#include "collide/geometry.h"
+#include <cstdint>
+#include <optional>
+
+#include "collide/search_margin.h"
 
 namespace vp::collide {
 
 class TriangleCull {
  public:
-  // Precondition: is_convex_body(shape). margin: pairs with a larger separation need not be found
-  // [m].
-  TriangleCull(const Geometry& shape, const SE3& T_surface_shape, double margin);
+  // Precondition: is_convex_body(shape). margin: of the surface and the shape, in that order and
+  // frame.
+  TriangleCull(const Geometry& shape, const SE3& T_surface_shape, const SweptMargin& margin);
 
-  // Returns false if they are separated by more than the margin. p: corners in the surface's frame.
+  // Returns false if a plane of one of them separates both by more than the slack, now and at the
+  // next search. p: corners in the surface's frame.
   bool may_overlap(const Vec3 p[3]) const;
 
  private:
   static constexpr int kMaxPlanes = 64, kMaxCorners = 64;
 
-  void add_plane(const Vec3& outward, double offset);
-  void add_box(const Mat3& R, const Vec3& half);
-  void add_corner(const Vec3& corner);
-  bool is_beyond_a_plane(const float q[3][3], float slack) const;
-  bool is_off_its_plane(const float q[3][3], float slack) const;
+  // The core in a pose, in single precision, relative to its centre, in the surface's axes.
+  struct Placed {
+    Vec3 centre;
+    double extent = 0.0;  // of the farthest corner or plane
+    int planes = 0, corners = 0;
+    // Outward normal and offset; points beyond it are farther than the slack.
+    float plane[4][kMaxPlanes];
+    float corner[3][kMaxCorners];  // empty if there are too many, or none
 
-  // In single precision, relative to the shape's centre, in the surface's axes.
-  Vec3 centre_;
-  float margin_;
-  double extent_ = 0.0;  // of the farthest corner or plane
-  int planes_ = 0, corners_ = 0;
-  // Outward normal and offset; points beyond it are farther than the margin.
-  float plane_[4][kMaxPlanes];
-  float corner_[3][kMaxCorners];  // of the core; empty if there are too many, or none
+    void place(const Geometry& shape, const SE3& T, float slack);
+
+   private:
+    void add_plane(const Vec3& outward, double offset, float slack);
+    void add_box(const Mat3& R, const Vec3& half, float slack);
+    void add_corner(const Vec3& at);
+  };
+  struct Seen;
+  struct Sides {
+    bool above = false, below = false;
+  };
+
+  static std::uint64_t planes_beyond(const Placed& placed, const Seen& triangle);
+  Sides sides_of(const Placed& placed, const Seen& triangle) const;
+
+  float slack_;
+  Placed now_;
+  std::optional<Placed> at_end_;
 };
 
 }  // namespace vp::collide

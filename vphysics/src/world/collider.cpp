@@ -8,21 +8,6 @@
 namespace vp {
 namespace {
 
-// See Collider::size.
-double size_of(const collide::Geometry& g) {
-  if (collide::is_surface(g)) return 0.0;
-  if (g.kind == collide::Kind::compound) {
-    double min_size = collide::kFar;
-    for (const collide::Geometry& part : g.compound->geometries) {
-      min_size = std::min(min_size, size_of(part));
-    }
-    return min_size;
-  }
-  const collide::Bounds own = bounds_of(g, SE3{});
-  const Vec3 extents = own.upper - own.lower;
-  return 0.5 * std::min({extents.x, extents.y, extents.z});
-}
-
 // Bounds of a box for all its rotations about its z axis, whose direction in the outer frame is the
 // unit vector `line`: those of a cylinder. Empty if line is zero.
 collide::Bounds bounds_around(const Vec3& line, const collide::Bounds& box) {
@@ -85,7 +70,7 @@ void note_collider(Body& body, Collider& c, const Vec3& line) {
   c.radius = c.geometry.kind == collide::Kind::sphere ? c.geometry.radius
                                                       : 0.5 * norm(local.upper - local.lower);
   body.local = merged(body.local, local);
-  c.size = size_of(c.geometry);
+  c.size = min_half_extent(c.geometry);
   body.bounding_radius = bounding_radius_of(body);
   if (body.is_link) {
     c.around_line = bounds_around(line, local);
@@ -118,8 +103,7 @@ Vicinity vicinity_of(const Bodies& bodies, const Collider& a, const Collider& b)
   const Collider& smaller = a.radius <= b.radius ? a : b;
   const bool turns =
       smaller.geometry.kind != collide::Kind::sphere && smaller.radius < kUnboundedRadius;
-  return {bodies[smaller.body].T * smaller.centre, turns ? smaller.radius : 0.0,
-          smaller.geometry.kind == collide::Kind::compound};
+  return {bodies[smaller.body].T * smaller.centre, turns ? smaller.radius : 0.0};
 }
 
 double smaller_size(const Collider& a, const Collider& b) {

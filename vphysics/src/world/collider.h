@@ -74,8 +74,7 @@ bool should_collide(const Collider& a, const Collider& b);
 // rotation times its radius.
 struct Vicinity {
   Vec3 centre;
-  double radius;     // 0 if the smaller is a sphere: contact is along the line through its centre
-  bool of_compound;  // the smaller is one
+  double radius;  // 0 if the smaller is a sphere: contact is along the line through its centre
 };
 
 Vicinity vicinity_of(const Bodies& bodies, const Collider& a, const Collider& b);

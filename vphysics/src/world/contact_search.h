@@ -27,9 +27,17 @@ struct NarrowPhaseResult {
   collide::Manifold manifold;
   // Search distances, with motion and at rest, and the distance that is free of contact [m].
   double margin, margin_at_rest, clearance;
-  bool by_part;  // of a compound: each part has its own margin
   collide::MotionToImpact to_impact;
-  double dt;  // [s], in which they move
+  // Of a contact with parts: `count` manifolds of a PartSearch from `first` on.
+  std::uint32_t search = 0, first = 0, count = 0;
+};
+
+// Memory of the narrow phase of contacts with parts, for those that one worker tests together.
+struct PartSearch {
+  std::vector<collide::KnownPart> known;  // of the present contact
+  collide::ManifoldScratch scratch;
+  collide::CastScratch cast;
+  std::vector<collide::SubManifold> manifolds;  // of all contacts
 };
 
 // What find_again() has changed.
@@ -73,11 +81,17 @@ class ContactSearch {
   void find_dirty_contacts(double dt, const ContactRuns& runs);
   void list_dirty_contacts(const ContactRuns& runs);
   void find_manifolds_of(std::span<const std::uint32_t> contacts, double dt);
+  void find_manifold_of(Contact& contact, NarrowPhaseResult& found, const Approach& approach,
+                        PartSearch& search) const;
   void take_over(const NarrowPhaseResult& found);
   void assign_slot(std::uint32_t contact, const collide::Manifold& manifold,
                    const collide::MotionToImpact& to_impact);
   // part_contacts.cpp
-  void find_parts(const NarrowPhaseResult& look);
+  void find_parts(const Contact& contact, NarrowPhaseResult& found, const Approach& approach,
+                  PartSearch& search) const;
+  std::span<collide::SubManifold> parts_of(const NarrowPhaseResult& found);
+  void note_part_searches();
+  void take_over_parts(const NarrowPhaseResult& found);
   // find_again.cpp
   void load_inertias_of(const Contact& contact);
   bool list_deviating_bodies(double left);
@@ -95,10 +109,10 @@ class ContactSearch {
   std::vector<std::uint32_t> dirty_;    // contacts of this iteration
   std::vector<std::uint32_t> to_pose_;  // bodies
   std::vector<NarrowPhaseResult> results_;
-  std::vector<collide::KnownPart> known_parts_;  // of a contact with parts
-  std::vector<std::uint32_t> old_parts_, claimed_parts_;
-  std::vector<std::uint8_t> deviates_;    // of each awake body
-  std::vector<std::uint32_t> deviating_;  // bodies
+  std::vector<PartSearch> part_searches_;
+  std::vector<std::uint32_t> old_parts_, claimed_parts_;  // of a contact with parts
+  std::vector<std::uint8_t> deviates_;                    // of each awake body
+  std::vector<std::uint32_t> deviating_;                  // bodies
   std::vector<BodyAtStart> advanced_;
 };
 

@@ -12,48 +12,13 @@ namespace {
 // an arm r then has an error of r angle^2 / 2: a thirtieth of a millimetre for a box of a metre.
 constexpr double kRevolution = 0.01;
 constexpr std::size_t kNarrowPhaseGrain = 16;  // contacts: some microseconds
+static_assert(kContactBatch % kNarrowPhaseGrain == 0);
 
 // A sphere touches a convex shape at one point.
 int points_of(const Contact& c, const Collider& a, const Collider& b) {
   const bool ball = kind_of_part(a.geometry, c.sub_a) == collide::Kind::sphere ||
                     kind_of_part(b.geometry, c.sub_b) == collide::Kind::sphere;
   return ball ? 1 : collide::kMaxPoints;
-}
-
-struct NarrowPhaseInput {
-  const Bodies& bodies;
-  const Colliders& colliders;
-  const Joints& joints;
-  Approach approach;
-  double slop;
-};
-
-// The narrow phase of one contact. Contacts with parts are tested in take_over().
-void find_manifold_of(Contact& c, NarrowPhaseResult& found, const NarrowPhaseInput& in) {
-  const Collider &a = in.colliders[c.a], &b = in.colliders[c.b];
-  found.margin_at_rest = c.sensor ? 0.0 : in.slop + slide_limit(a, b);
-  found.margin = c.sensor ? 0.0 : found.margin_at_rest + in.approach.of(a, b);
-  // If the smaller one is a compound, its parts are tested within a smaller margin where they are
-  // slower.
-  found.by_part = c.has_parts && vicinity_of(in.bodies, a, b).of_compound &&
-                  in.approach.pull_of(in.bodies[a.body]) == Velocity{} &&
-                  in.approach.pull_of(in.bodies[b.body]) == Velocity{};
-  found.clearance = (found.by_part ? found.margin_at_rest : found.margin) - in.slop;
-  found.manifold.count = 0;
-  found.manifold.rough = false;
-  found.to_impact = {};
-  found.dt = in.approach.dt;
-  if (disables_collision(in.bodies, in.joints, a.body, b.body)) {
-    found.clearance = kNeverTouches;
-  } else if (!c.has_parts) {
-    find_manifold(a.geometry, a.T, b.geometry, b.T, found.margin, c.cache, found.manifold);
-    if (found.manifold.count > 0 && !c.sensor)
-      found.to_impact = move_to_impact(a.geometry, a.T, b.geometry, b.T,
-                                       in.approach.motion(a, b, found.margin_at_rest), found.margin,
-                                       found.manifold);
-    if (found.manifold.count == 0)
-      found.clearance = std::max(found.clearance, found.manifold.min_separation - in.slop);
-  }
 }
 
 }  // namespace
@@ -68,6 +33,7 @@ void ContactSearch::begin_step(std::size_t contacts) {
   renewed_ = 0;
   for (auto* list : {&dirty_, &dirty_next_step_}) list->reserve(s_.contact_store.dirty.capacity());
   results_.reserve(std::min(contacts, kContactBatch));
+  part_searches_.resize(kContactBatch / kNarrowPhaseGrain);
   writer_.reserve();
   new_pairs_.reserve(contacts);
   const std::size_t n = s_.bodies.size();
@@ -220,20 +186,51 @@ void ContactSearch::list_dirty_contacts(const ContactRuns& runs) {
   });
 }
 
+// Precondition: at most kContactBatch.
 void ContactSearch::find_manifolds_of(std::span<const std::uint32_t> contacts, double dt) {
   std::vector<NarrowPhaseResult>& results = results_;
   results.resize(contacts.size());
-  const NarrowPhaseInput input{s_.bodies, s_.colliders, s_.joints, s_.approach_in(dt),
-                               s_.desc.contact_slop};
+  const Approach approach = s_.approach_in(dt);
+  for (PartSearch& search : part_searches_) search.manifolds.clear();
   s_.workers.in_parallel(results.size(), kNarrowPhaseGrain,
                          [&](std::size_t begin, std::size_t end) {
+                           const std::size_t search = begin / kNarrowPhaseGrain;
                            for (std::size_t k = begin; k < end; ++k) {
                              prefetch_contacts(
                                  s_, [&](std::size_t i) { return contacts[i]; }, k, end);
                              results[k].contact = contacts[k];
-                             find_manifold_of(s_.contact_store[contacts[k]], results[k], input);
+                             results[k].search = static_cast<std::uint32_t>(search);
+                             find_manifold_of(s_.contact_store[contacts[k]], results[k], approach,
+                                              part_searches_[search]);
                            }
                          });
+  note_part_searches();
+}
+
+void ContactSearch::find_manifold_of(Contact& c, NarrowPhaseResult& found, const Approach& approach,
+                                     PartSearch& search) const {
+  const Collider &a = s_.colliders[c.a], &b = s_.colliders[c.b];
+  const double slop = s_.desc.contact_slop;
+  found.margin_at_rest = c.sensor ? 0.0 : slop + slide_limit(a, b);
+  found.margin = c.sensor ? 0.0 : found.margin_at_rest + approach.of(a, b);
+  found.clearance = found.margin - slop;
+  found.manifold.count = 0;
+  found.manifold.rough = false;
+  found.to_impact = {};
+  found.count = 0;
+  if (disables_collision(s_.bodies, s_.joints, a.body, b.body)) {
+    found.clearance = kNeverTouches;
+  } else if (c.has_parts) {
+    find_parts(c, found, approach, search);
+  } else {
+    find_manifold(a.geometry, a.T, b.geometry, b.T, found.margin, c.cache, found.manifold);
+    if (found.manifold.count > 0 && !c.sensor)
+      found.to_impact =
+          move_to_impact(a.geometry, a.T, b.geometry, b.T,
+                         approach.motion(a, b, found.margin_at_rest), found.margin, found.manifold);
+    if (found.manifold.count == 0)
+      found.clearance = std::max(found.clearance, found.manifold.min_separation - slop);
+  }
 }
 
 void ContactSearch::take_over(const NarrowPhaseResult& found) {
@@ -242,16 +239,16 @@ void ContactSearch::take_over(const NarrowPhaseResult& found) {
   s_.contact_store[index].dirty = false;
   if (!separated) ++s_.counters.narrow_phase_pairs;
   s_.status.distance_limit |= found.manifold.rough;
-  if (s_.contact_store[index].has_parts) {
+  if (s_.contact_store[index].sensor) {
+    const bool collides = found.manifold.count > 0 || found.count > 0;
+    if (collides != s_.contact_store[index].touching)
+      s_.events.touch(s_.colliders, s_.contact_store[index], collides);
+  } else if (s_.contact_store[index].has_parts) {
     if (separated) {
       s_.contact_store.remove_parts(index, s_.body_set);
     } else {
-      find_parts(found);
+      take_over_parts(found);
     }
-  } else if (s_.contact_store[index].sensor) {
-    const bool collides = found.manifold.count > 0;
-    if (collides != s_.contact_store[index].touching)
-      s_.events.touch(s_.colliders, s_.contact_store[index], collides);
   } else if (found.manifold.count > 0) {
     assign_slot(index, found.manifold, found.to_impact);
     return;

@@ -56,8 +56,59 @@ std::uint32_t claim_part(const ContactStore& contacts, const Colliders& collider
 
 }  // namespace
 
-void ContactSearch::find_parts(const NarrowPhaseResult& look) {
-  const std::uint32_t index = look.contact;
+// Contacts with parts are tested by several workers at a time.
+void ContactSearch::find_parts(const Contact& c, NarrowPhaseResult& found, const Approach& approach,
+                               PartSearch& search) const {
+  const Collider &a = s_.colliders[c.a], &b = s_.colliders[c.b];
+  search.known.clear();
+  for (std::uint32_t p = c.first_part; p != kNone; p = s_.contact_store[p].next_part) {
+    const Contact& part = s_.contact_store[p];
+    search.known.push_back({part.sub_a, part.sub_b, part.cache});
+  }
+  const collide::PairMotion motion = approach.motion(a, b, found.margin_at_rest);
+  // A body that forces accelerate strongly does not move at its present velocity.
+  const bool is_pulled = !(approach.pull_of(s_.bodies[a.body]) == Velocity{} &&
+                           approach.pull_of(s_.bodies[b.body]) == Velocity{});
+  const double slack = is_pulled ? found.margin : found.margin_at_rest;
+  const collide::SearchMargin margin = c.sensor
+                                           ? collide::SearchMargin(found.margin)
+                                           : collide::SearchMargin({found.margin, slack}, motion);
+  found.first = static_cast<std::uint32_t>(search.manifolds.size());
+  collide::PairCache no_cache;  // each part has its own
+  find_manifolds(a.geometry, a.T, b.geometry, b.T, margin, no_cache, search.known, search.scratch,
+                 search.manifolds);
+  found.count = static_cast<std::uint32_t>(search.manifolds.size()) - found.first;
+  // The distance within which no contact is left out.
+  const auto searched = [&](const Collider& x) {
+    return is_convex_body(x.geometry) ? margin.bounds_of(x.geometry, x.T).slack : 0.0;
+  };
+  const bool has_compound =
+      a.geometry.kind == collide::Kind::compound || b.geometry.kind == collide::Kind::compound;
+  found.clearance =
+      (has_compound ? slack : std::max(searched(a), searched(b))) - s_.desc.contact_slop;
+  if (found.count == 0 && !c.sensor)
+    found.clearance =
+        std::max(found.clearance, distance_of_parts(a.geometry, a.T, b.geometry, b.T, search.cast) -
+                                      s_.desc.contact_slop);
+}
+
+std::span<collide::SubManifold> ContactSearch::parts_of(const NarrowPhaseResult& found) {
+  return std::span(part_searches_[found.search].manifolds).subspan(found.first, found.count);
+}
+
+// Adds up what the workers have met.
+void ContactSearch::note_part_searches() {
+  collide::ManifoldScratch& all = s_.shapes.manifold_scratch;
+  for (PartSearch& search : part_searches_) {
+    all.triangles_tested += std::exchange(search.scratch.triangles_tested, 0);
+    all.crowded |= std::exchange(search.scratch.crowded, false);
+    all.rough |= std::exchange(search.scratch.rough, false);
+    for (const collide::SubManifold& found : search.manifolds) all.rough |= found.manifold.rough;
+  }
+}
+
+void ContactSearch::take_over_parts(const NarrowPhaseResult& result) {
+  const std::uint32_t index = result.contact;
   const Collider &a = s_.colliders[s_.contact_store[index].a],
                  &b = s_.colliders[s_.contact_store[index].b];
   const std::uint32_t first = s_.contact_store[index].first_part;
@@ -65,48 +116,20 @@ void ContactSearch::find_parts(const NarrowPhaseResult& look) {
     wake(s_, a.body);
     wake(s_, b.body);
   }
-  known_parts_.clear();
   old_parts_.clear();
-  for (std::uint32_t p = first; p != kNone; p = s_.contact_store[p].next_part) {
-    const Contact& part = s_.contact_store[p];
-    known_parts_.push_back({part.sub_a, part.sub_b, part.cache});
+  for (std::uint32_t p = first; p != kNone; p = s_.contact_store[p].next_part)
     old_parts_.push_back(p);
-  }
-  s_.shapes.manifolds.clear();
-  const Body &body_a = s_.bodies[a.body], &body_b = s_.bodies[b.body];
-  const Vec3 about = reference_point(body_b), arm = about - reference_point(body_a);
-  const collide::SearchMargin by_part(look.margin, look.margin_at_rest,
-                                      s_.dt * (body_b.v - body_a.v - cross(body_a.w, arm)),
-                                      s_.dt * (body_b.w - body_a.w), about);
-  const collide::PairMotion motion = s_.approach_in(look.dt).motion(a, b, look.margin_at_rest);
-  find_manifolds(a.geometry, a.T, b.geometry, b.T,
-                 look.by_part ? by_part : collide::SearchMargin(look.margin),
-                 s_.contact_store[index].cache, known_parts_, s_.shapes.manifold_scratch,
-                 s_.shapes.manifolds, s_.contact_store[index].sensor ? nullptr : &motion);
-  for (const collide::SubManifold& found : s_.shapes.manifolds)
-    s_.status.distance_limit |= found.manifold.rough;
-  if (s_.contact_store[index].sensor) {
-    const bool touches = !s_.shapes.manifolds.empty();
-    if (touches != s_.contact_store[index].touching)
-      s_.events.touch(s_.colliders, s_.contact_store[index], touches);
-    return;
-  }
-  double clearance = look.clearance;
-  if (s_.shapes.manifolds.empty()) {
-    clearance = std::max(clearance, distance_of_parts(a.geometry, a.T, b.geometry, b.T,
-                                                      s_.shapes.parts_scratch.cast) -
-                                        s_.desc.contact_slop);
-  }
-  s_.contact_store.set_clearance(s_.contact_store[index], clearance, s_.body_set);
+  s_.contact_store.set_clearance(s_.contact_store[index], result.clearance, s_.body_set);
+  const std::span<collide::SubManifold> parts = parts_of(result);
   claimed_parts_.clear();
-  for (const collide::SubManifold& found : s_.shapes.manifolds)
+  for (const collide::SubManifold& found : parts)
     claimed_parts_.push_back(claim_part(s_.contact_store, s_.colliders, old_parts_, found));
   for (const std::uint32_t p : old_parts_) {
     if (p != kNone) s_.contact_store.remove(p, s_.body_set);
   }
   std::uint32_t last = kNone;
-  for (std::size_t k = 0; k < s_.shapes.manifolds.size(); ++k) {
-    collide::SubManifold& found = s_.shapes.manifolds[k];
+  for (std::size_t k = 0; k < parts.size(); ++k) {
+    collide::SubManifold& found = parts[k];
     std::uint32_t p = claimed_parts_[k];
     if (p == kNone) {
       Contact part;
