@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "random.h"
@@ -217,6 +218,34 @@ TEST(FastBodies, RarelyPassThroughWaves) {
     }
   }
   EXPECT_LE(50 * below, shots);
+}
+
+// A body that flies past a round mesh does not collide with the planes of its triangles.
+TEST(FastBodies, AreNotDeflectedByWhatTheyPass) {
+  const TriangleMesh boulder = sphere_mesh(1.0, 3).made();
+  Random random(3);
+  for (const double speed : {5.0, 15.0, 50.0}) {
+    for (const double gap : {0.01, 0.03, 0.1}) {
+      for (const auto& [shape, radius] :
+           {std::pair{Shape(Sphere{0.1}), 0.1}, std::pair{Shape(Box{{0.1, 0.1, 0.1}}), 0.174},
+            std::pair{Shape(Capsule{0.05, 0.3}), 0.35},
+            std::pair{Shape(Box{{0.3, 0.05, 0.05}}), 0.309}}) {
+        for (int i = 0; i < 10; ++i) {
+          World world(without_gravity());
+          add_fixed(world, boulder, {});
+          const Vec3 along = random.direction(), across = cross(along, random.direction());
+          const Vec3 from =
+              (1.0 + radius + gap) / norm(across) * across - random.uniform(1.0, 2.0) * along;
+          const BodyId body =
+              add_dynamic(world, {.shape = shape, .pose = SE3(random.rotation(), from)});
+          must(world.set_velocity_world(body, {speed * along, 3.0 * random.direction()}));
+          for (int k = 1; k * speed / 60.0 < 4.0; ++k) must(world.step(1.0 / 60.0));
+          EXPECT_LT(norm(world.velocity_world(body).linear - speed * along), 1e-3 * speed)
+              << shape.index() << ' ' << speed << " m/s, gap " << gap;
+        }
+      }
+    }
+  }
 }
 
 // Neither do bodies that rotate up to 1.7 rad in the step in which they arrive.

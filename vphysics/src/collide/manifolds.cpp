@@ -26,9 +26,9 @@ class Finder {
       : search_(margin), bounds_(margin.all()), known_(known), scratch_(scratch), out_(out) {}
 
   // Restricts the search to where a convex shape of the pair is.
-  void restrict_to(const Geometry& shape, const SE3& T) {
+  void restrict_to(const Geometry& shape, const SE3& T, bool is_b) {
     if (!is_convex_body(shape)) return;
-    const ApproachBounds there = search_.bounds_of(shape, T);
+    const ApproachBounds there = search_.approach_of(shape, T, is_b);
     if (there.largest <= bounds_.largest) bounds_ = there;
   }
 
@@ -68,7 +68,7 @@ class Finder {
       const SE3 T = T_of * compound.parts[i].T_compound_part;
       const Geometry& part = compound.geometries[i];
       const ApproachBounds bounds_of_all = bounds_;
-      restrict_to(part, T);
+      restrict_to(part, T, swapped);
       (swapped ? sub_b_ : sub_a_) = i;
       PairCache cache = known_cache();
       if (other.kind == Kind::compound) {
@@ -124,8 +124,8 @@ void find_manifolds(const Geometry& a, const SE3& T_a, const Geometry& b, const 
                     const SearchMargin& margin, PairCache& cache, std::span<const KnownPart> known,
                     ManifoldScratch& scratch, std::vector<SubManifold>& manifolds) {
   Finder finder(margin, known, scratch, manifolds);
-  finder.restrict_to(a, T_a);
-  finder.restrict_to(b, T_b);
+  finder.restrict_to(a, T_a, false);
+  finder.restrict_to(b, T_b, true);
   if (a.kind == Kind::compound) {
     finder.find_of_parts(a, T_a, b, T_b, false);
   } else if (b.kind == Kind::compound) {

@@ -10,9 +10,8 @@
 namespace vp::collide {
 namespace {
 
-// In half extents of the shape: how far it moves in a stage, so that it is at any time over what it
-// is over at one end of the stage; and how far rotation may move its farthest point.
-constexpr double kStage = 2.0, kFarRotation = 0.5;
+// In half extents of the shape: how far rotation may move its farthest point.
+constexpr double kFarRotation = 0.5;
 
 // Moves the body's points to where they are after a time.
 SE3 displacement_after(const Motion& m, double time) {
@@ -22,50 +21,49 @@ SE3 displacement_after(const Motion& m, double time) {
 
 }  // namespace
 
-SearchMargin::SearchMargin(const ApproachBounds& all, const PairMotion& motion)
-    : all_(all), motion_(&motion), displacement_of_b_(displacement_of_b(1.0)) {}
+SweptMargin::SweptMargin(const ApproachBounds& of_both, const SE3& displacement_of_b)
+    : bounds(of_both),
+      moves(true),
+      displacement(displacement_of_b),
+      rotation(Log(SO3(displacement_of_b.rotation()))) {}
 
-// Relative to a, at this fraction of the motion.
-SE3 SearchMargin::displacement_of_b(double fraction) const {
-  const double time = fraction * motion_->dt;
-  return relative_pose(displacement_after(motion_->a, time), displacement_after(motion_->b, time));
+SE3 SweptMargin::part_of_displacement(double fraction, const Vec3& centre) const {
+  const Mat3 R = Exp(fraction * rotation).matrix();
+  return {R, centre + fraction * (displacement * centre - centre) - R * centre};
 }
 
-ApproachBounds SearchMargin::bounds_of(const Geometry& shape, const SE3& T) const {
+SearchMargin::SearchMargin(const ApproachBounds& all, const PairMotion& motion)
+    : all_(all),
+      motion_(&motion),
+      displacement_of_b_(relative_pose(displacement_after(motion.a, motion.dt),
+                                       displacement_after(motion.b, motion.dt))) {}
+
+ApproachBounds SearchMargin::approach_of(const Geometry& shape, const SE3& T, bool is_b) const {
   if (motion_ == nullptr) return all_;
   const Vec3 centre = T * core_centre(shape);
-  const double radius = core_extent(shape) + core_radius(shape);
-  const Motion &a = motion_->a, &b = motion_->b;
-  const double dt = motion_->dt;
-  const double moved = dt * norm(b.velocity(centre) - a.velocity(centre));
-  const double rotated = radius * std::min(dt * norm(b.w - a.w), 2.0);  // it stays in its ball
-  const double angle_a = dt * norm(a.w), angle_b = dt * norm(b.w);
-  // The path of a point of one, seen from the other, deviates from the line between its ends by at
-  // most an eighth of its largest acceleration: centripetal, Coriolis, centrifugal.
-  const double bend = 0.125 * (angle_a * angle_a * (norm(centre - a.x) + radius) +
-                               angle_b * angle_b * (norm(centre - b.x) + radius) +
-                               2.0 * (angle_a + angle_b) * (moved + rotated));
+  const double radius = core_extent(shape) + core_radius(shape), dt = motion_->dt;
+  const Motion &own = is_b ? motion_->b : motion_->a, &other = is_b ? motion_->a : motion_->b;
+  const double moved = dt * norm(own.velocity(centre) - other.velocity(centre));
+  const double rotated =
+      radius * std::min(dt * norm(own.w - other.w), 2.0);  // it stays in its ball
+  // The path of a point deviates from the line between its ends by at most an eighth of its largest
+  // acceleration: centripetal, and seen from the other body Coriolis and centrifugal.
+  const double angle = dt * norm(own.w), angle_of_other = dt * norm(other.w);
+  const double coriolis = 2.0 * (moved + rotated);
+  const double bend = 0.125 * (angle * angle * (norm(centre - own.x) + radius) +
+                               angle_of_other * angle_of_other * (norm(centre - other.x) + radius) +
+                               angle_of_other * coriolis);
   const double largest = std::min(all_.largest, all_.slack + moved + rotated);
-  const double half = min_half_extent(shape);
-  const bool rotates_far = rotated > kFarRotation * half;
-  const double stages = std::ceil((moved + rotated) / (kStage * half));
-  return {largest, rotates_far ? largest : std::min(largest, all_.slack + bend),
-          static_cast<int>(std::clamp(stages, 1.0, 1.0 * SweptMargin::kMaxStages))};
+  const bool rotates_far = rotated > kFarRotation * min_half_extent(shape);
+  // A plane may rotate with either body.
+  const double slack = rotates_far ? largest : all_.slack + bend + 0.125 * angle * coriolis;
+  return {largest, std::min(largest, slack), std::min(largest, all_.touching + bend)};
 }
 
 SweptMargin SearchMargin::swept(const ApproachBounds& bounds, bool moves_b, const SE3& T) const {
-  SweptMargin margin(bounds.largest);
-  if (motion_ == nullptr) return margin;
-  margin.bounds = bounds;
-  margin.stages = bounds.stages;
-  for (int k = 1; k <= bounds.stages; ++k) {
-    const bool is_last = k == bounds.stages;
-    const SE3 displaced =
-        (is_last ? displacement_of_b_ : displacement_of_b(1.0 * k / bounds.stages)) * T;
-    margin.displacement[k - 1] =
-        moves_b ? relative_pose(T, displaced) : relative_pose(displaced, T);
-  }
-  return margin;
+  if (motion_ == nullptr || bounds.touching >= bounds.largest) return SweptMargin(bounds.largest);
+  const SE3 displaced = displacement_of_b_ * T;
+  return {bounds, moves_b ? relative_pose(T, displaced) : relative_pose(displaced, T)};
 }
 
 }  // namespace vp::collide

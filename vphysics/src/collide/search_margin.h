@@ -12,54 +12,50 @@ namespace vp::collide {
 
 // How far two shapes may approach each other until the next search [m].
 struct ApproachBounds {
-  double largest;  // in any direction, with the slack
-  double slack;  // how much closer they may be in between than at both ends, and the margin at rest
-  int stages = 1;  // of the motion: in each, a shape moves about as far as its own extent
+  double largest;   // in any direction, with the slack
+  double slack;     // that a plane must have at both ends, so that it separates them in between
+  double touching;  // the distance at which they touch: the margin at rest, at least
 };
 
 // Of a convex shape b and another shape a, in a frame in which a stands still.
 struct SweptMargin {
-  static constexpr int kMaxStages = 8;
-
   // Without motion.
-  explicit SweptMargin(double everywhere) : bounds{everywhere, everywhere} {}
+  explicit SweptMargin(double everywhere) : bounds{everywhere, everywhere, everywhere} {}
+  SweptMargin(const ApproachBounds& of_both, const SE3& displacement_of_b);
 
-  bool moves() const { return stages > 0; }
-  // The displacement of b until the next search: moves its point x to to_end() * x.
-  const SE3& to_end() const { return displacement[stages - 1]; }
-  // How close b may be at the end of a stage in which it touches a.
-  double of_stage() const { return bounds.largest / stages; }
   // Whether the point x of b, at this separation from a along n, is so close now or at the next
   // search that it may touch a. n: unit, from a to b.
   bool may_touch(double separation, const Vec3& n, const Vec3& x) const {
     return separation <= bounds.slack ||
-           (moves() && separation + dot(n, to_end() * x - x) <= bounds.slack);
+           (moves && separation + dot(n, displacement * x - x) <= bounds.slack);
   }
+  // The displacement up to a fraction of the motion, along which the point `centre` moves straight.
+  SE3 part_of_displacement(double fraction, const Vec3& centre) const;
 
   ApproachBounds bounds;
-  int stages = 0;
-  SE3 displacement[kMaxStages];  // of b at the end of each stage
+  bool moves = false;
+  SE3 displacement;  // of b until the next search: moves its point x to displacement * x
+  Vec3 rotation;     // the same as a rotation vector [rad]
 };
 
 // Of a pair of shapes, which may have parts. World frame.
 class SearchMargin {
  public:
   // The same everywhere.
-  SearchMargin(double everywhere) : all_{everywhere, everywhere} {}
+  SearchMargin(double everywhere) : all_{everywhere, everywhere, everywhere} {}
   // motion: of both until the next search; it is referred to. all: of the pair, at its least slack.
   SearchMargin(const ApproachBounds& all, const PairMotion& motion);
 
   const ApproachBounds& all() const { return all_; }
   const PairMotion* motion() const { return motion_; }  // null: none
-  // Of a convex shape in this pose. One that rotates far, compared with its smallest extent, may
-  // touch with other features than those that are close at either end: its slack is the largest.
-  ApproachBounds bounds_of(const Geometry& shape, const SE3& T) const;
+  // Of a convex shape in this pose, b or a part of it, or else of a. One that rotates far, compared
+  // with its smallest extent, may touch with other features than those that are close at either
+  // end: its slack is the largest.
+  ApproachBounds approach_of(const Geometry& shape, const SE3& T, bool is_b) const;
   // In the frame of the other shape, which has the pose T.
   SweptMargin swept(const ApproachBounds& bounds, bool moves_b, const SE3& T) const;
 
  private:
-  SE3 displacement_of_b(double fraction) const;
-
   ApproachBounds all_;
   const PairMotion* motion_ = nullptr;
   SE3 displacement_of_b_;  // relative to a, until the next search

@@ -10,6 +10,7 @@
 #include "collide/corner_over_face.h"
 #include "collide/support.h"
 #include "collide/triangle_cull.h"
+#include "collide/triangle_sweep.h"
 
 namespace vp::collide {
 namespace {
@@ -43,7 +44,8 @@ void add_contact(const Contact& contact, std::vector<Contact>& contacts) {
 
 Bounds searched_bounds(const ShapeOnSurface& on, const SweptMargin& margin) {
   Bounds box = bounds_of(on.shape, on.T_surface_shape);
-  if (margin.moves()) box = merged(box, bounds_of(on.shape, margin.to_end() * on.T_surface_shape));
+  if (margin.moves)
+    box = merged(box, bounds_of(on.shape, margin.displacement * on.T_surface_shape));
   return grown(box, margin.bounds.slack);
 }
 
@@ -71,7 +73,7 @@ void find_contacts(const Surface& surface, const ShapeOnSurface& on, const Swept
   for (const std::uint32_t id : scratch.near_triangles) {
     SurfaceTriangle t = surface.triangle(id);
     if (!face_towards(t, centre, surface.two_sided())) continue;
-    const TriangleContact found = collide_triangle(surface, t, on, margin, scratch.points);
+    const TriangleContact found = sweep_triangle(surface, t, on, margin, scratch.points);
     scratch.rough |= found.rough;
     if (found.count > 0) add_contact({found, id, 0}, scratch.contacts);
   }

@@ -52,34 +52,15 @@ NearSphere near_sphere(const SurfaceTriangle& t, const Vec3& centre) {
   return {nearest.point, (1.0 / distance) * offset, distance, nearest.part};
 }
 
-// Whether the sphere is over the face, and close to it, at the end of a stage of its motion.
-bool meets_face(const SurfaceTriangle& t, const Vec3& centre, double radius,
-                const SweptMargin& margin) {
-  for (int k = 0; k < margin.stages; ++k) {
-    const NearSphere later = near_sphere(t, margin.displacement[k] * centre);
-    if (later.part.kind == TrianglePart::face && later.distance - radius <= margin.of_stage())
-      return true;
-  }
-  return false;
-}
-
 void collide_sphere(const Surface& surface, const SurfaceTriangle& t, const Vec3& centre,
-                    double radius, const SweptMargin& margin, TriangleContact& contact,
+                    double radius, double margin, TriangleContact& contact,
                     std::vector<ManifoldPoint>& points) {
   const NearSphere near = near_sphere(t, centre);
-  if (!margin.may_touch(near.distance - radius, near.normal, centre)) return;
+  if (near.distance - radius > margin) return;
   contact.part = near.part;
   contact.normal = near.normal;
   if (near.part.kind != TrianglePart::face &&
       !may_touch_along(surface, t, near.part, near.normal)) {
-    // It may be over the face later.
-    if (!meets_face(t, centre, radius, margin)) return;
-    contact.part = {};
-    contact.normal = t.normal;
-    contact.separation = dot(t.normal, centre - t.p[0]) - radius;
-    if (!margin.may_touch(contact.separation, t.normal, centre)) return;
-    points.push_back({centre - (radius + 0.5 * contact.separation) * t.normal, contact.separation,
-                      part_name(t, {}, 0)});
     return;
   }
   contact.separation = near.distance - radius;
@@ -92,7 +73,7 @@ void collide_sphere(const Surface& surface, const SurfaceTriangle& t, const Vec3
 class TriangleCollider {
  public:
   TriangleCollider(const Surface& surface, const SurfaceTriangle& t, const ShapeOnSurface& on,
-                   const SweptMargin& margin, std::vector<ManifoldPoint>& points)
+                   double margin, std::vector<ManifoldPoint>& points)
       : surface_(surface),
         t_(t),
         faces_(on.faces),
@@ -100,8 +81,7 @@ class TriangleCollider {
         triangle_(triangle_geometry(p_)),
         pair_(triangle_, on.shape,
               SE3(on.T_surface_shape.rotation(), on.T_surface_shape.position() - t.p[0])),
-        margin_(margin),
-        query_(pair_, margin.bounds.largest),
+        query_(pair_, margin),
         points_(points) {}
 
   void find(TriangleContact& contact);
@@ -109,16 +89,11 @@ class TriangleCollider {
 
  private:
   void along_face(double separation, TriangleContact& contact);
-  bool may_be_over(const SE3& T, double margin) const;
-  void clip_feature(const SE3& T, double margin);
-  void find_after(const SE3& displacement);
-  SE3 displaced(const SE3& displacement) const;
   void along(const BestAxis& axis, const TrianglePart& part, bool nearest_known,
              TriangleContact& contact);
   void finish(TriangleContact& contact, const TrianglePart& part, const Vec3& normal,
               double separation);
   bool tells(std::size_t first, double separation) const;
-  bool may_touch(double separation, const Vec3& normal) const;
   bool find_witness(BestAxis& axis) const;
 
   const Surface& surface_;
@@ -127,23 +102,19 @@ class TriangleCollider {
   Vec3 p_[3];
   Geometry triangle_;
   CorePair pair_;
-  const SweptMargin& margin_;
   ContactQuery query_;
   std::vector<ManifoldPoint>& points_;
 };
 
 void TriangleCollider::find(TriangleContact& contact) {
   const double separation = separation_along(pair_, t_.normal);
-  if (!may_touch(separation - query_.radii, t_.normal)) return;
+  if (separation - query_.radii > query_.margin) return;
   if ((t_.active & 7u) == 0) return along_face(separation, contact);
   const double limit = query_.margin + query_.radii;
   std::optional<GjkResult> nearest;
   if (faces_) nearest = corner_over_face(p_, *faces_, pair_.T_a_b, limit);
   const GjkResult found = nearest ? *nearest : gjk(pair_, t_.normal, limit);
-  if (found.state == GjkResult::State::beyond ||
-      (found.state == GjkResult::State::separated &&
-       !may_touch(found.distance - query_.radii, found.normal)))
-    return;
+  if (found.state == GjkResult::State::beyond) return;
   BestAxis best{found.distance, found.normal, found.on_a, found.on_b};
   if (found.state == GjkResult::State::overlaps) {
     const Penetration p = epa(pair_, found.simplex, 1e300);
@@ -167,23 +138,6 @@ void TriangleCollider::find(TriangleContact& contact) {
     points_.resize(first);
   }
   along(best, part, nearest_known, contact);
-}
-
-// Whether a plane with this normal separates them so little, now or at the next search.
-bool TriangleCollider::may_touch(double separation, const Vec3& normal) const {
-  if (separation <= margin_.bounds.slack) return true;
-  if (!margin_.moves()) return false;
-  const SE3 T = displaced(margin_.to_end());
-  int hint = 0;
-  const Vec3 foremost = T * core_support(pair_.b, -T.unrotate(normal), hint);
-  const double farthest = std::max({0.0, dot(normal, p_[1]), dot(normal, p_[2])});
-  return dot(normal, foremost) - farthest - query_.radii <= margin_.bounds.slack;
-}
-
-// The shape's pose after a displacement.
-SE3 TriangleCollider::displaced(const SE3& displacement) const {
-  const SE3 T = displacement * SE3(pair_.T_a_b.rotation(), pair_.T_a_b.position() + t_.p[0]);
-  return {T.rotation(), T.position() - t_.p[0]};
 }
 
 // The points where the two touch once the shape has exited: the closest points after a slightly
@@ -214,45 +168,10 @@ bool TriangleCollider::tells(std::size_t first, double separation) const {
 
 // Adds the part of the shape's feature over the triangle.
 void TriangleCollider::along_face(double separation, TriangleContact& contact) {
-  clip_feature(pair_.T_a_b, query_.margin);
-  for (int k = 0; k < margin_.stages && points_.size() == contact.first_point; ++k)
-    find_after(margin_.displacement[k]);
-  finish(contact, {}, t_.normal, separation - query_.radii);
-}
-
-void TriangleCollider::clip_feature(const SE3& T, double margin) {
-  if (!may_be_over(T, margin)) return;
   Feature other;
-  find_feature(pair_.b, T, -T.unrotate(t_.normal), other);
-  append_clipped({p_, t_.normal, other, query_.radii, margin, pair_.size}, points_);
-}
-
-// Whether the shape's bounding sphere is over the triangle.
-bool TriangleCollider::may_be_over(const SE3& T, double margin) const {
-  constexpr double kRounding = 1.0 + 1e-5;
-  const Vec3 centre = T * core_centre(pair_.b);
-  const double radius = kRounding * core_extent(pair_.b);
-  if (dot(t_.normal, centre) - radius - query_.radii > margin) return false;
-  for (int k = 0; k < 3; ++k) {
-    const Vec3 outward = cross(p_[(k + 1) % 3] - p_[k], t_.normal);
-    const double beside = dot(outward, centre - p_[k]);
-    if (beside > 0.0 && beside * beside > radius * radius * dot(outward, outward)) return false;
-  }
-  return true;
-}
-
-// What is beside the triangle now, and over it and close after a displacement: at its present
-// place.
-void TriangleCollider::find_after(const SE3& displacement) {
-  const std::size_t first = points_.size();
-  clip_feature(displaced(displacement), margin_.of_stage());
-  for (std::size_t i = first; i < points_.size(); ++i) {
-    ManifoldPoint& p = points_[i];
-    const Vec3 later = t_.p[0] + p.position + 0.5 * p.separation * t_.normal;
-    const Vec3 now = inverse_times(displacement, later);
-    p.separation += dot(t_.normal, now - later);
-    p.position = now - 0.5 * p.separation * t_.normal - t_.p[0];
-  }
+  find_feature(pair_.b, pair_.T_a_b, -pair_.T_a_b.unrotate(t_.normal), other);
+  append_clipped({p_, t_.normal, other, query_.radii, query_.margin, pair_.size}, points_);
+  finish(contact, {}, t_.normal, separation - query_.radii);
 }
 
 // Adds the contact of an edge, from the corner with the lower name, or of a corner.
@@ -278,21 +197,16 @@ void TriangleCollider::finish(TriangleContact& contact, const TrianglePart& part
   contact.part = part;
   contact.normal = normal;
   contact.separation = separation;
-  std::size_t kept = contact.first_point;
   for (std::size_t i = contact.first_point; i < points_.size(); ++i) {
-    ManifoldPoint p = points_[i];
-    p.position += t_.p[0];
-    p.feature = part_name(t_, part, p.feature);
-    if (margin_.may_touch(p.separation, normal, p.position + 0.5 * p.separation * normal))
-      points_[kept++] = p;
+    points_[i].position += t_.p[0];
+    points_[i].feature = part_name(t_, part, points_[i].feature);
   }
-  points_.resize(kept);
 }
 
 }  // namespace
 
 TriangleContact collide_triangle(const Surface& surface, const SurfaceTriangle& t,
-                                 const ShapeOnSurface& on, const SweptMargin& margin,
+                                 const ShapeOnSurface& on, double margin,
                                  std::vector<ManifoldPoint>& points) {
   TriangleContact contact{{}, {}, 0.0, points.size(), 0, 0};
   if (on.shape.kind == Kind::sphere) {
@@ -306,6 +220,30 @@ TriangleContact collide_triangle(const Surface& surface, const SurfaceTriangle& 
   contact.count = points.size() - contact.first_point;
   contact.active_part = active_part(t, contact.part);
   return contact;
+}
+
+TriangleDistance distance_from_triangle(const SurfaceTriangle& t, const ShapeOnSurface& on,
+                                        double limit) {
+  const Vec3 p[3] = {{}, t.p[1] - t.p[0], t.p[2] - t.p[0]};
+  const SE3 T(on.T_surface_shape.rotation(), on.T_surface_shape.position() - t.p[0]);
+  const double radius = core_radius(on.shape);
+  std::optional<GjkResult> found;
+  if (on.faces) found = corner_over_face(p, *on.faces, T, limit + radius);
+  if (!found) {
+    const Geometry local = triangle_geometry(p);
+    found = gjk(CorePair(local, on.shape, T), t.normal, limit + radius);
+  }
+  if (found->state == GjkResult::State::overlaps) return {0.0, {}};
+  return {std::max(0.0, found->distance - radius), found->normal};
+}
+
+double separation_from_triangle(const SurfaceTriangle& t, const ShapeOnSurface& on, const Vec3& n) {
+  const SE3& T = on.T_surface_shape;
+  int hint = 0;
+  const Vec3 foremost = core_support(on.shape, -T.unrotate(n), hint);
+  const Vec3 from_corner = (T.position() - t.p[0]) + T.rotate(foremost);
+  const double farthest = std::max({0.0, dot(n, t.p[1] - t.p[0]), dot(n, t.p[2] - t.p[0])});
+  return dot(n, from_corner) - farthest - core_radius(on.shape);
 }
 
 double active_distance(const Surface& surface, const SurfaceTriangle& t, const Vec3& centre) {

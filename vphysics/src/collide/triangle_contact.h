@@ -10,7 +10,6 @@
 
 #include "collide/manifold.h"
 #include "collide/polytope.h"
-#include "collide/search_margin.h"
 #include "collide/triangle_parts.h"
 
 namespace vp::collide {
@@ -35,14 +34,25 @@ struct ShapeOnSurface {
   const Polytope* faces;
 };
 
-// Appends the points that may touch within the margin, not reduced, in the surface's frame. margin:
-// of the surface and the shape, in that order and frame.
+// Appends the points of a separation of at most margin, not reduced, in the surface's frame.
 // Triangles that share the touched edge or corner give the same feature names. count 0: no contact.
 // Precondition: the triangle's front faces the shape's centre; the shape is convex and no
 // half-space.
 TriangleContact collide_triangle(const Surface& surface, const SurfaceTriangle& triangle,
-                                 const ShapeOnSurface& shape, const SweptMargin& margin,
+                                 const ShapeOnSurface& shape, double margin,
                                  std::vector<ManifoldPoint>& points);
+
+// Their distance, if it is at most limit, and its direction from the triangle to the shape; 0 if
+// they overlap.
+struct TriangleDistance {
+  double distance;  // > limit: at least this
+  Vec3 normal;      // unit, if they are separated
+};
+TriangleDistance distance_from_triangle(const SurfaceTriangle& triangle,
+                                        const ShapeOnSurface& shape, double limit);
+// The separation along a unit vector n from the triangle to the shape.
+double separation_from_triangle(const SurfaceTriangle& triangle, const ShapeOnSurface& shape,
+                                const Vec3& n);
 
 // The distance from a sphere's centre to the part of the triangle that it would touch; kFar if the
 // closest part is not active from there. Precondition: the triangle's front faces the centre.

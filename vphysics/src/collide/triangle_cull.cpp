@@ -18,8 +18,8 @@ constexpr double kRounding = 2e-6;
 TriangleCull::TriangleCull(const Geometry& shape, const SE3& T, const SweptMargin& margin)
     : slack_(static_cast<float>(margin.bounds.slack + core_radius(shape))) {
   now_.place(shape, T, slack_);
-  if (!margin.moves()) return;
-  at_end_.emplace().place(shape, margin.to_end() * T, slack_);
+  if (!margin.moves) return;
+  at_end_.emplace().place(shape, margin.displacement * T, slack_);
 }
 
 // The planes are those of the core: the radius of the sphere that sweeps it is part of the slack.

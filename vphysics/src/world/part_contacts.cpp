@@ -70,9 +70,9 @@ void ContactSearch::find_parts(const Contact& c, NarrowPhaseResult& found, const
   const bool is_pulled = !(approach.pull_of(s_.bodies[a.body]) == Velocity{} &&
                            approach.pull_of(s_.bodies[b.body]) == Velocity{});
   const double slack = is_pulled ? found.margin : found.margin_at_rest;
-  const collide::SearchMargin margin = c.sensor
-                                           ? collide::SearchMargin(found.margin)
-                                           : collide::SearchMargin({found.margin, slack}, motion);
+  const collide::SearchMargin margin =
+      c.sensor ? collide::SearchMargin(found.margin)
+               : collide::SearchMargin({found.margin, slack, found.margin_at_rest}, motion);
   found.first = static_cast<std::uint32_t>(search.manifolds.size());
   collide::PairCache no_cache;  // each part has its own
   find_manifolds(a.geometry, a.T, b.geometry, b.T, margin, no_cache, search.known, search.scratch,
@@ -80,7 +80,7 @@ void ContactSearch::find_parts(const Contact& c, NarrowPhaseResult& found, const
   found.count = static_cast<std::uint32_t>(search.manifolds.size()) - found.first;
   // The distance within which no contact is left out.
   const auto searched = [&](const Collider& x) {
-    return is_convex_body(x.geometry) ? margin.bounds_of(x.geometry, x.T).slack : 0.0;
+    return is_convex_body(x.geometry) ? margin.approach_of(x.geometry, x.T, &x == &b).slack : 0.0;
   };
   const bool has_compound =
       a.geometry.kind == collide::Kind::compound || b.geometry.kind == collide::Kind::compound;

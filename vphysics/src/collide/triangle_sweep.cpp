@@ -1,0 +1,111 @@
+#include "collide/triangle_sweep.h"
+
+#include <algorithm>
+#include <optional>
+#include <span>
+
+#include "collide/support.h"
+
+namespace vp::collide {
+namespace {
+
+constexpr int kMaxAdvances = 32;
+// Fraction of the distance at which they touch, to which the shape advances.
+constexpr double kTouching = 0.5;
+
+class TriangleSweep {
+ public:
+  TriangleSweep(const SurfaceTriangle& t, const ShapeOnSurface& on, const SweptMargin& margin)
+      : t_(t),
+        on_(on),
+        margin_(margin),
+        centre_(on.T_surface_shape * core_centre(on.shape)),
+        T_end_(margin.displacement * on.T_surface_shape) {}
+
+  // The fraction of the motion at which they touch, not later; 0: now. Advances along the normal
+  // of a separating plane, first that of the triangle, for as long as it separates them. If it does
+  // so at the end too, they do not touch.
+  std::optional<double> impact() const {
+    const double touching = margin_.bounds.touching;
+    double time = 0.0;
+    SE3 T = on_.T_surface_shape;
+    Vec3 normal = t_.normal;
+    double separation = separation_from_triangle(t_, on_, normal);
+    if (separation <= touching) {
+      if ((t_.active & 7u) == 0) return 0.0;
+      const TriangleDistance near = distance_from_triangle(t_, on_, margin_.bounds.largest);
+      separation = near.distance;
+      normal = near.normal;
+    }
+    for (int i = 0; i < kMaxAdvances; ++i) {
+      if (separation <= touching) return time;
+      const double at_end = separation_from_triangle(t_, {on_.shape, T_end_, on_.faces}, normal);
+      if (at_end > touching) return std::nullopt;
+      time += (1.0 - time) * (separation - kTouching * touching) / (separation - at_end);
+      if (i == 0 && (t_.active & 7u) == 0) return time;
+      T = displacement(time) * on_.T_surface_shape;
+      const ShapeOnSurface there{on_.shape, T, on_.faces};
+      const TriangleDistance near = distance_from_triangle(t_, there, margin_.bounds.largest);
+      separation = near.distance;
+      normal = near.normal;
+    }
+    return time;
+  }
+
+  SE3 displacement(double time) const { return margin_.part_of_displacement(time, centre_); }
+
+ private:
+  const SurfaceTriangle& t_;
+  const ShapeOnSurface& on_;
+  const SweptMargin& margin_;
+  Vec3 centre_;
+  SE3 T_end_;
+};
+
+// Moves points that were found after a displacement back to where they are now.
+void move_back(const SE3& displacement, const Vec3& normal, std::span<ManifoldPoint> points) {
+  for (ManifoldPoint& p : points) {
+    const Vec3 there = p.position + 0.5 * p.separation * normal;
+    const Vec3 here = inverse_times(displacement, there);
+    p.separation += dot(normal, here - there);
+    p.position = here - 0.5 * p.separation * normal;
+  }
+}
+
+}  // namespace
+
+TriangleContact sweep_triangle(const Surface& surface, const SurfaceTriangle& t,
+                               const ShapeOnSurface& on, const SweptMargin& margin,
+                               std::vector<ManifoldPoint>& points) {
+  const double largest = margin.bounds.largest;
+  if (!margin.moves) return collide_triangle(surface, t, on, largest, points);
+  const std::size_t first = points.size();
+  // Where the contact of a shape that rotates far will be depends on more than its pose at the
+  // impact.
+  const bool rotates_far = margin.bounds.slack >= largest;
+  TriangleContact contact{{}, {}, 0.0, first, 0, 0};
+  if (rotates_far) contact = collide_triangle(surface, t, on, largest, points);
+  if (contact.count > 0) return contact;
+  const TriangleSweep sweep(t, on, margin);
+  const std::optional<double> time = sweep.impact();
+  if (!time) return contact;
+  if (*time == 0.0) {
+    contact = collide_triangle(surface, t, on, largest, points);
+  } else {
+    const SE3 displacement = sweep.displacement(*time), T = displacement * on.T_surface_shape;
+    contact = collide_triangle(surface, t, {on.shape, T, on.faces}, largest, points);
+    move_back(displacement, contact.normal, std::span(points).subspan(first));
+    contact.separation += dot(contact.normal, on.T_surface_shape.position() - T.position());
+  }
+  const auto stays_away = [&](const ManifoldPoint& p) {
+    return !margin.may_touch(p.separation, contact.normal,
+                             p.position + 0.5 * p.separation * contact.normal);
+  };
+  points.erase(
+      std::remove_if(points.begin() + static_cast<std::ptrdiff_t>(first), points.end(), stays_away),
+      points.end());
+  contact.count = points.size() - first;
+  return contact;
+}
+
+}  // namespace vp::collide
