@@ -195,7 +195,7 @@ TEST(FastBodies, RarelyPassThroughWaves) {
     for (const Shape& shape :
          {Shape(Sphere{0.1}), Shape(Box{{0.1, 0.1, 0.1}}), Shape(Capsule{0.05, 0.3}),
           Shape(Box{{0.4, 0.05, 0.05}}), Shape(Cylinder{0.2, 0.1})}) {
-      for (int i = 0; i < 60; ++i) {
+      for (int i = 0; i < 30; ++i) {
         World world;
         add_fixed(world, waves, {});
         Vec3 towards = random.direction();
