@@ -19,8 +19,12 @@ class TriangleSweep {
       : t_(t),
         on_(on),
         margin_(margin),
+        separation_(separation_from_triangle(t, on, t.normal)),
         centre_(on.T_surface_shape * core_centre(on.shape)),
         T_end_(margin.displacement * on.T_surface_shape) {}
+
+  // Along the triangle's normal, now.
+  double separation() const { return separation_; }
 
   // The fraction of the motion at which they touch, not later; 0: now. Advances along the normal
   // of a separating plane, first that of the triangle, for as long as it separates them. If it does
@@ -28,26 +32,16 @@ class TriangleSweep {
   std::optional<double> impact() const {
     const double touching = margin_.bounds.touching;
     double time = 0.0;
-    SE3 T = on_.T_surface_shape;
-    Vec3 normal = t_.normal;
-    double separation = separation_from_triangle(t_, on_, normal);
-    if (separation <= touching) {
-      if ((t_.active & 7u) == 0) return 0.0;
-      const TriangleDistance near = distance_from_triangle(t_, on_, margin_.bounds.largest);
-      separation = near.distance;
-      normal = near.normal;
-    }
+    TriangleDistance near{separation_, t_.normal};
+    if (separation_ <= touching) near = distance_at(on_.T_surface_shape);
     for (int i = 0; i < kMaxAdvances; ++i) {
-      if (separation <= touching) return time;
-      const double at_end = separation_from_triangle(t_, {on_.shape, T_end_, on_.faces}, normal);
+      if (near.distance <= touching) return time;
+      const double at_end =
+          separation_from_triangle(t_, {on_.shape, T_end_, on_.faces}, near.normal);
       if (at_end > touching) return std::nullopt;
-      time += (1.0 - time) * (separation - kTouching * touching) / (separation - at_end);
+      time += (1.0 - time) * (near.distance - kTouching * touching) / (near.distance - at_end);
       if (i == 0 && (t_.active & 7u) == 0) return time;
-      T = displacement(time) * on_.T_surface_shape;
-      const ShapeOnSurface there{on_.shape, T, on_.faces};
-      const TriangleDistance near = distance_from_triangle(t_, there, margin_.bounds.largest);
-      separation = near.distance;
-      normal = near.normal;
+      near = distance_at(displacement(time) * on_.T_surface_shape);
     }
     return time;
   }
@@ -55,9 +49,14 @@ class TriangleSweep {
   SE3 displacement(double time) const { return margin_.part_of_displacement(time, centre_); }
 
  private:
+  TriangleDistance distance_at(const SE3& T) const {
+    return distance_from_triangle(t_, {on_.shape, T, on_.faces}, margin_.bounds.largest);
+  }
+
   const SurfaceTriangle& t_;
   const ShapeOnSurface& on_;
   const SweptMargin& margin_;
+  double separation_;
   Vec3 centre_;
   SE3 T_end_;
 };
@@ -77,21 +76,23 @@ void move_back(const SE3& displacement, const Vec3& normal, std::span<ManifoldPo
 TriangleContact sweep_triangle(const Surface& surface, const SurfaceTriangle& t,
                                const ShapeOnSurface& on, const SweptMargin& margin,
                                std::vector<ManifoldPoint>& points) {
-  const double largest = margin.bounds.largest;
+  const double largest = margin.bounds.largest, touching = margin.bounds.touching;
   if (!margin.moves) return collide_triangle(surface, t, on, largest, points);
   const std::size_t first = points.size();
+  const TriangleSweep sweep(t, on, margin);
   // Where the contact of a shape that rotates far will be depends on more than its pose at the
   // impact.
-  const bool rotates_far = margin.bounds.slack >= largest;
+  const bool rotates_far = margin.bounds.slack >= largest,
+             may_touch_now = sweep.separation() <= touching;
   TriangleContact contact{{}, {}, 0.0, first, 0, 0};
-  if (rotates_far) contact = collide_triangle(surface, t, on, largest, points);
-  if (contact.count > 0) return contact;
-  const TriangleSweep sweep(t, on, margin);
-  const std::optional<double> time = sweep.impact();
-  if (!time) return contact;
-  if (*time == 0.0) {
-    contact = collide_triangle(surface, t, on, largest, points);
-  } else {
+  if (rotates_far || may_touch_now) contact = collide_triangle(surface, t, on, largest, points);
+  if (rotates_far && contact.count > 0) return contact;
+  const bool touches_now = may_touch_now && contact.count > 0 && contact.separation <= touching;
+  if (!touches_now && !(may_touch_now && (t.active & 7u) == 0)) {
+    points.resize(first);
+    contact.count = 0;
+    const std::optional<double> time = sweep.impact();
+    if (!time) return contact;
     const SE3 displacement = sweep.displacement(*time), T = displacement * on.T_surface_shape;
     contact = collide_triangle(surface, t, {on.shape, T, on.faces}, largest, points);
     move_back(displacement, contact.normal, std::span(points).subspan(first));
