@@ -16,10 +16,10 @@ constexpr double kRounding = 2e-6;
 }  // namespace
 
 TriangleCull::TriangleCull(const Geometry& shape, const SE3& T, const SweptMargin& margin)
-    : slack_(static_cast<float>(margin.bounds.slack + core_radius(shape))) {
+    : slack_(static_cast<float>(margin.bounds.slack + core_radius(shape))), moves_(margin.moves) {
   now_.place(shape, T, slack_);
-  if (!margin.moves) return;
-  at_end_.emplace().place(shape, margin.displacement * T, slack_);
+  if (!moves_) return;
+  at_end_.place(shape, margin.displacement * T, slack_);
 }
 
 // The planes are those of the core: the radius of the sphere that sweeps it is part of the slack.
@@ -98,13 +98,13 @@ bool TriangleCull::may_overlap(const Vec3 p[3]) const {
   const Seen now(now_, p);
   const std::uint64_t beyond = planes_beyond(now_, now);
   if (beyond != 0) {
-    if (!at_end_) return false;
-    if ((beyond & planes_beyond(*at_end_, Seen(*at_end_, p))) != 0) return false;
+    if (!moves_) return false;
+    if ((beyond & planes_beyond(at_end_, Seen(at_end_, p))) != 0) return false;
   }
   const Sides sides = sides_of(now_, now);
   if (!sides.above && !sides.below) return true;
-  if (!at_end_) return false;
-  const Sides at_end = sides_of(*at_end_, Seen(*at_end_, p));
+  if (!moves_) return false;
+  const Sides at_end = sides_of(at_end_, Seen(at_end_, p));
   return !(sides.above && at_end.above) && !(sides.below && at_end.below);
 }
 

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 
 #include "collide/search_margin.h"
 
@@ -49,7 +48,8 @@ class TriangleCull {
 
   float slack_;
   Placed now_;
-  std::optional<Placed> at_end_;
+  bool moves_;
+  Placed at_end_;  // if it moves
 };
 
 }  // namespace vp::collide
