@@ -10,8 +10,9 @@
 namespace vp::collide {
 namespace {
 
-// In half extents of the shape: how far rotation may move its farthest point.
-constexpr double kFarRotation = 0.5;
+// In half extents of the shape: how far rotation may move its farthest point, and how far its path
+// may deviate from a line.
+constexpr double kFarRotation = 0.5, kFarBend = 0.1;
 
 // Moves the body's points to where they are after a time.
 SE3 displacement_after(const Motion& m, double time) {
@@ -54,7 +55,9 @@ ApproachBounds SearchMargin::approach_of(const Geometry& shape, const SE3& T, bo
                                angle_of_other * angle_of_other * (norm(centre - other.x) + radius) +
                                angle_of_other * coriolis);
   const double largest = std::min(all_.largest, all_.slack + moved + rotated);
-  const bool rotates_far = rotated > kFarRotation * min_half_extent(shape);
+  const double half = min_half_extent(shape);
+  if (bend > kFarBend * half) return {largest, largest, largest};
+  const bool rotates_far = rotated > kFarRotation * half;
   // A plane may rotate with either body.
   const double slack = rotates_far ? largest : all_.slack + bend + 0.125 * angle * coriolis;
   return {largest, std::min(largest, slack), std::min(largest, all_.touching + bend)};

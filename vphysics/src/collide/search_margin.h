@@ -50,7 +50,8 @@ class SearchMargin {
   const PairMotion* motion() const { return motion_; }  // null: none
   // Of a convex shape in this pose, b or a part of it, or else of a. One that rotates far, compared
   // with its smallest extent, may touch with other features than those that are close at either
-  // end: its slack is the largest.
+  // end: its slack is the largest. So is its touching distance if its path bends, as near a surface
+  // that rotates fast: its motion is not followed.
   ApproachBounds approach_of(const Geometry& shape, const SE3& T, bool is_b) const;
   // In the frame of the other shape, which has the pose T.
   SweptMargin swept(const ApproachBounds& bounds, bool moves_b, const SE3& T) const;
