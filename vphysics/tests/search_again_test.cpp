@@ -248,6 +248,20 @@ TEST(FastBodies, AreNotDeflectedByWhatTheyPass) {
   }
 }
 
+// Without friction a ball that spins keeps its spin when it lands on a mesh.
+TEST(FastBodies, KeepTheirSpinOnAMeshWithoutFriction) {
+  World world(without_gravity());
+  add_fixed(world, two_sided_square(9), {.friction = 0.0});
+  const Vec3 spin{0.0, 10.0, 0.0};
+  const BodyId ball = add_dynamic(
+      world,
+      {.shape = Sphere{0.1}, .material = {.friction = 0.0}, .pose = SE3(Vec3{-0.3, 0.2, 0})});
+  must(world.set_velocity_world(ball, {{5.0, 0, 0}, spin}));
+  for (int k = 0; k < 20; ++k) must(world.step(1.0 / 60.0));
+  EXPECT_LT(world.pose(ball).position().x, 0.0);
+  EXPECT_LT(norm(world.velocity_world(ball).angular - spin), 0.01);
+}
+
 // Neither do bodies that rotate up to 1.7 rad in the step in which they arrive.
 TEST(FastBodies, WithRotationPassThroughNothing) {
   const TriangleMesh sheet = two_sided_square(9);

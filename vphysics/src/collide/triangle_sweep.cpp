@@ -61,12 +61,14 @@ class TriangleSweep {
   SE3 T_end_;
 };
 
-// Moves points that were found after a displacement back to where they are now.
-void move_back(const SE3& displacement, const Vec3& normal, std::span<ManifoldPoint> points) {
+// Moves points that were found after a displacement back with the shape's centre. Their arms stay
+// those of the impact, so that a ball that spins has none along the surface; their separations
+// become those from which the solver's velocities close them.
+void move_back(const Vec3& centre, const Vec3& shift, const Vec3& rotation, const Vec3& normal,
+               std::span<ManifoldPoint> points) {
   for (ManifoldPoint& p : points) {
-    const Vec3 there = p.position + 0.5 * p.separation * normal;
-    const Vec3 here = inverse_times(displacement, there);
-    p.separation += dot(normal, here - there);
+    const Vec3 here = p.position + 0.5 * p.separation * normal - shift;
+    p.separation -= dot(normal, shift + cross(rotation, here - centre));
     p.position = here - 0.5 * p.separation * normal;
   }
 }
@@ -95,7 +97,9 @@ TriangleContact sweep_triangle(const Surface& surface, const SurfaceTriangle& t,
     if (!time) return contact;
     const SE3 displacement = sweep.displacement(*time), T = displacement * on.T_surface_shape;
     contact = collide_triangle(surface, t, {on.shape, T, on.faces}, largest, points);
-    move_back(displacement, contact.normal, std::span(points).subspan(first));
+    const Vec3 centre = on.T_surface_shape * core_centre(on.shape);
+    move_back(centre, displacement * centre - centre, *time * margin.rotation, contact.normal,
+              std::span(points).subspan(first));
     contact.separation += dot(contact.normal, on.T_surface_shape.position() - T.position());
   }
   const auto stays_away = [&](const ManifoldPoint& p) {

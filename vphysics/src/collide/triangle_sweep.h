@@ -10,8 +10,8 @@
 namespace vp::collide {
 
 // As collide_triangle, for what may touch within the margin: of the surface and the shape, in that
-// order and frame. The contact is found at the pose of the impact, and its points are moved back to
-// where they are now, with the separations that they have now.
+// order and frame. The contact is found at the pose of the impact, and its points are moved back
+// with the shape's centre.
 TriangleContact sweep_triangle(const Surface& surface, const SurfaceTriangle& triangle,
                                const ShapeOnSurface& shape, const SweptMargin& margin,
                                std::vector<ManifoldPoint>& points);
