@@ -208,6 +208,42 @@ TEST(Step, WithMeshesAndCompoundsAllocatesNothingOnceWarm) {
   EXPECT_EQ(during, 0);
 }
 
+// Takes one grain after the other.
+class OneByOne final : public TaskScheduler {
+ public:
+  void run(std::size_t count, std::size_t grain, const Task& task) override {
+    for (std::size_t i = 0; i < count; i += grain) task(i, std::min(count, i + grain));
+  }
+};
+
+// Each grain of contacts with parts has memory of its own.
+TEST(Step, WithSharedContactsOfPartsAllocatesNothingOnceWarm) {
+  World world;
+  world.set_task_scheduler(std::make_shared<OneByOne>());
+  add_fixed(world, wave_mesh(60, 0.25, 0.1).made(), {});
+  const std::vector<CompoundPart> parts{{Sphere{0.1}, SE3(Vec3{0.15, 0, 0})},
+                                        {Box{{0.1, 0.1, 0.1}}, SE3(Vec3{-0.15, 0, 0})}};
+  const Shape dumbbell = Compound::of(parts).value();
+  Random random(5);
+  std::vector<BodyId> bodies;
+  for (int i = 0; i < 80; ++i) bodies.push_back(add_dynamic(world, {.shape = dumbbell}));
+  long during = 0;
+  for (int i = 0; i < 1200; ++i) {
+    for (std::size_t k = 0; i % 100 == 0 && k < bodies.size(); ++k) {
+      const Vec3 at{0.8 * (static_cast<double>(k % 9) - 4), 0.8 * (static_cast<double>(k / 9) - 4),
+                    0.5};
+      must(world.set_pose(bodies[k], SE3{random.rotation(), at}));
+      must(world.set_velocity(bodies[k], {random.in_cube(3.0), random.in_cube(2.0)}));
+    }
+    const long before = g_allocations;
+    const auto status = world.step(0.01);
+    if (i >= 1000) during += g_allocations - before;
+    ASSERT_TRUE(status);
+  }
+  EXPECT_GT(world.counters().manifolds, 80u);
+  EXPECT_EQ(during, 0);
+}
+
 // A heap is thrown about in a pit, then lies still; its regions are recomputed every quarter of a
 // second. While it is thrown, a few allocations still occur: hundreds of region colours, and lists,
 // each have to reach their largest number of contacts first.

@@ -4,12 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 #include <vector>
 
 #include "random.h"
 #include "rig.h"
-#include "surfaces.h"
 
 namespace vp::test {
 namespace {
@@ -183,83 +181,6 @@ TEST(FastBodies, WithoutRotationPassThroughNothing) {
       }
     }
   }
-}
-
-// Few pass through bumpy ground that they graze: a body that must not needs BodyDesc::continuous.
-TEST(FastBodies, RarelyPassThroughWaves) {
-  constexpr double kHeight = 0.15;
-  const TriangleMesh waves = wave_mesh(200, 0.15, kHeight).made();
-  int below = 0, shots = 0;
-  for (const double speed : {50.0, 200.0}) {
-    Random random(11);
-    for (const Shape& shape :
-         {Shape(Sphere{0.1}), Shape(Box{{0.1, 0.1, 0.1}}), Shape(Capsule{0.05, 0.3}),
-          Shape(Box{{0.4, 0.05, 0.05}}), Shape(Cylinder{0.2, 0.1})}) {
-      for (int i = 0; i < 30; ++i) {
-        World world;
-        add_fixed(world, waves, {});
-        Vec3 towards = random.direction();
-        towards.z = -std::fabs(towards.z);
-        const Vec3 from{random.uniform(-3, 3), random.uniform(-3, 3), random.uniform(0.8, 1.5)};
-        const BodyId body =
-            add_dynamic(world, {.shape = shape, .pose = SE3(random.rotation(), from)});
-        must(world.set_velocity_world(
-            body, {speed * towards, random.uniform(0.0, 20.0) * random.direction()}));
-        bool is_below = false;
-        for (int k = 0; k < 20 && !is_below; ++k) {
-          must(world.step(1.0 / 60.0));
-          const Vec3 x = world.pose(body).position();
-          if (std::fabs(x.x) > 14.0 || std::fabs(x.y) > 14.0) break;  // beyond the border
-          is_below = x.z < wave(x.x, x.y, kHeight) - 0.02;
-        }
-        below += is_below ? 1 : 0;
-        ++shots;
-      }
-    }
-  }
-  EXPECT_LE(50 * below, shots);
-}
-
-// A body that flies past a round mesh does not collide with the planes of its triangles.
-TEST(FastBodies, AreNotDeflectedByWhatTheyPass) {
-  const TriangleMesh boulder = sphere_mesh(1.0, 3).made();
-  Random random(3);
-  for (const double speed : {5.0, 15.0, 50.0}) {
-    for (const double gap : {0.01, 0.03, 0.1}) {
-      for (const auto& [shape, radius] :
-           {std::pair{Shape(Sphere{0.1}), 0.1}, std::pair{Shape(Box{{0.1, 0.1, 0.1}}), 0.174},
-            std::pair{Shape(Capsule{0.05, 0.3}), 0.35},
-            std::pair{Shape(Box{{0.3, 0.05, 0.05}}), 0.309}}) {
-        for (int i = 0; i < 10; ++i) {
-          World world(without_gravity());
-          add_fixed(world, boulder, {});
-          const Vec3 along = random.direction(), across = cross(along, random.direction());
-          const Vec3 from =
-              (1.0 + radius + gap) / norm(across) * across - random.uniform(1.0, 2.0) * along;
-          const BodyId body =
-              add_dynamic(world, {.shape = shape, .pose = SE3(random.rotation(), from)});
-          must(world.set_velocity_world(body, {speed * along, 3.0 * random.direction()}));
-          for (int k = 1; k * speed / 60.0 < 4.0; ++k) must(world.step(1.0 / 60.0));
-          EXPECT_LT(norm(world.velocity_world(body).linear - speed * along), 1e-3 * speed)
-              << shape.index() << ' ' << speed << " m/s, gap " << gap;
-        }
-      }
-    }
-  }
-}
-
-// Without friction a ball that spins keeps its spin when it lands on a mesh.
-TEST(FastBodies, KeepTheirSpinOnAMeshWithoutFriction) {
-  World world(without_gravity());
-  add_fixed(world, two_sided_square(9), {.friction = 0.0});
-  const Vec3 spin{0.0, 10.0, 0.0};
-  const BodyId ball = add_dynamic(
-      world,
-      {.shape = Sphere{0.1}, .material = {.friction = 0.0}, .pose = SE3(Vec3{-0.3, 0.2, 0})});
-  must(world.set_velocity_world(ball, {{5.0, 0, 0}, spin}));
-  for (int k = 0; k < 20; ++k) must(world.step(1.0 / 60.0));
-  EXPECT_LT(world.pose(ball).position().x, 0.0);
-  EXPECT_LT(norm(world.velocity_world(ball).angular - spin), 0.01);
 }
 
 // Neither do bodies that rotate up to 1.7 rad in the step in which they arrive.

@@ -7,114 +7,17 @@
 #include "collide/distance.h"
 #include "collide/manifolds.h"
 #include "collide/support.h"
-#include "collide/time_of_impact.h"
 #include "collide/triangle_contact.h"
+#include "surface_rig.h"
 #include "surfaces.h"
 
 namespace vp::test {
 namespace {
 
 using collide::Geometry;
-using collide::ManifoldPoint;
 using collide::ManifoldScratch;
 using collide::SubManifold;
 using collide::Surface;
-
-ConvexHull rock(Random& random, double size, int points) {
-  std::vector<Vec3> p;
-  for (int i = 0; i < points; ++i) p.push_back(size * random.direction());
-  return ConvexHull::of(p).value();
-}
-
-// One shape of each convex kind, about half a metre in size.
-std::vector<Shape> convex_shapes() {
-  Random random(31);
-  return {Sphere{0.25},    Box{{0.3, 0.2, 0.1}},   Capsule{0.1, 0.2},   Cylinder{0.2, 0.15},
-          Cone{0.2, 0.25}, rock(random, 0.25, 30), Box{{0.4, 0.4, 0.4}}};
-}
-
-struct Found {
-  std::vector<SubManifold> manifolds;
-
-  double deepest() const {
-    double least = 1e300;
-    for (const SubManifold& s : manifolds) {
-      for (int i = 0; i < s.manifold.count; ++i) {
-        least = std::min(least, s.manifold.points[i].separation);
-      }
-    }
-    return least;
-  }
-};
-
-Found find(const Shape& a, const SE3& T_a, const Shape& b, const SE3& T_b,
-           const collide::SearchMargin& margin) {
-  Found found;
-  ManifoldScratch scratch;
-  collide::PairCache cache;
-  find_manifolds(collide::make_geometry(a), T_a, collide::make_geometry(b), T_b, margin, cache, {},
-                 scratch, found.manifolds);
-  return found;
-}
-
-// The least separation that the points reach along their normals if b moves.
-double least_after(const Found& found, const SE3& displacement_of_b) {
-  double least = 1e300;
-  for (const SubManifold& s : found.manifolds) {
-    for (int i = 0; i < s.manifold.count; ++i) {
-      const ManifoldPoint& p = s.manifold.points[i];
-      const Vec3 on_b = p.position + 0.5 * p.separation * s.manifold.normal;
-      least =
-          std::min(least, p.separation + dot(s.manifold.normal, displacement_of_b * on_b - on_b));
-    }
-  }
-  return least;
-}
-
-int points_of(const Found& found) {
-  int n = 0;
-  for (const SubManifold& s : found.manifolds) n += s.manifold.count;
-  return n;
-}
-
-// Shapes move from above into a mesh of waves. What they enter is among the contacts that are found
-// at the start, with fewer points than a margin for all directions finds.
-TEST(SearchMargin, FindsWhatAShapeEntersOnItsWay) {
-  constexpr double kSlack = 0.0023, kHeight = 0.15;
-  const Shape waves = wave_mesh(24, 0.15, kHeight).made();
-  Random random(7);
-  for (const double angle : {0.0, 0.02, 0.1}) {
-    int entered = 0, missed = 0, points = 0, points_everywhere = 0;
-    for (const Shape& shape : convex_shapes()) {
-      const Geometry geometry = collide::make_geometry(shape);
-      for (int k = 0; k < 600; ++k) {
-        const SE3 T(random.rotation(), Vec3{random.uniform(-0.8, 0.8), random.uniform(-0.8, 0.8),
-                                            random.uniform(kHeight + 0.05, 0.8)});
-        const collide::Motion motion{T.position(), random.in_cube(0.2), angle * random.direction()};
-        const collide::PairMotion pair{{}, motion, 1.0, 0.0};
-        const auto pose = [&](double time) {
-          return collide::pose_at({&geometry, T, motion}, time);
-        };
-        if (find(waves, SE3{}, shape, T, 0.005).deepest() < 0.003) continue;
-        double deepest = 0.0;
-        for (int i = 1; i <= 20; ++i)
-          deepest = std::min(deepest, find(waves, SE3{}, shape, pose(0.05 * i), 0.0).deepest());
-        const double largest = kSlack + norm(motion.v) + 0.6 * angle;
-        const Found found = find(waves, SE3{}, shape, T, {{largest, kSlack, kSlack}, pair});
-        points += points_of(found);
-        points_everywhere += points_of(find(waves, SE3{}, shape, T, largest));
-        if (deepest > -1e-4) continue;
-        ++entered;
-        const SE3 end = pose(1.0);
-        const Mat3 R = end.rotation() * transpose(T.rotation());
-        missed += least_after(found, SE3(R, end.position() - R * T.position())) > kSlack + 1e-4;
-      }
-    }
-    EXPECT_GT(entered, 200) << angle;
-    EXPECT_LE(missed, entered / 50) << angle;
-    EXPECT_LT(2 * points, points_everywhere) << angle;
-  }
-}
 
 // Random triangles near boxes and hulls: what their corners and the other's faces show is what the
 // general search finds.

@@ -217,17 +217,7 @@ TEST(SurfaceWorld, CostDoesNotDependOnTheNumberOfTriangles) {
   std::uint32_t most[2] = {};
   for (const int large : {0, 1}) {
     const std::uint32_t cells = large ? 224 : 20;  // 800 and 100,352 triangles of 0.1 m
-    MeshPoints m;
-    for (std::uint32_t j = 0; j <= cells; ++j) {
-      for (std::uint32_t i = 0; i <= cells; ++i) m.vertices.push_back({0.1 * i, 0.1 * j, 0.0});
-    }
-    for (std::uint32_t j = 0; j < cells; ++j) {
-      for (std::uint32_t i = 0; i < cells; ++i) {
-        const std::uint32_t a = j * (cells + 1) + i, c = a + cells + 2;
-        m.triangles.push_back({a, a + 1, c});
-        m.triangles.push_back({a, c, c - 1});
-      }
-    }
+    const MeshPoints m = grid_mesh(cells, 0.1, 0.0, [](double, double) { return 0.0; });
     World world;
     add_fixed(world, m.made(), {});
     const Material slippery{0.1, 0.0, 0.0};

@@ -72,17 +72,14 @@ inline MeshPoints random_plane(Random& random, std::uint32_t cells, double size)
   return m;
 }
 
-// Waves of the given height about z = 0, on a square grid of cells about the origin.
-inline double wave(double x, double y, double height) {
-  return height * std::sin(3.0 * x) * std::sin(2.0 * y + 1.0);
-}
-inline MeshPoints wave_mesh(std::uint32_t cells, double cell, double height) {
+// A square grid of cells from a corner, with the heights z(x, y).
+template <class Height>
+MeshPoints grid_mesh(std::uint32_t cells, double cell, double corner, const Height& z) {
   MeshPoints m;
-  const double corner = -0.5 * cells * cell;
   for (std::uint32_t j = 0; j <= cells; ++j) {
     for (std::uint32_t i = 0; i <= cells; ++i) {
       const double x = corner + i * cell, y = corner + j * cell;
-      m.vertices.push_back({x, y, wave(x, y, height)});
+      m.vertices.push_back({x, y, z(x, y)});
     }
   }
   for (std::uint32_t j = 0; j < cells; ++j) {
@@ -93,6 +90,15 @@ inline MeshPoints wave_mesh(std::uint32_t cells, double cell, double height) {
     }
   }
   return m;
+}
+
+// Waves of the given height about z = 0, on a grid about the origin.
+inline double wave(double x, double y, double height) {
+  return height * std::sin(3.0 * x) * std::sin(2.0 * y + 1.0);
+}
+inline MeshPoints wave_mesh(std::uint32_t cells, double cell, double height) {
+  return grid_mesh(cells, cell, -0.5 * cells * cell,
+                   [height](double x, double y) { return wave(x, y, height); });
 }
 
 // A sphere about the origin, of 20 * 4^levels triangles.

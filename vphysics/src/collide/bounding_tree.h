@@ -47,6 +47,7 @@ class CastScratch {
     std::uint32_t child;
   };
   void reserve(std::size_t n) { queue_.reserve(n); }
+  std::size_t capacity() const { return queue_.capacity(); }
   void clear() { queue_.clear(); }
   bool empty() const { return queue_.empty(); }
   void push(const Entry& entry) {

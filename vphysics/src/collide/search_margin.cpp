@@ -10,9 +10,11 @@
 namespace vp::collide {
 namespace {
 
-// In half extents of the shape: how far rotation may move its farthest point, and how far its path
-// may deviate from a line.
-constexpr double kFarRotation = 0.5, kFarBend = 0.1;
+// In half extents of the shape: how far rotation may move its farthest point.
+constexpr double kFarRotation = 0.5;
+// A motion near a surface that rotates further is not followed [rad]: the solver moves the shape
+// along a line, and keeps the normal that the surface has at the start.
+constexpr double kFollowed = 0.02;
 
 // Moves the body's points to where they are after a time.
 SE3 displacement_after(const Motion& m, double time) {
@@ -33,38 +35,38 @@ SE3 SweptMargin::part_of_displacement(double fraction, const Vec3& centre) const
   return {R, centre + fraction * (displacement * centre - centre) - R * centre};
 }
 
-SearchMargin::SearchMargin(const ApproachBounds& all, const PairMotion& motion)
-    : all_(all),
-      motion_(&motion),
+SearchMargin::SearchMargin(double largest, double at_rest, const PairMotion& motion)
+    : all_{largest, at_rest, at_rest},
+      motion_(motion),
       displacement_of_b_(relative_pose(displacement_after(motion.a, motion.dt),
                                        displacement_after(motion.b, motion.dt))) {}
 
 ApproachBounds SearchMargin::approach_of(const Geometry& shape, const SE3& T, bool is_b) const {
-  if (motion_ == nullptr) return all_;
+  if (!motion_) return all_;
   const Vec3 centre = T * core_centre(shape);
   const double radius = core_extent(shape) + core_radius(shape), dt = motion_->dt;
   const Motion &own = is_b ? motion_->b : motion_->a, &other = is_b ? motion_->a : motion_->b;
   const double moved = dt * norm(own.velocity(centre) - other.velocity(centre));
   const double rotated =
       radius * std::min(dt * norm(own.w - other.w), 2.0);  // it stays in its ball
-  // The path of a point deviates from the line between its ends by at most an eighth of its largest
-  // acceleration: centripetal, and seen from the other body Coriolis and centrifugal.
+  const double largest = std::min(all_.largest, all_.slack + moved + rotated);
   const double angle = dt * norm(own.w), angle_of_other = dt * norm(other.w);
+  if (angle_of_other > kFollowed) return {largest, largest, largest};
+  // The path of a point deviates from the line between its ends by at most an eighth of its largest
+  // acceleration: centripetal, and seen from the other body Coriolis and centrifugal. Seen from the
+  // shape, so does that of a point of the other body.
   const double coriolis = 2.0 * (moved + rotated);
   const double bend = 0.125 * (angle * angle * (norm(centre - own.x) + radius) +
                                angle_of_other * angle_of_other * (norm(centre - other.x) + radius) +
                                angle_of_other * coriolis);
-  const double largest = std::min(all_.largest, all_.slack + moved + rotated);
-  const double half = min_half_extent(shape);
-  if (bend > kFarBend * half) return {largest, largest, largest};
-  const bool rotates_far = rotated > kFarRotation * half;
-  // A plane may rotate with either body.
-  const double slack = rotates_far ? largest : all_.slack + bend + 0.125 * angle * coriolis;
-  return {largest, std::min(largest, slack), std::min(largest, all_.touching + bend)};
+  const double own_bend = 0.125 * angle * (coriolis + angle * moved);
+  const bool rotates_far = rotated > kFarRotation * min_half_extent(shape);
+  const double slack = rotates_far ? largest : all_.slack + bend + own_bend;
+  return {largest, std::min(largest, slack), std::min(largest, all_.touching + bend), rotates_far};
 }
 
 SweptMargin SearchMargin::swept(const ApproachBounds& bounds, bool moves_b, const SE3& T) const {
-  if (motion_ == nullptr || bounds.touching >= bounds.largest) return SweptMargin(bounds.largest);
+  if (!motion_ || bounds.touching >= bounds.largest) return SweptMargin(bounds.largest);
   const SE3 displaced = displacement_of_b_ * T;
   return {bounds, moves_b ? relative_pose(T, displaced) : relative_pose(displaced, T)};
 }

@@ -6,15 +6,21 @@
 // it, searches little of it, however fast it is.
 #pragma once
 
+#include <optional>
+
 #include "collide/sweep.h"
 
 namespace vp::collide {
 
-// How far two shapes may approach each other until the next search [m].
+// How far two shapes may approach each other until the next search [m]:
+// touching <= slack <= largest.
 struct ApproachBounds {
-  double largest;   // in any direction, with the slack
-  double slack;     // that a plane must have at both ends, so that it separates them in between
-  double touching;  // the distance at which they touch: the margin at rest, at least
+  double largest;   // in any direction
+  double slack;     // a plane that separates them by more at both ends separates them in between
+  double touching;  // what comes so close along its motion touches
+  // Rotation moves the shape far, compared with its smallest extent: it may touch with other
+  // features than those that are close at either end. Then the slack is the largest.
+  bool rotates_far = false;
 };
 
 // Of a convex shape b and another shape a, in a frame in which a stands still.
@@ -43,22 +49,19 @@ class SearchMargin {
  public:
   // The same everywhere.
   SearchMargin(double everywhere) : all_{everywhere, everywhere, everywhere} {}
-  // motion: of both until the next search; it is referred to. all: of the pair, at its least slack.
-  SearchMargin(const ApproachBounds& all, const PairMotion& motion);
+  // motion: of both until the next search. at_rest: the margin without it.
+  SearchMargin(double largest, double at_rest, const PairMotion& motion);
 
   const ApproachBounds& all() const { return all_; }
-  const PairMotion* motion() const { return motion_; }  // null: none
-  // Of a convex shape in this pose, b or a part of it, or else of a. One that rotates far, compared
-  // with its smallest extent, may touch with other features than those that are close at either
-  // end: its slack is the largest. So is its touching distance if its path bends, as near a surface
-  // that rotates fast: its motion is not followed.
+  const PairMotion* motion() const { return motion_ ? &*motion_ : nullptr; }  // null: none
+  // Of a convex shape in this pose, b or a part of it, or else of a.
   ApproachBounds approach_of(const Geometry& shape, const SE3& T, bool is_b) const;
   // In the frame of the other shape, which has the pose T.
   SweptMargin swept(const ApproachBounds& bounds, bool moves_b, const SE3& T) const;
 
  private:
   ApproachBounds all_;
-  const PairMotion* motion_ = nullptr;
+  std::optional<PairMotion> motion_;
   SE3 displacement_of_b_;  // relative to a, until the next search
 };
 

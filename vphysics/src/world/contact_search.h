@@ -83,7 +83,8 @@ class ContactSearch {
   void find_manifolds_of(std::span<const std::uint32_t> contacts, double dt);
   void find_manifold_of(Contact& contact, NarrowPhaseResult& found, const Approach& approach,
                         PartSearch& search) const;
-  void take_over(const NarrowPhaseResult& found);
+  // within_step: contact slots that have impulses in this step are kept.
+  void take_over(const NarrowPhaseResult& found, bool within_step);
   void assign_slot(std::uint32_t contact, const collide::Manifold& manifold,
                    const collide::MotionToImpact& to_impact);
   // part_contacts.cpp
@@ -91,7 +92,8 @@ class ContactSearch {
                   PartSearch& search) const;
   std::span<collide::SubManifold> parts_of(const NarrowPhaseResult& found);
   void note_part_searches();
-  void take_over_parts(const NarrowPhaseResult& found);
+  void reserve_part_searches();
+  void take_over_parts(const NarrowPhaseResult& found, bool within_step);
   // find_again.cpp
   void load_inertias_of(const Contact& contact);
   bool list_deviating_bodies(double left);

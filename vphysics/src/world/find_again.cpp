@@ -142,7 +142,7 @@ SearchedAgain ContactSearch::find_again(double left) {
         continue;
       }
       const std::uint32_t renewed = renewed_;
-      take_over(found);
+      take_over(found, true);
       changed.has_new_slots |= renewed_ != renewed;
       const Contact& taken = s_.contact_store[found.contact];  // the pool may have grown
       load_inertias_of(taken);

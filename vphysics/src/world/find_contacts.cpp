@@ -34,6 +34,7 @@ void ContactSearch::begin_step(std::size_t contacts) {
   for (auto* list : {&dirty_, &dirty_next_step_}) list->reserve(s_.contact_store.dirty.capacity());
   results_.reserve(std::min(contacts, kContactBatch));
   part_searches_.resize(kContactBatch / kNarrowPhaseGrain);
+  if (s_.workers.scheduler) reserve_part_searches();
   writer_.reserve();
   new_pairs_.reserve(contacts);
   const std::size_t n = s_.bodies.size();
@@ -139,7 +140,7 @@ void ContactSearch::update(double dt, const ContactRuns& runs) {
         find_manifolds_of(left.first(std::min(left.size(), kContactBatch)), dt);
       }
       const auto stage = s_.in(Stage::contact_slots);
-      for (const NarrowPhaseResult& found : results_) take_over(found);
+      for (const NarrowPhaseResult& found : results_) take_over(found, false);
       writer_.write();
       done += results_.size();
     } while (done < dirty_.size());
@@ -233,7 +234,7 @@ void ContactSearch::find_manifold_of(Contact& c, NarrowPhaseResult& found, const
   }
 }
 
-void ContactSearch::take_over(const NarrowPhaseResult& found) {
+void ContactSearch::take_over(const NarrowPhaseResult& found, bool within_step) {
   const std::uint32_t index = found.contact;
   const bool separated = found.clearance >= kNeverTouches;
   s_.contact_store[index].dirty = false;
@@ -247,7 +248,7 @@ void ContactSearch::take_over(const NarrowPhaseResult& found) {
     if (separated) {
       s_.contact_store.remove_parts(index, s_.body_set);
     } else {
-      take_over_parts(found);
+      take_over_parts(found, within_step);
     }
   } else if (found.manifold.count > 0) {
     assign_slot(index, found.manifold, found.to_impact);

@@ -69,10 +69,10 @@ void ContactSearch::find_parts(const Contact& c, NarrowPhaseResult& found, const
   // A body that forces accelerate strongly does not move at its present velocity.
   const bool is_pulled = !(approach.pull_of(s_.bodies[a.body]) == Velocity{} &&
                            approach.pull_of(s_.bodies[b.body]) == Velocity{});
-  const double slack = is_pulled ? found.margin : found.margin_at_rest;
-  const collide::SearchMargin margin =
-      c.sensor ? collide::SearchMargin(found.margin)
-               : collide::SearchMargin({found.margin, slack, found.margin_at_rest}, motion);
+  const double at_rest = is_pulled ? found.margin : found.margin_at_rest;
+  const collide::SearchMargin margin = c.sensor
+                                           ? collide::SearchMargin(found.margin)
+                                           : collide::SearchMargin(found.margin, at_rest, motion);
   found.first = static_cast<std::uint32_t>(search.manifolds.size());
   collide::PairCache no_cache;  // each part has its own
   find_manifolds(a.geometry, a.T, b.geometry, b.T, margin, no_cache, search.known, search.scratch,
@@ -80,12 +80,11 @@ void ContactSearch::find_parts(const Contact& c, NarrowPhaseResult& found, const
   found.count = static_cast<std::uint32_t>(search.manifolds.size()) - found.first;
   // The distance within which no contact is left out.
   const auto searched = [&](const Collider& x) {
-    return is_convex_body(x.geometry) ? margin.approach_of(x.geometry, x.T, &x == &b).slack : 0.0;
+    if (x.geometry.kind == collide::Kind::compound) return at_rest;
+    return is_convex_body(x.geometry) ? margin.approach_of(x.geometry, x.T, &x == &b).touching
+                                      : found.margin;
   };
-  const bool has_compound =
-      a.geometry.kind == collide::Kind::compound || b.geometry.kind == collide::Kind::compound;
-  found.clearance =
-      (has_compound ? slack : std::max(searched(a), searched(b))) - s_.desc.contact_slop;
+  found.clearance = std::min(searched(a), searched(b)) - s_.desc.contact_slop;
   if (found.count == 0 && !c.sensor)
     found.clearance =
         std::max(found.clearance, distance_of_parts(a.geometry, a.T, b.geometry, b.T, search.cast) -
@@ -107,7 +106,26 @@ void ContactSearch::note_part_searches() {
   }
 }
 
-void ContactSearch::take_over_parts(const NarrowPhaseResult& result) {
+// As much memory for each as the largest has needed: which contacts one tests varies.
+void ContactSearch::reserve_part_searches() {
+  const auto level = [&](const auto& memory_of) {
+    std::size_t most = 0;
+    for (PartSearch& search : part_searches_) most = std::max(most, memory_of(search).capacity());
+    for (PartSearch& search : part_searches_) memory_of(search).reserve(most);
+  };
+  level([](PartSearch & search) -> auto& { return search.known; });
+  level([](PartSearch & search) -> auto& { return search.manifolds; });
+  level([](PartSearch & search) -> auto& { return search.cast; });
+  level([](PartSearch & search) -> auto& { return search.scratch.triangles; });
+  level([](PartSearch & search) -> auto& { return search.scratch.near_triangles; });
+  level([](PartSearch & search) -> auto& { return search.scratch.parts; });
+  level([](PartSearch & search) -> auto& { return search.scratch.contacts; });
+  level([](PartSearch & search) -> auto& { return search.scratch.planes; });
+  level([](PartSearch & search) -> auto& { return search.scratch.points; });
+  level([](PartSearch & search) -> auto& { return search.scratch.converged; });
+}
+
+void ContactSearch::take_over_parts(const NarrowPhaseResult& result, bool within_step) {
   const std::uint32_t index = result.contact;
   const Collider &a = s_.colliders[s_.contact_store[index].a],
                  &b = s_.colliders[s_.contact_store[index].b];
@@ -124,10 +142,20 @@ void ContactSearch::take_over_parts(const NarrowPhaseResult& result) {
   claimed_parts_.clear();
   for (const collide::SubManifold& found : parts)
     claimed_parts_.push_back(claim_part(s_.contact_store, s_.colliders, old_parts_, found));
-  for (const std::uint32_t p : old_parts_) {
-    if (p != kNone) s_.contact_store.remove(p, s_.body_set);
-  }
   std::uint32_t last = kNone;
+  const auto append = [&](std::uint32_t p) {
+    s_.contact_store[p].next_part = kNone;
+    (last == kNone ? s_.contact_store[index].first_part : s_.contact_store[last].next_part) = p;
+    last = p;
+  };
+  for (const std::uint32_t p : old_parts_) {
+    if (p == kNone) continue;
+    if (within_step) {  // its impulses are not reported yet
+      append(p);
+    } else {
+      s_.contact_store.remove(p, s_.body_set);
+    }
+  }
   for (std::size_t k = 0; k < parts.size(); ++k) {
     collide::SubManifold& found = parts[k];
     std::uint32_t p = claimed_parts_[k];
@@ -146,9 +174,7 @@ void ContactSearch::take_over_parts(const NarrowPhaseResult& result) {
     part.sub_a = found.sub_a;
     part.sub_b = found.sub_b;
     part.cache = found.cache;
-    part.next_part = kNone;
-    (last == kNone ? s_.contact_store[index].first_part : s_.contact_store[last].next_part) = p;
-    last = p;
+    append(p);
     put_deepest_first(found.manifold);
     assign_slot(p, found.manifold, found.to_impact);
   }
