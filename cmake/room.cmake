@@ -56,7 +56,6 @@ function(sf_test name)
   endif()
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE sf_options ${ARG_LIBS} GTest::gtest GTest::gtest_main)
-  set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)  # they name their rigs alike
   if("fast" IN_LIST ARG_LABELS)
     # Two thirds of all compiling are the tests' own code, full of macros, which -O0 nearly halves (and
     # more than halves under the sanitizers). What they call is in libraries, which keep their level.

@@ -21,8 +21,6 @@ using namespace cabinet_test;
 
 namespace {
 
-constexpr double kMetresPerCount = 1e-3 / 8;
-
 struct Bench {
   SerialLine line;
   SimulatedDevice device;

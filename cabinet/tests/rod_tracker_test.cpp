@@ -9,11 +9,11 @@
 #include "simulated_device.h"
 
 using namespace cabinet;
+using cabinet_test::kMetresPerCount;
 using cabinet_test::SimulatedDevice;
 
 namespace {
 
-constexpr double kMetresPerCount = 1e-3 / 8;
 constexpr double kRadiansPerCount = kMetresPerCount / 0.008;
 constexpr std::int64_t kFrameUs = 4'000;
 

@@ -20,6 +20,8 @@ namespace cabinet_test {
 
 using Bytes = std::vector<std::uint8_t>;
 
+inline constexpr double kMetresPerCount = 1e-3 / 8;
+
 inline Bytes cobs(const wire::DeviceFrame& frame) {
   std::uint8_t plain[wire::kDeviceFrameBytes];
   wire::encode_device_frame(frame, plain);

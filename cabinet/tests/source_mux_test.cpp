@@ -29,7 +29,7 @@ std::array<double, kRods> limits(double limit) {
   return all;
 }
 
-struct Bench {
+struct MuxBench {
   FakeSource cabinet, client, computer;
   SourceMux mux{limits(0.15)};
   int of_cabinet = mux.add(cabinet, Origin::relative);
@@ -37,7 +37,7 @@ struct Bench {
   int of_computer = mux.add(computer, Origin::absolute);
   std::int64_t now_us = 0;
 
-  Bench() {
+  MuxBench() {
     const int order[] = {of_cabinet, of_client, of_computer};
     for (int rod = 0; rod < kRods; ++rod) mux.assign(rod, order);
   }
@@ -48,7 +48,7 @@ struct Bench {
 };
 
 TEST(SourceMux, TheFirstInTheListThatHasTheRodDrivesIt) {
-  Bench b;
+  MuxBench b;
   b.step();
   EXPECT_EQ(b.mux.source_of(2), SourceMux::kNobody);
   EXPECT_EQ(b.mux.rods()[2].status, RodStatus::absent);
@@ -65,7 +65,7 @@ TEST(SourceMux, TheFirstInTheListThatHasTheRodDrivesIt) {
 }
 
 TEST(SourceMux, AnIdleOrUnpluggedOwnerKeepsTheRod) {
-  Bench b;
+  MuxBench b;
   b.cabinet.set(2, 0, 0);
   b.computer.set(2, -0.1, 0.0);
   b.step();
@@ -80,7 +80,7 @@ TEST(SourceMux, AnIdleOrUnpluggedOwnerKeepsTheRod) {
 }
 
 TEST(SourceMux, ANewOrderPassesTheRodOn) {
-  Bench b;
+  MuxBench b;
   b.cabinet.set(2, 0, 0, RodStatus::held);
   b.computer.set(2, 0, 0);
   b.step();
@@ -94,7 +94,7 @@ TEST(SourceMux, ANewOrderPassesTheRodOn) {
 }
 
 TEST(SourceMux, ADriverThatGoesLeavesTheRodWhereItIs) {
-  Bench b;
+  MuxBench b;
   b.client.set(2, 0.1, 2.0);
   b.step(5'000);
   b.client.inputs[2].slide_rate = 3;
@@ -108,7 +108,7 @@ TEST(SourceMux, ADriverThatGoesLeavesTheRodWhereItIs) {
 
 // Every change of driver, with drivers that differ by the full slide and many turns.
 TEST(SourceMux, NothingJumpsWhenTheDriverChanges) {
-  Bench b;
+  MuxBench b;
   b.cabinet.set(2, -0.15, 30);
   b.client.set(2, 0.15, -12);
   b.computer.set(2, 0.0, 3);
@@ -128,7 +128,7 @@ TEST(SourceMux, NothingJumpsWhenTheDriverChanges) {
 }
 
 TEST(SourceMux, AHandlesOffsetStaysAndItsMotionCountsInFull) {
-  Bench b;
+  MuxBench b;
   b.mux.place(2, 0.1, 1.0);
   b.cabinet.set(2, 0.0, 0.0);
   b.step(10'000);
@@ -140,7 +140,7 @@ TEST(SourceMux, AHandlesOffsetStaysAndItsMotionCountsInFull) {
 }
 
 TEST(SourceMux, AHandlePushedToTheStopLosesItsOffset) {
-  Bench b;
+  MuxBench b;
   b.mux.place(2, 0.1, 0);
   b.cabinet.set(2, 0.0, 0);
   b.step();
@@ -154,7 +154,7 @@ TEST(SourceMux, AHandlePushedToTheStopLosesItsOffset) {
 
 // Measured at 0.14 m, extrapolated to 0.17: the rod is at its stop, the handle is not.
 TEST(SourceMux, APredictionBeyondTheStopTakesNoOffset) {
-  Bench b;
+  MuxBench b;
   b.cabinet.set(2, 0.17, 0);
   b.cabinet.inputs[2].slide_ahead = 0.03;
   b.step();
@@ -168,7 +168,7 @@ TEST(SourceMux, APredictionBeyondTheStopTakesNoOffset) {
 }
 
 TEST(SourceMux, AnOffsetOnTheComputerFadesButForWholeTurns) {
-  Bench b;
+  MuxBench b;
   b.mux.place(2, 0.1, 13.0);
   b.computer.set(2, -0.05, 0.2);
   b.step();
@@ -181,7 +181,7 @@ TEST(SourceMux, AnOffsetOnTheComputerFadesButForWholeTurns) {
 }
 
 TEST(SourceMux, AHeldRodDoesNotFade) {
-  Bench b;
+  MuxBench b;
   b.mux.place(2, 0.1, 0);
   b.client.set(2, 0.0, 0, RodStatus::held);
   b.step(1'000);
@@ -190,7 +190,7 @@ TEST(SourceMux, AHeldRodDoesNotFade) {
 }
 
 TEST(SourceMux, PollsEachSourceOnceAndSumsTheirCounters) {
-  Bench b;
+  MuxBench b;
   b.cabinet.counts = {1, 2, 3, 4, 5, 6, 7, 8};
   b.client.counts = {10, 20, 30, 40, 50, 60, 70, 80};
   b.cabinet.counts.index_disagreements[7] = 9;

@@ -9,13 +9,12 @@
 #include "core/input_collector.h"
 #include "foosball/feed.h"
 #include "scripted_scene.h"
+#include "times.h"
 #include "wire/enums.h"
 
 namespace client {
 namespace {
 
-constexpr std::int64_t kFrame = 16'667;  // [us]
-constexpr std::uint64_t kSession = 1;    // of the scripted scenes
 constexpr std::uint8_t kTeam0 = 0b00101011, kAll = 0xff;
 constexpr int kPad1 = static_cast<int>(Device::pad_1), kPad2 = static_cast<int>(Device::pad_2);
 
@@ -89,7 +88,8 @@ TEST(InputCollector, APadThatIsUnpluggedLetsEverythingGo) {
 // --- who plays what ------------------------------------------------------------------------------
 
 struct Table {
-  explicit Table(std::uint8_t granted) : crew(kSession, 0, foosball::Layout::tournament, granted) {
+  explicit Table(std::uint8_t granted)
+      : crew(kScriptedSession, 0, foosball::Layout::tournament, granted) {
     for (auto& rod : scene.rods) rod.slide = rod.angle = 0;
     for (int pad = 0; pad < 2; ++pad) input.connect(pad, true);
     frame();
@@ -228,7 +228,7 @@ TEST(CrewAssists, NoRodIsMovedBetweenPlaysOrInAPause) {
     scene.screen = number(screen);
     scene.paused = screen == wire::Screen::play;
     scene.ball.position = {0.3f, 0.1f, 0.0173f};
-    Crew crew(kSession, 0, foosball::Layout::tournament, kTeam0);
+    Crew crew(kScriptedSession, 0, foosball::Layout::tournament, kTeam0);
     crew.set_assists({true, true, true});
     for (int i = 1; i < 30; ++i)
       crew.update([](DeviceSet) { return InputEvents{}; }, &scene, i * kFrame);

@@ -6,13 +6,12 @@
 #include <set>
 
 #include "client/menu.h"
+#include "times.h"
 #include "wire/enums.h"
 #include "wire/limits.h"
 
 namespace client {
 namespace {
-
-constexpr std::int64_t kSecond = 1'000'000;  // [us]
 
 // The game of a server that was started without options.
 wire::Game usual() {

@@ -11,13 +11,12 @@
 
 #include "profile/tuning_profile.h"
 #include "scripted_scene.h"
+#include "times.h"
 #include "wire/enums.h"
 #include "wire/limits.h"
 
 namespace client {
 namespace {
-
-constexpr std::int64_t kSecond = 1'000'000;  // [us]
 
 int row_of(const MenuPage& page, const std::string& label) {
   for (std::size_t i = 0; i < page.rows.size(); ++i) {

@@ -3,18 +3,16 @@
 #include <gtest/gtest.h>
 
 #include "scripted_scene.h"
+#include "times.h"
 
 namespace client {
 namespace {
-
-constexpr std::int64_t kFrame = 16'667;  // [us]
-constexpr std::uint64_t kSession = 1;    // of the scripted scenes
 
 class PlayerInputTest : public ::testing::TestWithParam<int> {};
 
 TEST_P(PlayerInputTest, AwayFromThePersonSlidesAwayAndToTheRightSwingsFeetToTheOtherGoal) {
   const int team = GetParam();
-  PlayerInput player(kSession, team, foosball::Layout::tournament);
+  PlayerInput player(kScriptedSession, team, foosball::Layout::tournament);
   wire::Snapshot scene = scripted_play(0.0);
   for (auto& rod : scene.rods) rod.slide = rod.angle = 0;
   player.update({}, &scene, kFrame);
@@ -31,7 +29,7 @@ TEST_P(PlayerInputTest, AwayFromThePersonSlidesAwayAndToTheRightSwingsFeetToTheO
 
 TEST_P(PlayerInputTest, DrivesTheOwnFourRodsOnlyAndTakesThemOverWhereTheyAre) {
   const int team = GetParam();
-  PlayerInput player(kSession, team, foosball::Layout::tournament);
+  PlayerInput player(kScriptedSession, team, foosball::Layout::tournament);
   const wire::Snapshot scene = scripted_play(0.7);
   player.update({}, &scene, kFrame);
   const auto& table = foosball::table_spec(foosball::Layout::tournament);
@@ -48,7 +46,7 @@ INSTANTIATE_TEST_SUITE_P(BothTeams, PlayerInputTest, ::testing::Values(0, 1));
 // A rod that another cause moves must not change the hand's targets: the server would take that for
 // input.
 TEST(PlayerInput, AHandThatRestsSendsItsOwnPlacesWhateverBecomesOfTheRods) {
-  PlayerInput player(kSession, 0, foosball::Layout::tournament);
+  PlayerInput player(kScriptedSession, 0, foosball::Layout::tournament);
   wire::Snapshot scene = scripted_play(0.0);
   const auto all_at = [&](float slide, wire::RodSource source) {
     for (auto& rod : scene.rods) rod.slide = slide, rod.source = number(source);
@@ -69,7 +67,7 @@ TEST(PlayerInput, AHandThatRestsSendsItsOwnPlacesWhateverBecomesOfTheRods) {
 }
 
 TEST(PlayerInput, TheGoalieRestsWithAHandThatHasDoneNothingForLong) {
-  PlayerInput player(kSession, 0, foosball::Layout::tournament);
+  PlayerInput player(kScriptedSession, 0, foosball::Layout::tournament);
   player.set_assists({.goalie_follows = true});
   wire::Snapshot scene = scripted_play(0.0);
   for (auto& rod : scene.rods) rod.slide = 0.0f;
@@ -92,7 +90,7 @@ TEST(PlayerInput, TheGoalieRestsWithAHandThatHasDoneNothingForLong) {
 
 TEST(PlayerInput, NumbersChooseTheLineFromTheOwnGoalOutwards) {
   const auto lines = foosball::rods_of_team(foosball::table_spec(foosball::Layout::tournament), 1);
-  PlayerInput player(kSession, 1, foosball::Layout::tournament);
+  PlayerInput player(kScriptedSession, 1, foosball::Layout::tournament);
   for (int line = 0; line < 4; ++line) {
     InputEvents events;
     events.choose_line = line;
@@ -104,7 +102,7 @@ TEST(PlayerInput, NumbersChooseTheLineFromTheOwnGoalOutwards) {
 TEST(PlayerInput, NumberKeysReachEachCharacterOfTheSelection) {
   wire::Snapshot scene = scripted_play(0);
   scene.screen = number(wire::Screen::selection);
-  PlayerInput player(kSession, 0, foosball::Layout::tournament);
+  PlayerInput player(kScriptedSession, 0, foosball::Layout::tournament);
   foosball::Characters twelve = foosball::built_in_characters();
   const int built_in = static_cast<int>(twelve.size());
   ASSERT_EQ(built_in, 6);
@@ -130,7 +128,7 @@ TEST(PlayerInput, NumberKeysReachEachCharacterOfTheSelection) {
 }
 
 TEST(PlayerInput, PushStartsOnTheLogoAndDoesNothingInPlay) {
-  PlayerInput player(kSession, 0, foosball::Layout::tournament);
+  PlayerInput player(kScriptedSession, 0, foosball::Layout::tournament);
   wire::Snapshot scene = scripted_play(0);
   InputEvents events;
   events.push = true;
@@ -144,7 +142,7 @@ TEST(PlayerInput, PushStartsOnTheLogoAndDoesNothingInPlay) {
 }
 
 TEST(PlayerInput, PauseAsksForTheOppositeOfWhatIs) {
-  PlayerInput player(kSession, 0, foosball::Layout::tournament);
+  PlayerInput player(kScriptedSession, 0, foosball::Layout::tournament);
   wire::Snapshot scene = scripted_play(0);
   InputEvents events;
   events.toggle_pause = true;
@@ -158,7 +156,7 @@ TEST(PlayerInput, PauseAsksForTheOppositeOfWhatIs) {
 }
 
 TEST(PlayerInput, AHeldArrowChoosesOneCharacterNotMany) {
-  PlayerInput player(kSession, 0, foosball::Layout::tournament);
+  PlayerInput player(kScriptedSession, 0, foosball::Layout::tournament);
   wire::Snapshot scene = scripted_play(0);
   scene.screen = 1;
   scene.character = {0, 0};
@@ -173,9 +171,9 @@ TEST(PlayerInput, AHeldArrowChoosesOneCharacterNotMany) {
 }
 
 TEST(PlayerInput, TheRodsOfAnotherMatchAreNotTakenForItsBeginning) {
-  PlayerInput player(kSession, 0, foosball::Layout::tournament);
+  PlayerInput player(kScriptedSession, 0, foosball::Layout::tournament);
   wire::Snapshot old_match = scripted_play(0.7), match = scripted_play(0.2);
-  old_match.session = kSession + 1;
+  old_match.session = kScriptedSession + 1;
   old_match.screen = 0;
   InputEvents events;
   events.mouse_forward = 40;

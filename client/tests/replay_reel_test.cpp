@@ -4,12 +4,11 @@
 
 #include "foosball/rules.h"
 #include "scripted_scene.h"
+#include "times.h"
 #include "wire/enums.h"
 
 namespace client {
 namespace {
-
-constexpr std::int64_t kFrame = 16'667;
 
 // In a ceremony of 4 s: from 0.75 s before the goal to 0.2 s after it, at 0.3 times the speed.
 TEST(ReplayReel, ShowsTheGoalAgainInSlowMotionAndEndsWithinTheCeremony) {

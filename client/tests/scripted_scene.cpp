@@ -28,7 +28,7 @@ void place_men(wire::Snapshot& state) {
 wire::Snapshot scripted_play(double seconds, foosball::Layout layout) {
   const foosball::TableSpec& table = foosball::table_spec(layout);
   wire::Snapshot state;
-  state.session = 1;
+  state.session = kScriptedSession;
   state.tick = static_cast<std::uint64_t>(std::llround(seconds / foosball::kTick));
   state.sequence = state.tick + 1;
   state.layout = static_cast<std::uint8_t>(layout);

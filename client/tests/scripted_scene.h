@@ -8,6 +8,8 @@
 
 namespace client {
 
+inline constexpr std::uint64_t kScriptedSession = 1;  // of the snapshots
+
 // seconds: the moment. The ball rolls, bounces and spins; rods slide and swing.
 wire::Snapshot scripted_play(double seconds,
                              foosball::Layout layout = foosball::Layout::tournament);

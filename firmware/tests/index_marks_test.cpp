@@ -6,7 +6,7 @@ namespace firmware {
 namespace {
 
 // An expander, and drivers that accept every write. A transfer takes `polls` calls of state().
-struct Bus final : I2cReadBus {
+struct MarksBus final : I2cReadBus {
   bool attached = true, multiplexer = true;
   std::uint8_t pins = 0xFF;
   int polls = 1, left = 0, reads = 0, writes = 0;
@@ -37,8 +37,8 @@ struct Bus final : I2cReadBus {
   }
 };
 
-struct Rig {
-  Bus bus;
+struct MarksRig {
+  MarksBus bus;
   Haptics haptics{bus};
   IndexMarks marks{bus};
   std::uint32_t ms = 1000;
@@ -53,7 +53,7 @@ struct Rig {
 };
 
 TEST(IndexMarks, APinThatIsPulledLowIsAMark) {
-  Rig rig;
+  MarksRig rig;
   rig.run(3);
   EXPECT_EQ(rig.marks.under(), 0);
   rig.bus.pins = 0xF6;
@@ -62,7 +62,7 @@ TEST(IndexMarks, APinThatIsPulledLowIsAMark) {
 }
 
 TEST(IndexMarks, IsReadOnceAMillisecondAndWithoutAnExpanderOnceASecond) {
-  Rig rig;
+  MarksRig rig;
   rig.bus.multiplexer = false;
   rig.run(100);
   EXPECT_NEAR(rig.bus.reads, 100, 1);
@@ -73,7 +73,7 @@ TEST(IndexMarks, IsReadOnceAMillisecondAndWithoutAnExpanderOnceASecond) {
 }
 
 TEST(IndexMarks, AreGoneWithTheirExpanderAndBackWithIt) {
-  Rig rig;
+  MarksRig rig;
   rig.bus.pins = 0x00;
   rig.run(3);
   EXPECT_EQ(rig.marks.under(), 0xFF);
@@ -89,7 +89,7 @@ TEST(IndexMarks, AreGoneWithTheirExpanderAndBackWithIt) {
 // takes the other's end for its own; and both are served.
 TEST(IndexMarks, ShareTheBusWithTheMotors) {
   for (const int polls : {1, 2, 3, 5}) {
-    Rig rig;
+    MarksRig rig;
     rig.bus.polls = polls;
     rig.run(400);  // all drivers are set up
     EXPECT_EQ(rig.haptics.present(), 0xFF) << polls;
@@ -111,7 +111,7 @@ TEST(IndexMarks, ShareTheBusWithTheMotors) {
 
 // The index marks fail, the motors do not: each gets only its own answers.
 TEST(IndexMarks, WithoutAnExpanderTheMotorsAreWell) {
-  Rig rig;
+  MarksRig rig;
   rig.bus.attached = false;
   rig.bus.polls = 3;
   rig.run(3'000);

@@ -23,7 +23,7 @@ TEST(Transpose8, IsATurnedMatrix) {
 }
 
 // Sensors that answer at once; timing and electrical behaviour are covered by the simulated board.
-struct Bus final : SensorBus {
+struct SensorsBus final : SensorBus {
   struct Sensor {
     bool there = true;
     std::array<std::uint8_t, 128> registers{};
@@ -34,7 +34,7 @@ struct Bus final : SensorBus {
   std::array<Sensor, kSensors> sensors{};
   int accesses = 0;
 
-  Bus() {
+  SensorsBus() {
     for (Sensor& sensor : sensors) power(sensor);
   }
   static void power(Sensor& sensor) {
@@ -92,12 +92,12 @@ struct Bus final : SensorBus {
   }
 };
 
-struct Rig {
-  Bus bus;
+struct SensorsRig {
+  SensorsBus bus;
   SensorHost host{bus};
   std::uint32_t ms = 0;
 
-  explicit Rig(std::uint8_t used = 0xFF) { host.begin(used, 20); }
+  explicit SensorsRig(std::uint8_t used = 0xFF) { host.begin(used, 20); }
   wire::DeviceFrame frame() {
     wire::DeviceFrame made{};
     host.add_to_frame(made);
@@ -112,15 +112,15 @@ struct Rig {
 };
 
 TEST(SensorHost, AllAreSetUpTogetherWithinAnEighthOfASecond) {
-  Rig rig;
+  SensorsRig rig;
   rig.run(100);
   EXPECT_EQ(rig.host.present(), 0xFF);
-  for (const Bus::Sensor& sensor : rig.bus.sensors) EXPECT_EQ(sensor.registers[0x0F], 19);
+  for (const SensorsBus::Sensor& sensor : rig.bus.sensors) EXPECT_EQ(sensor.registers[0x0F], 19);
   EXPECT_EQ(rig.frame().flags, 0);
 }
 
 TEST(SensorHost, CountsAreCumulativeAndWrap) {
-  Rig rig;
+  SensorsRig rig;
   rig.run(100);
   std::uint16_t slide = 0, spin = 0;
   for (int i = 0; i < 2000; ++i) {
@@ -138,7 +138,7 @@ TEST(SensorHost, CountsAreCumulativeAndWrap) {
 }
 
 TEST(SensorHost, WhatIsLargerThanASensorFollowsIsFlaggedUntilItWasTold) {
-  Rig rig;
+  SensorsRig rig;
   rig.run(100);
   rig.bus.sensors[0].x = 600;  // 25 counts/ms for each 100 counts/inch, plus a quarter: 625 + 8
   rig.run(1);
@@ -154,7 +154,7 @@ TEST(SensorHost, WhatIsLargerThanASensorFollowsIsFlaggedUntilItWasTold) {
 }
 
 TEST(SensorHost, AllOnesAreNoMotion) {
-  Rig rig;
+  SensorsRig rig;
   rig.run(100);
   rig.bus.sensors[6].there = false;
   rig.run(3);
@@ -163,7 +163,7 @@ TEST(SensorHost, AllOnesAreNoMotion) {
   EXPECT_EQ(frame.slide[6], 0);
   EXPECT_EQ(frame.quality, 1);
   rig.bus.sensors[6].there = true;
-  Bus::power(rig.bus.sensors[6]);
+  SensorsBus::power(rig.bus.sensors[6]);
   rig.run(200);
   frame = rig.frame();
   EXPECT_EQ(frame.present, 0xFF);
@@ -173,7 +173,7 @@ TEST(SensorHost, AllOnesAreNoMotion) {
 
 // All zeros are valid for a sensor without motion, except for the flag that its processes run.
 TEST(SensorHost, CountsThatALineHeldLowSwallowsAreAnError) {
-  Rig rig;
+  SensorsRig rig;
   rig.run(100);
   rig.frame();
   for (const int ms : {1, 3}) {
@@ -189,8 +189,8 @@ TEST(SensorHost, CountsThatALineHeldLowSwallowsAreAnError) {
 
 // In case such a sensor exists.
 TEST(SensorHost, ASensorThatNeverSaysThatItsProcessesRunIsBelieved) {
-  Rig rig;
-  for (Bus::Sensor& sensor : rig.bus.sensors) sensor.observation = 0;
+  SensorsRig rig;
+  for (SensorsBus::Sensor& sensor : rig.bus.sensors) sensor.observation = 0;
   rig.run(1000);
   rig.bus.sensors[2].x = 40;
   rig.run(10);
@@ -201,9 +201,9 @@ TEST(SensorHost, ASensorThatNeverSaysThatItsProcessesRunIsBelieved) {
 }
 
 TEST(SensorHost, ASensorThatForgotItsSetUpIsFoundOutWithinAllQuestions) {
-  Rig rig;
+  SensorsRig rig;
   rig.run(100);
-  Bus::power(rig.bus.sensors[1]);
+  SensorsBus::power(rig.bus.sensors[1]);
   rig.run(SensorHost::kCheckMs * SensorHost::kQuestions + 2);
   EXPECT_EQ(rig.host.present(), 0xFD);
   rig.run(200);
@@ -211,7 +211,7 @@ TEST(SensorHost, ASensorThatForgotItsSetUpIsFoundOutWithinAllQuestions) {
 }
 
 TEST(SensorHost, RodsOfOthersStayAsTheyWere) {
-  Rig rig(0x0F);
+  SensorsRig rig(0x0F);
   rig.run(100);
   wire::DeviceFrame frame{};
   frame.slide[7] = 77;
@@ -226,7 +226,7 @@ TEST(SensorHost, RodsOfOthersStayAsTheyWere) {
 }
 
 TEST(SensorHost, AMillisecondHasAtMostTwoAccessesBesideTheBurst) {
-  Rig rig;
+  SensorsRig rig;
   rig.bus.sensors[2].there = false;
   for (int i = 0; i < 1000; ++i) {
     const int before = rig.bus.accesses;

@@ -9,19 +9,13 @@
 #include "../src/computer_sight.h"
 #include "foosball/computer_player.h"
 #include "match_fixture.h"
+#include "percentile.h"
 
 namespace foosball {
 namespace {
 
 constexpr int kDelay = 80;  // ticks
 constexpr int kMax = 8;     // world steps per tick of play
-
-double percentile(std::vector<double>& values, double share) {
-  const auto at =
-      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
 
 // An observer of a match between two computer players, with the view of the first.
 struct Watched {

@@ -104,12 +104,12 @@ TEST(PlayersDigest, TellsEveryNumberOfEveryLevel) {
   EXPECT_EQ(players_digest(), players_digest());
 }
 
-struct Case {
+struct Pairing {
   Layout layout;
   const char* home;
   const char* away;
 };
-std::string case_name(const testing::TestParamInfo<Case>& info) {
+std::string pairing_name(const testing::TestParamInfo<Pairing>& info) {
   std::string name = info.param.layout == Layout::paper ? "paper_" : "tournament_";
   name.append(info.param.home).append("_").append(info.param.away);
   std::replace_if(
@@ -117,13 +117,13 @@ std::string case_name(const testing::TestParamInfo<Case>& info) {
   return name;
 }
 
-class ComputerPlayers : public testing::TestWithParam<Case> {};
+class ComputerPlayers : public testing::TestWithParam<Pairing> {};
 INSTANTIATE_TEST_SUITE_P(All, ComputerPlayers,
-                         testing::Values(Case{Layout::tournament, "5:shooter", "4"},
-                                         Case{Layout::paper, "5", "3"},
-                                         Case{Layout::tournament, "1", "2"},
-                                         Case{Layout::paper, "2:gambler", "3:wall"}),
-                         case_name);
+                         testing::Values(Pairing{Layout::tournament, "5:shooter", "4"},
+                                         Pairing{Layout::paper, "5", "3"},
+                                         Pairing{Layout::tournament, "1", "2"},
+                                         Pairing{Layout::paper, "2:gambler", "3:wall"}),
+                         pairing_name);
 
 // Detected from the targets: a rod has a hand if it moves, or has moved within the time that a hand
 // of the best level needs to change rods.

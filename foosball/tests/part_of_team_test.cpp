@@ -11,6 +11,7 @@
 #include "../src/computer_forecast.h"
 #include "../src/computer_sight.h"
 #include "foosball/computer_player.h"
+#include "percentile.h"
 
 namespace foosball {
 namespace {
@@ -166,13 +167,6 @@ TEST_P(PartOfATeam, LeavesTheScreensToTheMate) {
     ASSERT_FALSE(game.view().confirmed[0]) << "tick " << tick;
     ASSERT_EQ(game.view().character[0], 1) << "tick " << tick;
   }
-}
-
-double percentile(std::vector<double>& values, double share) {
-  const auto at =
-      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
 }
 
 // By the owner of the feet at the ball, now or at the time of the delayed view: a forecast is

@@ -10,31 +10,31 @@
 namespace foosball {
 namespace {
 
-const TableSpec& table = table_spec(Layout::tournament);
+const TableSpec& kTable = table_spec(Layout::tournament);
 constexpr double kLine = 0.6;
 
 TEST(Goal, CountsOnlyOnceTheBallHasWhollyPassedTheLine) {
-  const double r = table.ball_radius;
-  EXPECT_EQ(goal_by(table, {kLine, 0, r}), std::nullopt) << "half over the line";
-  EXPECT_EQ(goal_by(table, {kLine + r - 1e-6, 0, r}), std::nullopt);
-  EXPECT_EQ(goal_by(table, {kLine + r + 1e-6, 0, r}), 0);
-  EXPECT_EQ(goal_by(table, {-kLine - r - 1e-6, 0, r}), 1) << "team 0 defends -x";
+  const double r = kTable.ball_radius;
+  EXPECT_EQ(goal_by(kTable, {kLine, 0, r}), std::nullopt) << "half over the line";
+  EXPECT_EQ(goal_by(kTable, {kLine + r - 1e-6, 0, r}), std::nullopt);
+  EXPECT_EQ(goal_by(kTable, {kLine + r + 1e-6, 0, r}), 0);
+  EXPECT_EQ(goal_by(kTable, {-kLine - r - 1e-6, 0, r}), 1) << "team 0 defends -x";
 }
 
 TEST(Goal, IsOnlyInsideTheOpening) {
-  EXPECT_EQ(goal_by(table, {0.65, 0.11, 0.02}), std::nullopt);
-  EXPECT_EQ(goal_by(table, {0.65, 0.0, 0.09}), std::nullopt);
-  EXPECT_EQ(goal_by(table, {0.65, 0.10, 0.02}), 0);
+  EXPECT_EQ(goal_by(kTable, {0.65, 0.11, 0.02}), std::nullopt);
+  EXPECT_EQ(goal_by(kTable, {0.65, 0.0, 0.09}), std::nullopt);
+  EXPECT_EQ(goal_by(kTable, {0.65, 0.10, 0.02}), 0);
 }
 
 TEST(OutOfTable, IsOverAWallOrBelowTheFieldButNotInAGoal) {
-  EXPECT_FALSE(out_of_table(table, {0, 0, 0.5})) << "high over the field it may fall back";
-  EXPECT_FALSE(out_of_table(table, {0.65, 0.0, 0.02}));
-  EXPECT_TRUE(out_of_table(table, {0.0, 0.341, 0.15}));
-  EXPECT_TRUE(out_of_table(table, {-0.61, 0.0, 0.15})) << "over the goal";
-  EXPECT_TRUE(out_of_table(table, {0.65, 0.2, 0.02}));
-  EXPECT_TRUE(out_of_table(table, {0.75, 0.0, 0.02})) << "behind the goal box";
-  EXPECT_TRUE(out_of_table(table, {0, 0, -0.001}));
+  EXPECT_FALSE(out_of_table(kTable, {0, 0, 0.5})) << "high over the field it may fall back";
+  EXPECT_FALSE(out_of_table(kTable, {0.65, 0.0, 0.02}));
+  EXPECT_TRUE(out_of_table(kTable, {0.0, 0.341, 0.15}));
+  EXPECT_TRUE(out_of_table(kTable, {-0.61, 0.0, 0.15})) << "over the goal";
+  EXPECT_TRUE(out_of_table(kTable, {0.65, 0.2, 0.02}));
+  EXPECT_TRUE(out_of_table(kTable, {0.75, 0.0, 0.02})) << "behind the goal box";
+  EXPECT_TRUE(out_of_table(kTable, {0, 0, -0.001}));
 }
 
 TEST(Itsf2, TheLastSetNeedsFiveGoalsAndTwoMoreThanTheOtherButNeverMoreThanEight) {
@@ -67,7 +67,7 @@ TEST(Winner, WhenTheTimeIsOverIsWhoeverLeads) {
 
 TEST(DeadBallPlace, IsTheNearestDefenceOrTheServersMidfieldBetweenTheMidfields) {
   const auto place = [](double x, int server) {
-    return table.rods[rod_for_dead_ball(table, x, server)];
+    return kTable.rods[rod_for_dead_ball(kTable, x, server)];
   };
   EXPECT_EQ(place(-0.5, 1).line, Line::defence);
   EXPECT_EQ(place(-0.5, 1).team, 0);
@@ -100,7 +100,7 @@ TEST(BallTouches, APartThatBeganTwiceEndsOnce) {
 TEST(Itsf24, TheBallHeldTooLongGoesFromTheAttackToTheDefenceElseToTheMidfieldOfTheOpponent) {
   for (int team = 0; team < kTeams; ++team) {
     for (const Line line : {Line::goalie, Line::defence, Line::midfield, Line::attack}) {
-      const RodSpec& to = table.rods[rod_after_possession(table, team, line)];
+      const RodSpec& to = kTable.rods[rod_after_possession(kTable, team, line)];
       EXPECT_EQ(to.team, 1 - team);
       EXPECT_EQ(to.line, line == Line::attack ? Line::defence : Line::midfield);
     }
@@ -121,16 +121,16 @@ Called call(const Rules& rules, Path path, int limit, bool touched = false,
   for (int tick = 1; tick <= limit; ++tick) {
     BallWatch::Sight sight{.ball = path(tick),
                            .velocity = (1.0 / kTick) * (path(tick) - path(tick - 1))};
-    sight.rods_in_reach = rods_in_reach(table, built_in(1, 1), sight.ball);
+    sight.rods_in_reach = rods_in_reach(kTable, built_in(1, 1), sight.ball);
     sight.touched = touched;
     sight.absent = absent;
-    const auto verdict = watch.update(table, rules, sight);
+    const auto verdict = watch.update(kTable, rules, sight);
     if (verdict != BallWatch::Verdict::alive) return {verdict, tick};
   }
   return {};
 }
 auto resting(double x, double y) {
-  return [=](int) { return vp::Vec3{x, y, table.ball_radius}; };
+  return [=](int) { return vp::Vec3{x, y, kTable.ball_radius}; };
 }
 
 TEST(Itsf8, ABallThatHasStoppedOutOfReachIsDeadAfterASecond) {
@@ -159,7 +159,7 @@ TEST(Itsf24, AHeldBallHasTenSecondsOnTheMidfieldAndFifteenElsewhere) {
 
 TEST(Itsf24, DribblingDoesNotStopTheClock) {
   const auto dribble = [](int tick) {
-    return vp::Vec3{0.225, 0.2 * std::sin(0.004 * tick), table.ball_radius};
+    return vp::Vec3{0.225, 0.2 * std::sin(0.004 * tick), kTable.ball_radius};
   };
   EXPECT_NEAR(call(itsf_rules(), dribble, 20000, true).tick, 15000, 1);
 }
@@ -167,7 +167,7 @@ TEST(Itsf24, DribblingDoesNotStopTheClock) {
 TEST(Itsf24, GoalieAndDefenceAreOnePlaceOfPossession) {
   // Back and forth between the two rods, out of reach of both in between.
   const auto pass = [](int tick) {
-    return vp::Vec3{-0.45 + 0.06 * std::sin(0.004 * tick), 0.0, table.ball_radius};
+    return vp::Vec3{-0.45 + 0.06 * std::sin(0.004 * tick), 0.0, kTable.ball_radius};
   };
   const Called called = call(itsf_rules(), pass, 40000, true);
   EXPECT_EQ(called.verdict, BallWatch::Verdict::held);
@@ -177,7 +177,7 @@ TEST(Itsf24, GoalieAndDefenceAreOnePlaceOfPossession) {
 TEST(Itsf24, ABallThatHasLeftTheRodIsANewPossession) {
   const auto leaves = [](int tick) {
     const bool away = tick % 9000 > 8500;
-    return vp::Vec3{away ? -0.15 : -0.075, 0.0, table.ball_radius};
+    return vp::Vec3{away ? -0.15 : -0.075, 0.0, kTable.ball_radius};
   };
   EXPECT_EQ(call(itsf_rules(), leaves, 40000, true).verdict, BallWatch::Verdict::alive);
 }

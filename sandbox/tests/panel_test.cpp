@@ -6,10 +6,10 @@
 #include <gtest/gtest.h>
 #include <imgui.h>
 
+#include "clocks.h"
+
 namespace sandbox {
 namespace {
-
-const Simulation::Clocks kStopped{[] { return std::int64_t{0}; }, [] { return std::int64_t{0}; }};
 
 class SandboxPanel : public ::testing::Test {
  protected:

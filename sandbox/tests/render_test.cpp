@@ -10,6 +10,7 @@
 #include <string>
 #include <tuple>
 
+#include "clocks.h"
 #include "draw/image.h"
 #include "draw/window.h"
 #include "view/palette.h"
@@ -17,8 +18,6 @@
 
 namespace sandbox {
 namespace {
-
-const Simulation::Clocks kStopped{[] { return std::int64_t{0}; }, [] { return std::int64_t{0}; }};
 
 constexpr glm::ivec2 kSize{640, 360};
 

@@ -5,13 +5,12 @@
 #include <cmath>
 
 #include "app/thrown.h"
+#include "clocks.h"
 #include "scenes/catalogue.h"
 #include "vphysics/convex_hull.h"
 
 namespace sandbox {
 namespace {
-
-const Simulation::Clocks kStopped{[] { return std::int64_t{0}; }, [] { return std::int64_t{0}; }};
 
 template <class T>
 T must(vp::Expected<T> result) {

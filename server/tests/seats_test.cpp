@@ -18,7 +18,7 @@
 namespace server {
 namespace {
 
-using Kind = Seats::Grant::Kind;
+using GrantKind = Seats::Grant::Kind;
 constexpr auto kLayout = foosball::Layout::tournament;
 
 Seat seat_of(std::uint32_t client, std::uint8_t team, RodSet rods) {
@@ -48,7 +48,7 @@ TEST_F(SeatsTest, WithoutAWordOfRodsOneGetsAllThatAreFree) {
   seats.add(seat_of(1, 0, one));
   EXPECT_EQ(seats.grant(0, 0, 0, false).rods, all0 & ~one);
   seats.add(seat_of(2, 0, RodSet(all0 & ~one)));
-  EXPECT_EQ(seats.grant(0, 0, 0, false).kind, Kind::taken);
+  EXPECT_EQ(seats.grant(0, 0, 0, false).kind, GrantKind::taken);
   EXPECT_EQ(seats.grant(1, 0, 0, false).rods, all1);
 }
 
@@ -58,13 +58,13 @@ TEST_F(SeatsTest, AnySplitIsPossibleAndNoRodIsEverTwoPlayers) {
     const RodSet mine = RodSet(part & all0), theirs = RodSet(all0 & ~mine);
     if (mine == 0 || theirs == 0) continue;
     Seats table(kLayout, false);
-    ASSERT_EQ(table.grant(0, mine, 0, false).kind, Kind::granted);
+    ASSERT_EQ(table.grant(0, mine, 0, false).kind, GrantKind::granted);
     table.add(seat_of(1, 0, mine));
     for (unsigned wanted = 1; wanted < 256; ++wanted) {
       const RodSet rods = RodSet(wanted & all0);
       if (rods == 0) continue;
       const auto grant = table.grant(0, rods, 0, false);
-      EXPECT_EQ(grant.kind == Kind::granted, (rods & mine) == 0);
+      EXPECT_EQ(grant.kind == GrantKind::granted, (rods & mine) == 0);
     }
     EXPECT_EQ(table.grant(0, theirs, 0, false).rods, theirs);
   }
@@ -74,17 +74,17 @@ TEST_F(SeatsTest, OnesOwnRodsMayBeChangedAndOthersAreNamed) {
   const RodSet one = first_of(all0);
   seats.add(seat_of(1, 0, one));
   seats.add(seat_of(2, 0, first_of(RodSet(all0 & ~one))));
-  EXPECT_EQ(seats.grant(0, one, 1, false).kind, Kind::granted);
+  EXPECT_EQ(seats.grant(0, one, 1, false).kind, GrantKind::granted);
   const auto refused = seats.grant(0, all0, 1, false);
-  EXPECT_EQ(refused.kind, Kind::taken);
+  EXPECT_EQ(refused.kind, GrantKind::taken);
   EXPECT_NE(refused.sentence.text().find("are free"), std::string::npos) << refused.sentence.text();
 }
 
 TEST_F(SeatsTest, RodsOfBothTeamsAreForThisMachineUnlessTheHostSaysSo) {
-  EXPECT_EQ(seats.grant(0, 0xFF, 0, false).kind, Kind::other_team);
+  EXPECT_EQ(seats.grant(0, 0xFF, 0, false).kind, GrantKind::other_team);
   EXPECT_EQ(seats.grant(0, 0xFF, 0, true).rods, 0xFF);
   EXPECT_EQ(Seats(kLayout, true).grant(0, 0xFF, 0, false).rods, 0xFF);
-  EXPECT_EQ(seats.grant(wire::kWatchOnly, 1, 0, true).kind, Kind::none);
+  EXPECT_EQ(seats.grant(wire::kWatchOnly, 1, 0, true).kind, GrantKind::none);
 }
 
 TEST_F(SeatsTest, AreCountedByMachineAndByNetwork) {

@@ -9,8 +9,6 @@
 namespace vp::test {
 namespace {
 
-constexpr double kDt = 0.001;
-
 struct OneJoint {
   World world;
   ArticulationId id;

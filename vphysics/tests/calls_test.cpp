@@ -15,11 +15,7 @@
 namespace vp::test {
 namespace {
 
-constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
-constexpr double kUnboundedRadius = std::numeric_limits<double>::infinity();
-constexpr double kDt = 0.001;
-constexpr double kUnusable[] = {kNotANumber, kUnboundedRadius, -kUnboundedRadius, 1e10, -1e10,
-                                1e300};
+constexpr double kUnusable[] = {kNaN, kInfinity, -kInfinity, 1e10, -1e10, 1e300};
 
 struct Small {
   World world;
@@ -96,15 +92,14 @@ TEST(EveryCall, RefusesJointStatesAndDrivesThatAreNone) {
   double JointDrive::*const fields[] = {&JointDrive::position, &JointDrive::velocity,
                                         &JointDrive::stiffness, &JointDrive::damping};
   for (double JointDrive::*const field : fields) {
-    for (const double x : {kNotANumber, kUnboundedRadius, -kUnboundedRadius, -1e10, 1e300}) {
+    for (const double x : {kNaN, kInfinity, -kInfinity, -1e10, 1e300}) {
       JointDrive drive{0, 0, 1, 1, 1};
       drive.*field = x;
       EXPECT_FALSE(s.world.set_drive(id, 0, 0, drive)) << x;
     }
   }
-  for (const JointDrive& drive :
-       {JointDrive{0, 0, -1, 1, 1}, JointDrive{0, 0, 1, -1, 1}, JointDrive{0, 0, 1, 1, -1},
-        JointDrive{0, 0, 1, 1, kNotANumber}}) {
+  for (const JointDrive& drive : {JointDrive{0, 0, -1, 1, 1}, JointDrive{0, 0, 1, -1, 1},
+                                  JointDrive{0, 0, 1, 1, -1}, JointDrive{0, 0, 1, 1, kNaN}}) {
     EXPECT_FALSE(s.world.set_drive(id, 0, 0, drive));
     const std::uint64_t before = s.world.state_hash();
     const JointDrive second_is_bad[] = {{0, 0, 1, 1, 1}, drive};
@@ -158,7 +153,7 @@ TEST(EveryCall, RefusesSettingsOfAWorldThatAreNone) {
   double WorldDesc::*const fields[] = {&WorldDesc::restitution_threshold, &WorldDesc::contact_slop,
                                        &WorldDesc::sleep_after, &WorldDesc::sleep_speed};
   for (double WorldDesc::*const field : fields) {
-    for (const double x : {kNotANumber, kUnboundedRadius, -1.0, 1e10}) {
+    for (const double x : {kNaN, kInfinity, -1.0, 1e10}) {
       WorldDesc desc;
       desc.*field = x;
       EXPECT_TRUE(refused(desc)) << x;
@@ -191,7 +186,7 @@ TEST(EveryCall, RefusesSettingsOfAWorldThatAreNone) {
 // Shapes made by their own factory calls. A scale of zero or below is invalid, too.
 TEST(EveryCall, RefusesShapesThatAreNone) {
   const std::vector<double> flat(9, 0.0);
-  for (const double x : {kNotANumber, kUnboundedRadius, -kUnboundedRadius, 1e300}) {
+  for (const double x : {kNaN, kInfinity, -kInfinity, 1e300}) {
     std::vector<Vec3> points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {x, 0, 0}};
     EXPECT_FALSE(ConvexHull::of(points)) << x;
     const std::vector<TriangleMesh::Triangle> triangles{{0, 1, 4}};
@@ -206,7 +201,7 @@ TEST(EveryCall, RefusesShapesThatAreNone) {
     const CompoundPart moved[] = {{Sphere{1.0}, SE3(Vec3{x, 0, 0})}};
     EXPECT_FALSE(Compound::of(moved)) << x;
   }
-  for (const double x : {kNotANumber, kUnboundedRadius, -1.0, 0.0, 1e300}) {
+  for (const double x : {kNaN, kInfinity, -1.0, 0.0, 1e300}) {
     EXPECT_FALSE(scaled(Box{{1, 1, 1}}, {1, x, 1})) << x;
     EXPECT_FALSE(HeightField::of({3, 3, 1.0, 1.0, flat, {}}).value().scaled({x, 1, 1})) << x;
   }

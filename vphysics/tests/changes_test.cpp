@@ -14,12 +14,8 @@
 namespace vp::test {
 namespace {
 
-constexpr double kDt = 0.005;
-constexpr double kG = 9.81;
-const Shape kBox = Box{{0.5, 0.5, 0.5}};
-
-void run(World& world, int steps) {
-  for (int i = 0; i < steps; ++i) must(world.step(kDt));
+void run_steps(World& world, int steps) {
+  for (int i = 0; i < steps; ++i) must(world.step(kLongDt));
 }
 int count(const World& world, ContactEvent::Kind kind) {
   const auto events = world.contact_events();
@@ -114,7 +110,7 @@ TEST(Mass, ChangedKeepsTheForcesThatWait) {
   must(world.set_inertia(body, other));
   must(world.set_inertia(twin, other));
   must(world.apply_force(twin, {0, 0, 3}, {1, 1, 0}));
-  must(world.step(kDt));
+  must(world.step(kLongDt));
   EXPECT_LT(norm(world.velocity(body).w - world.velocity(twin).w), 1e-15);
 }
 
@@ -123,11 +119,11 @@ TEST(SetInertia, IsFeltByWhatItLiesOn) {
   World world;
   add_ground(world, {});
   const Boxed box = add_box(world, {0, 0, 0.5});
-  run(world, 100);
+  run_steps(world, 100);
   const auto push = [&](int steps) {
     for (int i = 0; i < steps; ++i) {
       must(world.apply_force(box.body, {0, 0, 0.5 * 1000.0 * kG}));
-      must(world.step(kDt));
+      must(world.step(kLongDt));
     }
   };
   push(100);
@@ -146,13 +142,13 @@ TEST(GravityScale, ScalesTheFallOfABody) {
     desc.gravity_scale = 0.25;
     desc.continuous = continuous;
     const BodyId body = must(world.create_body(desc));
-    run(world, 100);
+    run_steps(world, 100);
     EXPECT_NEAR(world.velocity(body).v.z, -0.25 * kG * 0.5, 1e-12);
     must(world.set_gravity_scale(body, 0.0));
-    run(world, 100);
+    run_steps(world, 100);
     EXPECT_NEAR(world.velocity(body).v.z, -0.25 * kG * 0.5, 1e-12);
     must(world.set_gravity_scale(body, -1.0));
-    run(world, 100);
+    run_steps(world, 100);
     EXPECT_NEAR(world.velocity(body).v.z, 0.75 * kG * 0.5, 1e-12);
   }
 }
@@ -162,12 +158,12 @@ TEST(GravityScale, IsTheLoadOnWhatCarriesIt) {
   add_ground(world, {0.4, 0, 0});
   const Boxed box = add_box(world, {0, 0, 0.5}, {0.4, 0, 0});
   must(world.set_gravity_scale(box.body, 0.5));
-  run(world, 100);
+  run_steps(world, 100);
   for (const double share : {0.98, 1.02}) {
     const double start = world.pose(box.body).position().x;
     for (int i = 0; i < 200; ++i) {
       must(world.apply_force(box.body, {share * 0.4 * 0.5 * 1000.0 * kG, 0, 0}));
-      must(world.step(kDt));
+      must(world.step(kLongDt));
     }
     const double way = world.pose(box.body).position().x - start;
     EXPECT_TRUE(share < 1.0 ? way < 1e-3 : way > 0.01) << share << ' ' << way;
@@ -178,10 +174,10 @@ TEST(SetDamping, SlowsFromTheNextStepOn) {
   World world(WorldDesc{.gravity = {}});
   const BodyId body = must(world.create_body({}));
   must(world.set_velocity(body, {{1, 0, 0}, {1, 0, 0}}));
-  run(world, 10);
+  run_steps(world, 10);
   EXPECT_EQ(world.velocity(body).v.x, 1.0);
   must(world.set_damping(body, 2.0, 1.0));
-  run(world, 200);
+  run_steps(world, 200);
   EXPECT_NEAR(world.velocity(body).v.x, std::exp(-2.0), 2e-3);
   EXPECT_NEAR(world.velocity(body).w.x, std::exp(-1.0), 2e-3);
 }
@@ -194,12 +190,12 @@ TEST(AllowSleep, KeepsABodyAwakeWithAllThatItCarries) {
   const Boxed below = add_box(world, {0, 0, 0.5}), above = add_box(world, {0, 0, 1.5}),
               aside = add_box(world, {5, 0, 0.5});
   must(world.set_allow_sleep(below.body, false));
-  run(world, 200);
+  run_steps(world, 200);
   EXPECT_FALSE(world.is_asleep(below.body));
   EXPECT_FALSE(world.is_asleep(above.body));
   EXPECT_TRUE(world.is_asleep(aside.body));
   must(world.set_allow_sleep(below.body, true));
-  run(world, 200);
+  run_steps(world, 200);
   EXPECT_TRUE(world.is_asleep(below.body));
   EXPECT_TRUE(world.is_asleep(above.body));
   must(world.set_allow_sleep(above.body, false));
@@ -213,11 +209,11 @@ TEST(SetMotion, OfAFixedBodyMakesItFallWithTheMassOfItsColliders) {
   add_ground(world, {});
   const Boxed shelf = add_box(world, {0, 0, 3.5}, {}, Motion::fixed);
   const Boxed box = add_box(world, {0, 0, 4.5});
-  run(world, 200);
+  run_steps(world, 200);
   EXPECT_NEAR(world.pose(box.body).position().z, 4.5, 1e-3);
   must(world.set_motion(shelf.body, Motion::dynamic));
   EXPECT_NEAR(world.inertia(shelf.body).mass(), 1000.0, 1e-9);
-  run(world, 600);
+  run_steps(world, 600);
   EXPECT_NEAR(world.pose(shelf.body).position().z, 0.5, 1e-2);
   EXPECT_NEAR(world.pose(box.body).position().z, 1.5, 1e-2);
 }
@@ -227,15 +223,15 @@ TEST(SetMotion, ToFixedStopsABodyInTheAir) {
     World world;
     add_ground(world, {});
     const Boxed box = add_box(world, {0, 0, 3}, {}, Motion::dynamic, continuous);
-    run(world, 40);
+    run_steps(world, 40);
     must(world.set_motion(box.body, Motion::fixed));
     const Vec3 at = world.pose(box.body).position();
     const Boxed rider = add_box(world, at + Vec3{0, 0, 1.0});
-    run(world, 200);
+    run_steps(world, 200);
     EXPECT_EQ(world.pose(box.body).position(), at);
     EXPECT_NEAR(world.pose(rider.body).position().z, at.z + 1.0, 1e-2);
     must(world.set_motion(box.body, Motion::dynamic));
-    run(world, 600);
+    run_steps(world, 600);
     EXPECT_NEAR(world.pose(box.body).position().z, 0.5, 1e-2);
     EXPECT_NEAR(world.pose(rider.body).position().z, 1.5, 1e-2);
   }
@@ -246,7 +242,7 @@ TEST(SetMotion, KeepsTheVelocity) {
   const Boxed box = add_box(world, {0, 0, 0});
   must(world.set_velocity(box.body, {{0, 0, 1}, {2, 0, 0}}));
   must(world.set_motion(box.body, Motion::kinematic));
-  run(world, 10);
+  run_steps(world, 10);
   EXPECT_EQ(world.velocity(box.body), (se3{{0, 0, 1}, {2, 0, 0}}));
   must(world.set_motion(box.body, Motion::dynamic));
   EXPECT_LT(norm(world.velocity(box.body).v - Vec3{2, 0, 0}), 1e-12);
@@ -270,7 +266,7 @@ TEST(SetMotion, EndsContactsOnce) {
         must(world.set_motion(box.body, motion));
         if (motion == Motion::kinematic) must(world.set_velocity(box.body, {}));
       }
-      must(world.step(kDt));
+      must(world.step(kLongDt));
       begun += count(world, ContactEvent::Kind::begin) - count(world, ContactEvent::Kind::end);
       ASSERT_GE(begun, 0);
       ASSERT_LE(begun, 2);
@@ -279,7 +275,7 @@ TEST(SetMotion, EndsContactsOnce) {
     EXPECT_NEAR(world.pose(other.body).position().z, 1.5, 0.02);
     must(world.destroy_body(box.body));
     must(world.destroy_body(other.body));
-    must(world.step(kDt));
+    must(world.step(kLongDt));
     begun -= count(world, ContactEvent::Kind::end);
     EXPECT_EQ(begun, 0);
   }
@@ -301,7 +297,7 @@ TEST(SetMotion, RefusesWhatItsCollidersAndJointsForbid) {
   EXPECT_EQ(world.state_hash(), before);
   must(world.set_motion(b.body, Motion::dynamic));
   must(world.set_motion(a.body, Motion::fixed));
-  run(world, 100);
+  run_steps(world, 100);
   EXPECT_NEAR(world.pose(b.body).position().z, 2.0, 0.02);  // the other body now carries it
 }
 
@@ -309,9 +305,9 @@ TEST(SetMotion, OfABodyOfAPairThatDidNotCountBefore) {
   World world;
   const Boxed shelf = add_box(world, {0, 0, 0}, {}, Motion::fixed);
   const Boxed box = add_box(world, {0, 0, 1.0}, {}, Motion::kinematic);
-  run(world, 10);
+  run_steps(world, 10);
   must(world.set_motion(box.body, Motion::dynamic));
-  run(world, 200);
+  run_steps(world, 200);
   EXPECT_NEAR(world.pose(box.body).position().z, 1.0, 1e-3);
   EXPECT_EQ(world.contains(shelf.collider), true);
 }
@@ -328,16 +324,16 @@ TEST(SetMaterial, OfTheFloorChangesTheFrictionOfWhatLiesOnIt) {
   const BodyId ground = must(world.create_body(desc));
   const ColliderId floor = must(world.add_collider(ground, collider_of(HalfSpace{}, {1, 0, 0})));
   const Boxed box = add_box(world, {0, 0, 0.5}, {1, 0, 0});
-  run(world, 200);
+  run_steps(world, 200);
   ASSERT_TRUE(world.is_asleep(box.body));
   const double start = world.pose(box.body).position().x;
   must(world.set_material(floor, {0.01, 0, 0}));  // the pair's friction becomes 0.1
   EXPECT_FALSE(world.is_asleep(box.body));
-  run(world, 200);
+  run_steps(world, 200);
   const double expected = 0.5 * (2.0 - 0.1 * kG);
   EXPECT_NEAR(world.pose(box.body).position().x - start, expected, 0.02 * expected);
   must(world.set_material(floor, {1.0, 0, 0}));
-  run(world, 400);
+  run_steps(world, 400);
   EXPECT_LT(norm(world.velocity(box.body).v), 1e-3);
 }
 
@@ -348,9 +344,9 @@ TEST(SetSurfaceVelocity, StartsAConveyor) {
   const BodyId ground = must(world.create_body(desc));
   const ColliderId belt = must(world.add_collider(ground, collider_of(HalfSpace{}, {1, 0, 0})));
   const Boxed box = add_box(world, {0, 0, 0.5}, {1, 0, 0});
-  run(world, 100);
+  run_steps(world, 100);
   must(world.set_surface_velocity(belt, {0.5, 0, 0}));
-  run(world, 200);
+  run_steps(world, 200);
   EXPECT_NEAR(world.velocity_world(box.body).linear.x, 0.5, 1e-3);
 }
 
@@ -362,17 +358,17 @@ TEST(SetFilter, EndsAndBeginsContacts) {
     add_ground(world, {});
     const Boxed below = add_box(world, {0, 0, 0.5}, {}, Motion::fixed);
     const Boxed above = add_box(world, {0, 0, 1.5}, {}, Motion::dynamic, continuous);
-    run(world, 200);
+    run_steps(world, 200);
     EXPECT_EQ(world.is_asleep(above.body), !continuous);
     must(world.set_filter(below.collider, {2, 2}));  // the ground is of category 1
     EXPECT_FALSE(world.is_asleep(above.body));
-    must(world.step(kDt));
+    must(world.step(kLongDt));
     EXPECT_EQ(count(world, ContactEvent::Kind::end), 1) << continuous;
-    run(world, 200);
+    run_steps(world, 200);
     EXPECT_NEAR(world.pose(above.body).position().z, 0.5, 0.01) << "it fell through";
     must(world.set_pose(above.body, SE3(Vec3{0, 0, 2.5})));
     must(world.set_filter(below.collider, {}));
-    run(world, 300);
+    run_steps(world, 300);
     EXPECT_NEAR(world.pose(above.body).position().z, 1.5, 0.01);
   }
 }
@@ -389,7 +385,7 @@ TEST(RemoveCollider, EndsItsContactsAndLeavesTheOthers) {
   const ColliderId right =
       must(world.add_collider(table, collider_of(kBox, {}, SE3(Vec3{2, 0, 0}))));
   const Boxed a = add_box(world, {-2, 0, 1}), b = add_box(world, {2, 0, 1});
-  run(world, 200);
+  run_steps(world, 200);
   ASSERT_TRUE(world.is_asleep(a.body));
   EXPECT_EQ(world.body_of(left), table);
   must(world.remove_collider(left));
@@ -397,17 +393,17 @@ TEST(RemoveCollider, EndsItsContactsAndLeavesTheOthers) {
   EXPECT_EQ(world.body_of(left), BodyId{});
   EXPECT_TRUE(world.contains(right));
   EXPECT_FALSE(world.remove_collider(left));
-  must(world.step(kDt));
+  must(world.step(kLongDt));
   ASSERT_EQ(count(world, ContactEvent::Kind::end), 1);
   EXPECT_EQ(world.contact_events()[0].a, left);
-  run(world, 200);
+  run_steps(world, 200);
   EXPECT_LT(world.pose(a.body).position().z, 0.0);
   EXPECT_NEAR(world.pose(b.body).position().z, 1.0, 1e-3);
   const auto hit = world.ray_cast({-2, 0, 5}, {0, 0, -1}, 5.2);
   EXPECT_FALSE(*hit);
   must(world.remove_collider(right));
   must(world.add_collider(table, collider_of(kBox, {}, SE3(Vec3{2, 0, -1}))));
-  run(world, 300);
+  run_steps(world, 300);
   EXPECT_NEAR(world.pose(b.body).position().z, 0.0, 1e-2);
 }
 
@@ -420,9 +416,9 @@ TEST(RemoveCollider, OfALinkAndOfASweptBody) {
   const ColliderId plate = must(
       world.add_collider(link, collider_of(Box{{0.2, 0.2, 0.02}}, bouncy, SE3(Vec3{0, 0, -0.3}))));
   const BodyId ball = add_ball(world, {0, 0, 0.3}, {}, bouncy);
-  for (int i = 0; i < 20; ++i) must(world.step(kDt));
+  for (int i = 0; i < 20; ++i) must(world.step(kLongDt));
   must(world.remove_collider(plate));
-  run(world, 100);
+  run_steps(world, 100);
   EXPECT_LT(world.pose(ball).position().z, -0.5);
 }
 
@@ -444,7 +440,7 @@ TEST(DestroyArticulation, FreesWhatLaysOnItAndItsSlots) {
   const ArticulationId other =
       must(world.create_articulation({model_of(hanging_chain(3, RevoluteJoint{{0, 1, 0}}))}));
   const Boxed box = add_box(world, {0, 0, 3});
-  run(world, 100);
+  run_steps(world, 100);
   EXPECT_NEAR(world.pose(box.body).position().z, 3.0, 1e-2);
   const BodyId link = world.link_body(id, 0);
   must(world.destroy_articulation(id));
@@ -454,9 +450,9 @@ TEST(DestroyArticulation, FreesWhatLaysOnItAndItsSlots) {
   EXPECT_FALSE(world.destroy_articulation(id));
   EXPECT_FALSE(world.set_drive(id, 0, 0, {}));
   EXPECT_EQ(world.link_body(id, 0), BodyId{});
-  must(world.step(kDt));
+  must(world.step(kLongDt));
   EXPECT_EQ(count(world, ContactEvent::Kind::end), 1);
-  run(world, 400);
+  run_steps(world, 400);
   EXPECT_NEAR(world.pose(box.body).position().z, 0.5, 1e-2);
 
   const ArticulationId heir = must(world.create_articulation(desc));
@@ -466,10 +462,10 @@ TEST(DestroyArticulation, FreesWhatLaysOnItAndItsSlots) {
   must(world.apply_joint_force(heir, 0, 0, 1.0));
   std::vector<std::byte> bytes;
   world.snapshot(bytes);
-  run(world, 5);
+  run_steps(world, 5);
   const std::uint64_t hash = world.state_hash();
   must(world.restore(bytes));
-  run(world, 5);
+  run_steps(world, 5);
   EXPECT_EQ(world.state_hash(), hash);
 }
 
@@ -479,14 +475,14 @@ TEST(DestroyArticulation, OfARemoteOneAndOfTheLast) {
   add_ground(world, {});
   const Rod rod = add_rod(world, 3, 0.5, 2, 0.1, {}), other = add_rod(world, -3, 0.5, 2, 0.1, {});
   const BodyId ball = add_ball(world, {0, 0, 0.1}, {}, {});
-  run(world, 20);
+  run_steps(world, 20);
   must(world.destroy_articulation(rod.articulation));
-  run(world, 20);
+  run_steps(world, 20);
   std::vector<std::byte> bytes;
   world.snapshot(bytes);
   must(world.restore(bytes));
   must(world.destroy_articulation(other.articulation));
-  run(world, 20);
+  run_steps(world, 20);
   EXPECT_NEAR(world.pose(ball).position().z, kBallRadius, 1e-3);
 }
 
@@ -589,7 +585,7 @@ TEST(Changes, EnterTheDigestOfTheWorld) {
       add_ground(world, {});
       box = add_box(world, {0, 0, 0.5});
       rod = add_rod(world, 3, 0.5, 1, 0.1, {});
-      run(world, 20);
+      run_steps(world, 20);
     };
     World a, b;
     Boxed box;
@@ -601,12 +597,12 @@ TEST(Changes, EnterTheDigestOfTheWorld) {
     change(a, box, rod);
     EXPECT_FALSE(a.restore(before)) << which;
     change(b, box, rod);
-    run(a, 20);
+    run_steps(a, 20);
     a.snapshot(after);
     must(b.restore(after));
     for (int i = 0; i < 5; ++i) {
-      must(a.step(kDt));
-      must(b.step(kDt));
+      must(a.step(kLongDt));
+      must(b.step(kLongDt));
       EXPECT_EQ(a.state_hash(), b.state_hash()) << which;
     }
   }

@@ -13,12 +13,14 @@
 #include "random.h"
 #include "shape_truth.h"
 
-#ifndef PAIRS
-#define PAIRS 12
-#endif
-
 namespace vp::test {
 namespace {
+
+#ifdef PAIRS
+constexpr int kDistanceSamples = PAIRS;
+#else
+constexpr int kDistanceSamples = 12;
+#endif
 
 using collide::ClosestPoints;
 using collide::PairCache;
@@ -27,17 +29,9 @@ using collide::PairCache;
 // distance.
 constexpr double kNear = 2e-8;
 
-constexpr Kind kBounded[] = {Kind::sphere,   Kind::capsule, Kind::box,
-                             Kind::cylinder, Kind::cone,    Kind::hull};
-
-ClosestPoints closest(const Solid& a, const SE3& Ta, const Solid& b, const SE3& Tb) {
-  PairCache cache;
-  return closest_points(a.geometry, Ta, b.geometry, Tb, cache);
-}
-
 class EveryPairsDistance : public ::testing::TestWithParam<std::pair<Kind, Kind>> {};
 
-std::vector<std::pair<Kind, Kind>> all_pairs() {
+std::vector<std::pair<Kind, Kind>> unordered_pairs() {
   std::vector<std::pair<Kind, Kind>> pairs;
   for (const Kind a : kBounded) {
     for (const Kind b : kBounded) {
@@ -50,7 +44,7 @@ std::vector<std::pair<Kind, Kind>> all_pairs() {
 TEST_P(EveryPairsDistance, IsAsFarApartAsItsNormalProvesAndNoDirectionTellsMore) {
   Random random(61);
   const auto [ka, kb] = GetParam();
-  for (int i = 0; i < PAIRS; ++i) {
+  for (int i = 0; i < kDistanceSamples; ++i) {
     const Solid a = random_solid(random, ka), b = random_solid(random, kb);
     const SE3 Ta = random.pose(0.4), Tb = random.pose(1.0);
     const ClosestPoints c = closest(a, Ta, b, Tb);
@@ -69,7 +63,7 @@ TEST_P(EveryPairsDistance, IsAsFarApartAsItsNormalProvesAndNoDirectionTellsMore)
 TEST_P(EveryPairsDistance, IsTheSameSwappedScaledAndFarFromTheOrigin) {
   Random random(62);
   const auto [ka, kb] = GetParam();
-  for (int i = 0; i < 4 * PAIRS; ++i) {
+  for (int i = 0; i < 4 * kDistanceSamples; ++i) {
     const Solid a = random_solid(random, ka), b = random_solid(random, kb);
     const SE3 Ta = random.pose(0.4), Tb = random.pose(1.0);
     const ClosestPoints c = closest(a, Ta, b, Tb), swapped = closest(b, Tb, a, Ta);
@@ -90,7 +84,7 @@ TEST_P(EveryPairsDistance, OverlapsWhereItsDistanceIsNegative) {
   Random random(63);
   const auto [ka, kb] = GetParam();
   int met = 0;
-  for (int i = 0; i < 4 * PAIRS; ++i) {
+  for (int i = 0; i < 4 * kDistanceSamples; ++i) {
     const Solid a = random_solid(random, ka), b = random_solid(random, kb);
     const SE3 Ta = random.pose(0.4), Tb = random.pose(1.0);
     const double distance = closest(a, Ta, b, Tb).distance;
@@ -104,7 +98,7 @@ TEST_P(EveryPairsDistance, OverlapsWhereItsDistanceIsNegative) {
     met += met_now;
   }
   EXPECT_GT(met, 0);
-  EXPECT_LT(met, 4 * PAIRS);
+  EXPECT_LT(met, 4 * kDistanceSamples);
 }
 
 // A cache gives the starting point of the search. The result is the same from any start, even from
@@ -112,7 +106,7 @@ TEST_P(EveryPairsDistance, OverlapsWhereItsDistanceIsNegative) {
 TEST_P(EveryPairsDistance, IsTheSameWhateverItsCacheHolds) {
   Random random(64);
   const auto [ka, kb] = GetParam();
-  for (int i = 0; i < 4 * PAIRS; ++i) {
+  for (int i = 0; i < 4 * kDistanceSamples; ++i) {
     const Solid a = random_solid(random, ka), b = random_solid(random, kb);
     const SE3 Ta = random.pose(0.4), Tb = random.pose(1.0);
     const ClosestPoints c = closest(a, Ta, b, Tb);
@@ -133,7 +127,7 @@ TEST_P(EveryPairsDistance, IsTheSameWhateverItsCacheHolds) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Convex, EveryPairsDistance, ::testing::ValuesIn(all_pairs()));
+INSTANTIATE_TEST_SUITE_P(Convex, EveryPairsDistance, ::testing::ValuesIn(unordered_pairs()));
 
 // --- polytopes: all features against all
 
@@ -236,7 +230,7 @@ TEST(ClosestPoints, OfPolytopesAreThoseOfBruteForce) {
   Random random(65);
   double worst = 0.0;
   int apart = 0;
-  for (int i = 0; i < 5 * PAIRS; ++i) {
+  for (int i = 0; i < 5 * kDistanceSamples; ++i) {
     const Solid a = random_solid(random, i % 2 ? Kind::box : Kind::hull),
                 b = random_solid(random, i % 3 ? Kind::hull : Kind::box);
     const SE3 Ta = random.pose(0.4), Tb = random.pose(1.2);
@@ -246,7 +240,7 @@ TEST(ClosestPoints, OfPolytopesAreThoseOfBruteForce) {
     apart += truth > 0.0;
   }
   EXPECT_LT(worst, 1e-12);  // measured 4e-15
-  EXPECT_GT(apart, PAIRS);
+  EXPECT_GT(apart, kDistanceSamples);
 }
 
 TEST(ClosestPoints, OfAHalfSpaceAreBelowTheLowestPoint) {

@@ -16,9 +16,6 @@
 namespace vp::test {
 namespace {
 
-constexpr Kind kBounded[] = {Kind::sphere,   Kind::capsule, Kind::box,
-                             Kind::cylinder, Kind::cone,    Kind::hull};
-
 TEST(SignedDistance, AgreesWithTheSampledSeparation) {
   Random random(31);
   const Geometry point{Kind::sphere, 0.0, {}, {}};

@@ -12,11 +12,6 @@ namespace {
 
 using Numbers = std::vector<double>;
 
-Numbers stepped(const Model& model, const Numbers& q, const Numbers& delta) {
-  Numbers out(q.size());
-  integrate<double>(model, q, delta, out);
-  return out;
-}
 Numbers between(const Model& model, const Numbers& q0, const Numbers& q1) {
   Numbers delta(static_cast<std::size_t>(model.velocities()));
   difference<double>(model, q0, q1, delta);

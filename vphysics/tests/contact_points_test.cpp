@@ -10,9 +10,7 @@
 namespace vp::test {
 namespace {
 
-constexpr double kG = 9.81;
-constexpr double kRates[] = {60.0, 1000.0};
-const Shape kBox = Box{{0.5, 0.5, 0.5}};
+constexpr double kSlowAndFast[] = {60.0, 1000.0};  // rates of steps [Hz]
 
 struct Sum {
   Vec3 impulse, moment;  // about the world's origin
@@ -36,11 +34,12 @@ Sum sum_of(const World& world, BodyId body) {
   return sum;
 }
 
-enum class Kind { body, swept, link };
-BodyId add_crate(World& world, Kind kind, const Vec3& at, const Material& m) {
-  if (kind != Kind::link) {
+enum class CrateKind { body, swept, link };
+BodyId add_crate(World& world, CrateKind kind, const Vec3& at, const Material& m) {
+  if (kind != CrateKind::link) {
     return add_dynamic(
-        world, {.shape = kBox, .material = m, .pose = SE3(at), .continuous = kind == Kind::swept});
+        world,
+        {.shape = kBox, .material = m, .pose = SE3(at), .continuous = kind == CrateKind::swept});
   }
   LinkSpec link;
   link.joint = FreeJoint{};
@@ -55,8 +54,8 @@ BodyId add_crate(World& world, Kind kind, const Vec3& at, const Material& m) {
 // with the moment of both.
 TEST(ContactsOf, CarryTheWeightAndHoldThePush) {
   const Material m{0.5, 0.0, 0.0};
-  for (const Kind kind : {Kind::body, Kind::swept, Kind::link}) {
-    for (const double rate : kRates) {
+  for (const CrateKind kind : {CrateKind::body, CrateKind::swept, CrateKind::link}) {
+    for (const double rate : kSlowAndFast) {
       World world;
       const BodyId ground = add_ground(world, m);
       const BodyId crate = add_crate(world, kind, {0, 0, 0.5}, m);
@@ -80,7 +79,7 @@ TEST(ContactsOf, CarryTheWeightAndHoldThePush) {
 }
 
 TEST(ContactsOf, AStackAddUpFromBodyToBody) {
-  for (const double rate : kRates) {
+  for (const double rate : kSlowAndFast) {
     World world;
     const BodyId ground = add_ground(world, {});
     std::vector<BodyId> stack;
@@ -99,7 +98,7 @@ TEST(ContactsOf, AStackAddUpFromBodyToBody) {
 
 // A crate on a plate that is a link; the joint's drive carries both.
 TEST(ContactsOf, ABodyOnALink) {
-  for (const double rate : kRates) {
+  for (const double rate : kSlowAndFast) {
     World world;
     LinkSpec link;
     link.joint = PrismaticJoint{{0, 0, 1}};
@@ -109,7 +108,7 @@ TEST(ContactsOf, ABodyOnALink) {
     const auto floor = must(world.create_articulation({model_of({link})}));
     const BodyId plate = world.link_body(floor, 0);
     must(world.add_collider(plate, collider_of(Box{{5, 5, 0.5}}, {})));
-    const BodyId crate = add_crate(world, Kind::body, {0, 0, 0.5}, {});
+    const BodyId crate = add_crate(world, CrateKind::body, {0, 0, 0.5}, {});
     for (int i = 0; i < static_cast<int>(rate); ++i) {
       must(world.apply_force(crate, {1000.0, 0, 0}));
       must(world.step(1.0 / rate));
@@ -125,7 +124,7 @@ TEST(ContactsOf, ABodyOnALink) {
 // meanwhile.
 TEST(ContactsOf, ABounceGiveItsChangeOfMomentum) {
   for (const bool continuous : {false, true}) {
-    for (const double rate : kRates) {
+    for (const double rate : kSlowAndFast) {
       World world;
       const Material m{0.3, 0.7, 0.0};
       add_ground(world, m);

@@ -24,11 +24,6 @@ Shape floor_mesh(Random& random, double size, const MeshOptions& options) {
   return points.made(options);
 }
 
-double kinetic_energy(const World& world, BodyId body, const Inertia& inertia) {
-  const se3 V = world.velocity(body);
-  return 0.5 * (V * (inertia * V));
-}
-
 // Rods of 0.4 m length and 1 cm thickness, at 25 m/s and 150 rad/s, and a wall of 2 mm. In a step
 // of 1 ms they move 25 mm, their tips 40 mm.
 TEST(Continuous, SpinningRodsNeverPassAThinWall) {

@@ -16,30 +16,24 @@
 #include "random.h"
 #include "shape_truth.h"
 
-#ifndef PAIRS
-#define PAIRS 60
-#endif
-
 namespace vp::test {
 namespace {
+
+#ifdef PAIRS
+constexpr int kManifoldSamples = PAIRS;
+#else
+constexpr int kManifoldSamples = 60;
+#endif
 
 using collide::ClosestPoints;
 using collide::Manifold;
 using collide::PairCache;
-
-constexpr Kind kBounded[] = {Kind::sphere,   Kind::capsule, Kind::box,
-                             Kind::cylinder, Kind::cone,    Kind::hull};
 
 Manifold manifold_of(const Solid& a, const SE3& Ta, const Solid& b, const SE3& Tb, double margin) {
   Manifold m;
   PairCache cache;
   find_manifold(a.geometry, Ta, b.geometry, Tb, margin, cache, m);
   return m;
-}
-
-ClosestPoints closest(const Solid& a, const SE3& Ta, const Solid& b, const SE3& Tb) {
-  PairCache cache;
-  return closest_points(a.geometry, Ta, b.geometry, Tb, cache);
 }
 
 double deepest(const Manifold& m) {
@@ -62,7 +56,7 @@ TEST_P(EveryPairsManifold, TouchesAsDeepAsItIs) {
   Random random(71);
   const auto [ka, kb] = GetParam();
   int touching = 0;
-  for (int i = 0; i < PAIRS; ++i) {
+  for (int i = 0; i < kManifoldSamples; ++i) {
     const Solid a = random_solid(random, ka), b = random_solid(random, kb);
     const SE3 Ta = random.pose(0.4);
     SE3 Tb = random.pose(1.0);
@@ -108,13 +102,13 @@ TEST_P(EveryPairsManifold, TouchesAsDeepAsItIs) {
     }
     ASSERT_EQ(static_cast<int>(names.size()), m.count) << i;  // unique ids
   }
-  EXPECT_GT(touching, PAIRS / 4);
+  EXPECT_GT(touching, kManifoldSamples / 4);
 }
 
 TEST_P(EveryPairsManifold, IsTheSameSwappedAndFarFromTheOrigin) {
   Random random(72);
   const auto [ka, kb] = GetParam();
-  for (int i = 0; i < PAIRS; ++i) {
+  for (int i = 0; i < kManifoldSamples; ++i) {
     const Solid a = random_solid(random, ka), b = random_solid(random, kb);
     const SE3 Ta = random.pose(0.4), Tb = random.pose(0.8);
     const Manifold m = manifold_of(a, Ta, b, Tb, 0.01), s = manifold_of(b, Tb, a, Ta, 0.01);
@@ -145,7 +139,7 @@ TEST_P(EveryPairsManifold, GivesNumbersWhateverComes) {
   Random random(73);
   const auto [ka, kb] = GetParam();
   PairCache cache;
-  for (int i = 0; i < 10 * PAIRS; ++i) {
+  for (int i = 0; i < 10 * kManifoldSamples; ++i) {
     const auto solid = [&](Kind kind) {
       const auto size = [&] { return std::pow(10.0, random.uniform(-3, 3)); };
       switch (kind) {
@@ -221,7 +215,7 @@ TEST(Manifold, OfABoxGivenAsAHullIsThatOfTheBox) {
   Random random(74);
   double worst = 0.0;
   int points = 0;
-  for (int i = 0; i < 40 * PAIRS; ++i) {
+  for (int i = 0; i < 40 * kManifoldSamples; ++i) {
     const Solid a = random_solid(random, Kind::box), b = random_solid(random, Kind::box);
     const Solid ha(hull_of(box_corners(a.geometry.half))),
         hb(hull_of(box_corners(b.geometry.half)));
@@ -246,7 +240,7 @@ TEST(Manifold, OfABoxGivenAsAHullIsThatOfTheBox) {
       points += boxes.count;
     }
   }
-  EXPECT_GT(points, 40 * PAIRS);
+  EXPECT_GT(points, 40 * kManifoldSamples);
   EXPECT_LT(worst, 1e-9);  // measured 3e-12
 }
 

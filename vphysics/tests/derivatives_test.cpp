@@ -160,14 +160,14 @@ TEST(ForwardDerivatives, AreTheSlopesOfForwardDynamicsOnTreesOfEveryJoint) {
 using D = DualT<double>;
 
 // One joint's motion in the link's frame: its pose, S v, S a and (dS/dt) v; and S itself.
-struct Motion {
+struct JointMotion {
   SE3T<D> X;
   std::vector<se3T<D>> S;
   se3T<D> rate;
 };
 // A product of screws. Each adds its motion to that of the screws before it.
-Motion chain(const std::vector<se3>& screws, const D* q, const D* v) {
-  Motion m;
+JointMotion chain(const std::vector<se3>& screws, const D* q, const D* v) {
+  JointMotion m;
   se3T<D> V, A;
   for (std::size_t k = 0; k < screws.size(); ++k) {
     const se3T<D> s = as<D>(screws[k]);
@@ -186,7 +186,7 @@ Vec3 unit(const Vec3& a) {
   return (1 / norm(a)) * a;
 }
 // delta: a tangent step from q, which has a derivative part only.
-Motion motion_of(const Joint& joint, const double* q, const D* delta, const D* v) {
+JointMotion motion_of(const Joint& joint, const double* q, const D* delta, const D* v) {
   const auto simple = [&](const std::vector<se3>& screws) {
     std::array<D, 3> at;
     for (std::size_t k = 0; k < screws.size(); ++k) at[k] = D(q[k]) + delta[k];
@@ -206,7 +206,7 @@ Motion motion_of(const Joint& joint, const double* q, const D* delta, const D* v
   if (std::holds_alternative<PlanarJoint>(joint)) {
     return simple({{{}, {1, 0, 0}}, {{}, {0, 1, 0}}, {{0, 0, 1}, {}}});
   }
-  Motion m;
+  JointMotion m;
   if (const auto* own = std::get_if<std::shared_ptr<const UserJoint>>(&joint)) {
     const auto* screws = dynamic_cast<const ScrewsJoint<2>*>(own->get());
     const std::array<D, 2> at = {D(q[0]) + delta[0], D(q[1]) + delta[1]}, rates = {v[0], v[1]};
@@ -237,7 +237,7 @@ std::vector<D> newton_euler(const Model& model, const State& s, const Loads& loa
   std::vector<SE3T<D>> f(links);
   std::vector<se3T<D>> V(links), A(links);
   std::vector<dse3T<D>> F(links);
-  std::vector<Motion> motions(links);
+  std::vector<JointMotion> motions(links);
   std::vector<D> tau(s.v.size());
   const se3T<D> rest = {{}, {D(-loads.gravity.x), D(-loads.gravity.y), D(-loads.gravity.z)}};
   for (std::size_t l = 0; l < links; ++l) {
@@ -247,7 +247,7 @@ std::vector<D> newton_euler(const Model& model, const State& s, const Loads& loa
     if (!std::holds_alternative<FixedJoint>(link.joint)) {
       motions[l] = motion_of(link.joint, s.q.data() + at, delta.data() + first, v.data() + first);
     }
-    const Motion& m = motions[l];
+    const JointMotion& m = motions[l];
     f[l] = as<D>(link.T_parent_joint) * m.X;
     const bool root = link.parent == kWorld;
     const auto p = static_cast<std::size_t>(link.parent);

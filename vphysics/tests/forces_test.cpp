@@ -14,13 +14,10 @@
 namespace vp::test {
 namespace {
 
-constexpr double kG = 9.81;
-constexpr double kRates[] = {60.0, 240.0, 1000.0};
-
 // --- a crate on a floor, under a horizontal force
 
-enum class Kind { body, swept, link, on_link };
-constexpr Kind kKinds[] = {Kind::body, Kind::swept, Kind::link, Kind::on_link};
+enum class Carrier { body, swept, link, on_link };
+constexpr Carrier kCarriers[] = {Carrier::body, Carrier::swept, Carrier::link, Carrier::on_link};
 constexpr double kHalf = 0.5, kMass = 100.0, kFriction = 0.4;
 const Shape kCrate = Box{{kHalf, kHalf, kHalf}};
 
@@ -28,11 +25,11 @@ struct Crate {
   World world;
   BodyId body;
 };
-void make(Crate& c, Kind kind) {
+void make(Crate& c, Carrier kind) {
   const Material m{kFriction, 0.0, 0.0};
   const Inertia inertia = solid_inertia(kCrate, kMass / (8 * kHalf * kHalf * kHalf));
   const SE3 at(Vec3{0, 0, kHalf});
-  if (kind == Kind::on_link) {
+  if (kind == Carrier::on_link) {
     // The floor is a link on a stiff joint.
     LinkSpec link;
     link.joint = PrismaticJoint{{0, 0, 1}};
@@ -44,7 +41,7 @@ void make(Crate& c, Kind kind) {
   } else {
     add_ground(c.world, m);
   }
-  if (kind == Kind::link) {
+  if (kind == Carrier::link) {
     LinkSpec link;
     link.joint = FreeJoint{};
     link.T_parent_joint = at;
@@ -57,7 +54,7 @@ void make(Crate& c, Kind kind) {
   BodyDesc desc;
   desc.T_world_body = at;
   desc.inertia = inertia;
-  desc.continuous = kind == Kind::swept;
+  desc.continuous = kind == Carrier::swept;
   c.body = must(c.world.create_body(desc));
   must(c.world.add_collider(c.body, collider_of(kCrate, m)));
 }
@@ -69,7 +66,7 @@ void push(World& world, BodyId body, const Vec3& force, double seconds, double r
 }
 
 TEST(Force, MovesACrateFromTheLimitOfFrictionOn) {
-  for (const Kind kind : kKinds) {
+  for (const Carrier kind : kCarriers) {
     for (const double rate : kRates) {
       for (const double share : {0.9, 0.99, 1.01, 1.1}) {
         Crate c;
@@ -135,7 +132,7 @@ TEST(Force, ThatLiftsTakesFrictionAway) {
   for (const double rate : kRates) {
     for (const double share : {0.97, 1.03}) {
       Crate c;
-      make(c, Kind::body);
+      make(c, Carrier::body);
       push(c.world, c.body, {0, 0, 0}, 0.5, rate);
       const double start = c.world.pose(c.body).position().x;
       const double weight = kMass * kG;
@@ -148,7 +145,7 @@ TEST(Force, ThatLiftsTakesFrictionAway) {
 }
 
 TEST(Force, IsFeltAsALoadAndMakesNoHits) {
-  for (const Kind kind : kKinds) {
+  for (const Carrier kind : kCarriers) {
     Crate c;
     make(c, kind);
     push(c.world, c.body, {0, 0, 0}, 0.2, 60.0);
@@ -422,7 +419,7 @@ TEST(Force, OfAJointIsFeltByWhatItsLinkPushes) {
   for (const double rate : kRates) {
     for (const double share : {0.98, 1.02}) {
       Crate c;
-      make(c, Kind::body);
+      make(c, Carrier::body);
       LinkSpec link;
       link.joint = PrismaticJoint{{1, 0, 0}};
       link.T_parent_joint = SE3(Vec3{-kHalf - 0.1, 0, kHalf});

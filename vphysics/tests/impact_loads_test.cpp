@@ -12,7 +12,6 @@
 namespace vp::test {
 namespace {
 
-constexpr double kRates[] = {60, 240, 1000};
 const Material kDull{0.6, 0.0, 0.0};
 const Box kCube{{0.5, 0.5, 0.5}};
 

@@ -15,8 +15,8 @@
 namespace vp::test {
 namespace {
 
-constexpr double kSpeeds[] = {1.0, 5.0, 20.0};        // [m/s]
-constexpr double kSteps[] = {1.0 / 60.0, 1.0 / 240};  // [s]
+constexpr double kSpeeds[] = {1.0, 5.0, 20.0};            // [m/s]
+constexpr double kEdgeSteps[] = {1.0 / 60.0, 1.0 / 240};  // [s]
 
 struct Ground {
   const char* name;
@@ -28,7 +28,6 @@ void for_each_tile(Build build) {
   for (int i = -6; i < 6; ++i)
     for (int j = -2; j < 3; ++j) build(SE3(Vec3{i + 0.5, static_cast<double>(j), -0.5}));
 }
-const Material kRough{.friction = 0.6};
 const Box kTile{{0.5, 0.5, 0.5}};
 
 const Ground kGrounds[] = {
@@ -68,7 +67,7 @@ TEST(ImpactNormal, OnATiledFloorNothingIsStoppedByTheSeams) {
   for (const Ground& ground : kGrounds) {
     for (const Mover& mover : kMovers) {
       for (const double speed : kSpeeds) {
-        for (const double dt : kSteps) {
+        for (const double dt : kEdgeSteps) {
           // The axis of a roller that makes half a revolution in a step nutates.
           if (mover.name == std::string("roller") && speed * dt > 0.3) continue;
           World world;
@@ -96,7 +95,7 @@ TEST(ImpactNormal, OnATiledFloorNothingIsStoppedByTheSeams) {
 }
 
 TEST(ImpactNormal, AStepInTheFloorIsMet) {
-  for (const double dt : kSteps) {
+  for (const double dt : kEdgeSteps) {
     World world;
     add_fixed(world, Box{{10.0, 5.0, 0.5}}, kRough, SE3(Vec3{-10.0, 0.0, -0.5}));
     add_fixed(world, Box{{10.0, 5.0, 0.5}}, kRough, SE3(Vec3{10.0, 0.0, -0.495}));
@@ -115,7 +114,7 @@ TEST(ImpactNormal, AStepInTheFloorIsMet) {
 // Equal smooth elastic balls: the one that is hit leaves along the line of centres at the impact.
 TEST(ImpactNormal, OfTwoBallsThatHitOffCentreIsTheirLineOfCentres) {
   Random random(74);
-  for (const double dt : kSteps) {
+  for (const double dt : kEdgeSteps) {
     double worst = 0.0;
     for (int i = 0; i < 300; ++i) {
       WorldDesc desc;

@@ -15,18 +15,12 @@ namespace vp::test {
 namespace {
 
 constexpr int kTrees = 40;
-constexpr int kKinds = 9;  // of joints: all but user-defined ones
-
-double largest(const std::vector<double>& x) {
-  double most = 0.0;
-  for (const double y : x) most = std::max(most, std::fabs(y));
-  return most;
-}
+constexpr int kJointKinds = 9;  // of joints: all but user-defined ones
 
 // A tree in some state, and its factor.
-struct Case {
-  Case(Random& random, int links)
-      : model(random_tree(random, links, kKinds)),
+struct Factored {
+  Factored(Random& random, int links)
+      : model(random_tree(random, links, kJointKinds)),
         state(random_state(random, model)),
         data(model),
         factor(model) {
@@ -48,7 +42,7 @@ struct Case {
 TEST(ImpulseFactor, BiasIsWhatInverseDynamicsSaysOfNoAcceleration) {
   Random random(41);
   for (int k = 0; k < kTrees; ++k) {
-    Case c(random, 1 + k % 20);
+    Factored c(random, 1 + k % 20);
     ASSERT_TRUE(c.fine);
     const Vec3 gravity{0.3, -1.0, -9.81};
     std::vector<double> bias(c.size()), expected(c.size());
@@ -63,7 +57,7 @@ TEST(ImpulseFactor, BiasIsWhatInverseDynamicsSaysOfNoAcceleration) {
         expected[i] -= c.damping(link) * c.state.v[i];
       }
     }
-    const double scale = 1.0 + largest(expected);
+    const double scale = 1.0 + largest_of(expected);
     for (std::size_t i = 0; i < bias.size(); ++i) {
       EXPECT_NEAR(bias[i], expected[i], 1e-11 * scale) << "tree " << k << ", velocity " << i;
     }
@@ -74,7 +68,7 @@ TEST(ImpulseFactor, BiasIsWhatInverseDynamicsSaysOfNoAcceleration) {
 TEST(ImpulseFactor, AccelerationsAreThoseOfForwardDynamics) {
   Random random(42);
   for (int k = 0; k < kTrees; ++k) {
-    Case c(random, 1 + k % 20);
+    Factored c(random, 1 + k % 20);
     const Vec3 gravity{0.0, 0.0, -9.81};
     // Loads in the links' frames, as forward_dynamics() takes them, and the same loads in the world
     // frame.
@@ -98,7 +92,7 @@ TEST(ImpulseFactor, AccelerationsAreThoseOfForwardDynamics) {
     c.factor.solve(force);
     forward_dynamics<double>(c.model, c.data, c.state.q, c.state.v, c.state.tau,
                              {.gravity = gravity, .external = loads}, expected);
-    const double scale = 1.0 + largest(expected);
+    const double scale = 1.0 + largest_of(expected);
     for (std::size_t i = 0; i < force.size(); ++i) {
       EXPECT_NEAR(force[i], expected[i], 1e-9 * scale) << "tree " << k << ", velocity " << i;
     }
@@ -108,7 +102,7 @@ TEST(ImpulseFactor, AccelerationsAreThoseOfForwardDynamics) {
 TEST(ImpulseFactor, ThreeRowsAtOnceAreThoseOfOneEach) {
   Random random(43);
   for (int k = 0; k < kTrees; ++k) {
-    const Case c(random, 1 + k % 20);
+    const Factored c(random, 1 + k % 20);
     for (int link = 0; link < c.model.links(); ++link) {
       const Vec3 ways[] = {{0.6, 0.0, -0.8}, {0.0, 1.0, 0.0}, {0.8, 0.1, 0.6}};
       const Vec3 point{0.3, -0.2, 0.1 * k};
@@ -131,7 +125,7 @@ TEST(ImpulseFactor, KinematicsOfMovedRootsAreThoseOfForwardKinematics) {
   Random random(44);
   int moved = 0;
   for (int k = 0; k < kTrees; ++k) {
-    const Case c(random, 1 + k % 20);
+    const Factored c(random, 1 + k % 20);
     std::vector<double> q = c.state.q;
     for (const auto& node : c.model.tree().nodes) {
       if (!node.free_root()) continue;

@@ -1,14 +1,11 @@
 // Joints as part of a world: ids, rejected arguments, collision filtering, snapshots.
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include "joints_rig.h"
 
 namespace vp::test {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 const Inertia kSolid = solid_inertia(Box{{0.1, 0.1, 0.1}}, 1000.0);
 
 struct Pair {
@@ -33,10 +30,10 @@ TEST(CreateJoint, RefusesWhatIsNoJoint) {
   swung.axes[3] = {AxisMotion::limited, -4, 4, {}};
   odd.axes[0].motion = static_cast<AxisMotion>(9);
   const JointKind bad[] = {Hinge{1, -1, {}},
-                           Hinge{kNan, 1, {}},
+                           Hinge{kNaN, 1, {}},
                            Hinge{inf, inf, {}},
                            Hinge{-inf, -inf, {}},
-                           Hinge{0, 1, {kNan, 0, 0, 0, 0}},
+                           Hinge{0, 1, {kNaN, 0, 0, 0, 0}},
                            Hinge{0, 1, {0, 0, -1, 0, 1}},
                            Hinge{0, 1, {0, 0, 0, 0, inf}},
                            Hinge{0, 1, {0, 0, 1e300, 0, 1}},
@@ -45,30 +42,30 @@ TEST(CreateJoint, RefusesWhatIsNoJoint) {
                            Distance{-1, 1},
                            Distance{2, 1},
                            Distance{0, 0},
-                           Distance{kNan, 1},
-                           Distance{0, kNan},
+                           Distance{kNaN, 1},
+                           Distance{0, kNaN},
                            Distance{inf, inf},
                            Spring{-1, 1, 1},
                            Spring{1, -1, 1},
                            Spring{1, 1, -1},
-                           Spring{1, kNan, 1},
+                           Spring{1, kNaN, 1},
                            Spring{1, inf, 1},
                            ConeTwist{0, 1, -1, 1, {}},
                            ConeTwist{1, -1, -1, 1, {}},
                            ConeTwist{1, 4, -1, 1, {}},
-                           ConeTwist{kNan, 1, -1, 1, {}},
+                           ConeTwist{kNaN, 1, -1, 1, {}},
                            ConeTwist{1, 1, 1, -1, {}},
                            driven,
                            swung,
                            odd,
                            Gear{0},
-                           Gear{kNan},
+                           Gear{kNaN},
                            Gear{inf},
                            UserConstraint{}};
   for (const JointKind& kind : bad)
     EXPECT_TRUE(refused(tries(kind), Errc::invalid_argument)) << kind.index();
   JointDesc desc;
-  for (const double x : {kNan, -1.0, inf}) {
+  for (const double x : {kNaN, -1.0, inf}) {
     desc = {};
     desc.frequency = x;
     EXPECT_TRUE(refused(p.world.create_joint(p.a, p.b, desc), Errc::invalid_argument));
@@ -77,7 +74,7 @@ TEST(CreateJoint, RefusesWhatIsNoJoint) {
     EXPECT_TRUE(refused(p.world.create_joint(p.a, p.b, desc), Errc::invalid_argument));
   }
   desc = {};
-  desc.T_a_joint = SE3(Vec3{kNan, 0, 0});
+  desc.T_a_joint = SE3(Vec3{kNaN, 0, 0});
   EXPECT_TRUE(refused(p.world.create_joint(p.a, p.b, desc), Errc::invalid_argument));
   desc = {};
   desc.T_b_joint = SE3(Mat3{{2, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {});
@@ -126,7 +123,7 @@ TEST(SetDrive, RefusesWhatTheJointHoldsOrDoesNotHave) {
   EXPECT_FALSE(p.world.set_drive(ball, {}));
   EXPECT_FALSE(p.world.set_drive(ball, JointAxis::x, {}));
   EXPECT_TRUE(p.world.set_drive(ball, JointAxis::rotation_z, {0, 1, 0, 1, 1}));
-  EXPECT_FALSE(p.world.set_drive(ball, JointAxis::rotation_z, {0, kNan, 0, 1, 1}));
+  EXPECT_FALSE(p.world.set_drive(ball, JointAxis::rotation_z, {0, kNaN, 0, 1, 1}));
   EXPECT_FALSE(p.world.set_drive(ball, static_cast<JointAxis>(17), {}));
   JointDesc desc;
   desc.kind = Spring{1, 1, 1};

@@ -8,10 +8,6 @@
 
 namespace vp::test {
 
-inline constexpr double kG = 9.81;
-inline const Vec3 kGravity{0, 0, -kG};
-inline const Material kRough{0.6, 0.0, 0.0};
-
 inline void step(World& world, double dt, int count = 1) {
   for (int i = 0; i < count; ++i) must(world.step(dt));
 }

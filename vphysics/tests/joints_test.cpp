@@ -8,8 +8,6 @@
 namespace vp::test {
 namespace {
 
-constexpr double kG = 9.81;
-
 // --- constraints
 
 // The first passage through the bottom takes a quarter of the period, an elliptic integral by the

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "largest.h"
 #include "operation_counts.h"
 #include "random.h"
 #include "vphysics/lie.h"
@@ -34,12 +35,10 @@ SE3T<T> cast(const SE3& A) {
 se3 random_twist(Random& random, double angle) {
   return {angle * random.direction(), random.in_cube(2.0)};
 }
-double largest(const Vec3& a) {
-  return std::max({std::fabs(a.x), std::fabs(a.y), std::fabs(a.z)});
-}
 
 // Angles on both sides of every threshold, tiny, and near half a revolution.
-const double kAngles[] = {0.0, 1e-200, 1e-9, 1e-4, 0.31, 0.32, 0.499, 0.501, 1.0, 2.0, 3.0, 3.1415};
+const double kTwistAngles[] = {0.0,   1e-200, 1e-9, 1e-4, 0.31, 0.32,
+                               0.499, 0.501,  1.0,  2.0,  3.0,  3.1415};
 
 // --- dual numbers
 
@@ -82,7 +81,7 @@ TEST(Dual, KnowsTheSlopesOfArithmetic) {
 // Measured: 9e-15, and 1.2e-14 at half a revolution.
 TEST(Jacobian, IsTheSlopeOfExp) {
   Random random(21);
-  for (const double angle : kAngles) {
+  for (const double angle : kTwistAngles) {
     for (int i = 0; i < 100; ++i) {
       const se3 V = random_twist(random, angle), d = random_twist(random, 1.0);
       const SE3T<Dual> moving = Exp(along(V, d));
@@ -100,7 +99,7 @@ TEST(Jacobian, IsTheSlopeOfExp) {
 
 TEST(Jacobian, OfLogIsTheInverse) {
   Random random(22);
-  for (const double angle : kAngles) {
+  for (const double angle : kTwistAngles) {
     for (int i = 0; i < 100; ++i) {
       const se3 V = random_twist(random, angle), d = random_twist(random, 1.0);
       const SE3T<Dual> moving = Exp(along({}, d)) * Exp(cast<Dual>(V));
@@ -129,7 +128,7 @@ TEST(Jacobian, TransposedTakesForces) {
 
 // --- packs
 
-using Pack = PackT<double, 4>;
+using Pack4 = PackT<double, 4>;
 
 template <class T, int N>
 void expect_lane(const PackT<T, N>& pack, int lane, T expected) {
@@ -157,7 +156,7 @@ void lanes_are_scalars() {
     for (int lane = 0; lane < N; ++lane) {
       // Sometimes all lanes on one side of a threshold, mostly on both.
       const int which = round % 3 == 0 ? round / 3 : round + lane * 5;
-      V[lane] = cast<T>(random_twist(random, kAngles[which % 12]));
+      V[lane] = cast<T>(random_twist(random, kTwistAngles[which % 12]));
       for (int i = 0; i < 3; ++i) {
         packed.w[i].set(lane, V[lane].w[i]);
         packed.v[i].set(lane, V[lane].v[i]);
@@ -185,7 +184,7 @@ TEST(Pack, GivesEachLaneTheBitsOfTheScalar) {
 }
 
 TEST(Pack, HasHugeAnglesInSomeLanes) {
-  Pack x(0.5);
+  Pack4 x(0.5);
   x.set(2, -1e9);
   const auto [s, c] = sin_cos(x);
   EXPECT_EQ(s[0], sin_cos(0.5).sin);
@@ -208,7 +207,7 @@ TEST(Float, SineAndCosineAreWithinTwoUlp) {
 
 TEST(Float, LogInvertsExp) {
   Random random(26);
-  for (const double angle : kAngles) {
+  for (const double angle : kTwistAngles) {
     if (angle > 3.0) continue;  // rounding takes 3.1415 past half a revolution
     for (int i = 0; i < 100; ++i) {
       const se3T<float> V = cast<float>(random_twist(random, angle)), L = Log(Exp(V));

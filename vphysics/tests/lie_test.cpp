@@ -8,14 +8,12 @@
 #include <type_traits>
 #include <vector>
 
+#include "largest.h"
 #include "random.h"
 
 namespace vp::test {
 namespace {
 
-double largest(const Vec3& a) {
-  return std::max({std::fabs(a.x), std::fabs(a.y), std::fabs(a.z)});
-}
 double difference(const SE3& A, const SE3& B) {
   const Mat3 &R = A.rotation(), &S = B.rotation();
   return std::max({largest(R.cx - S.cx), largest(R.cy - S.cy), largest(R.cz - S.cz),

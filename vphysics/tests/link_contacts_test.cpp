@@ -14,9 +14,6 @@
 namespace vp::test {
 namespace {
 
-constexpr double kRates[] = {1000.0, 240.0, 60.0};
-const Material kRough{0.6, 0.0, 0.0};
-
 LinkSpec link_of(const Joint& joint, const Shape& shape, double density) {
   LinkSpec link;
   link.joint = joint;
@@ -24,10 +21,6 @@ LinkSpec link_of(const Joint& joint, const Shape& shape, double density) {
   return link;
 }
 
-struct Plate {
-  ArticulationId id;
-  BodyId body;
-};
 const Box kPlate{{0.5, 0.5, 0.05}};
 // A plate on one joint to the world, with its top at z = 0.
 Plate add_plate(World& world, const Joint& joint, const Material& material,

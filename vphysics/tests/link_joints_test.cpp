@@ -17,12 +17,6 @@
 namespace vp::test {
 namespace {
 
-constexpr double kG = 9.81;
-
-struct Plate {
-  ArticulationId id;
-  BodyId body;
-};
 Plate add_hinged_plate(World& world) {
   const Box box{{0.5, 0.5, 0.05}};
   LinkSpec link;
@@ -73,12 +67,12 @@ class Level : public PairConstraint {  // b's origin at a's height
   }
 };
 
-struct Kind {
+struct JointCase {
   const char* name;
   JointKind kind;
   double frequency = 0.0;
 };
-std::vector<Kind> kinds() {
+std::vector<JointCase> kinds() {
   const JointDrive motor{0.0, 3.0, 0.0, 1e6, 2.0}, servo{0.5, 0.0, 200.0, 20.0, 50.0};
   SixDof six;
   six.axes[0].motion = six.axes[1].motion = AxisMotion::locked;
@@ -103,11 +97,11 @@ std::vector<Kind> kinds() {
           {"own", UserConstraint{std::make_shared<Level>()}}};
 }
 
-struct Pair {
+struct JoinedBoxes {
   World world;
   BodyId a, b;
   JointId joint;
-  explicit Pair(const Kind& kind, Ends ends) {
+  explicit JoinedBoxes(const JointCase& kind, Ends ends) {
     const Inertia inertia = solid_inertia(Box{{0.2, 0.1, 0.05}}, 1000.0);
     const BodyId anchor = add_anchor(world);
     a = add_box(world, inertia, SE3(Vec3{0.3, 0, 0}), {{0, 0, 1}, {0, 0.3, 0}}, ends, false);
@@ -129,13 +123,13 @@ struct Pair {
 // links and continuous bodies are rows of the solver of the impact stage. Both converge to the
 // result of steps a hundred times shorter.
 TEST(LinkJoint, EveryKindMovesAsItDoesBetweenBodies) {
-  for (const Kind& kind : kinds()) {
-    Pair fine(kind, Ends::bodies);
+  for (const JointCase& kind : kinds()) {
+    JoinedBoxes fine(kind, Ends::bodies);
     run(fine.world, 0.3, 1e-4);
     const Vec3 expected = fine.world.pose(fine.b).position();
     double off[4];
     for (const Ends ends : {Ends::bodies, Ends::links, Ends::a_link, Ends::continuous}) {
-      Pair pair(kind, ends);
+      JoinedBoxes pair(kind, ends);
       run(pair.world, 0.3, 1e-3);
       off[static_cast<int>(ends)] = norm(pair.world.pose(pair.b).position() - expected);
     }
@@ -149,7 +143,7 @@ TEST(LinkJoint, EveryKindMovesAsItDoesBetweenBodies) {
 
 // A four-bar linkage in the xz plane with rotations about y: crank, coupler, rocker; ground from
 // (0, 0) to (d, 0). A joint of the world closes its loop.
-struct FourBar {
+struct FourBarWorld {
   static constexpr double kCrank = 0.3, kCoupler = 0.8, kRocker = 0.6, kGround = 0.7;
   static constexpr double kAngle = 1.2;  // initial crank angle from the ground
   static Inertia bar_along_x(double mass, double length) {
@@ -182,7 +176,7 @@ struct FourBar {
   World world;
   ArticulationId id;
   JointId loop;
-  explicit FourBar(const JointKind& kind) : id(must(world.create_articulation({model()}))) {
+  explicit FourBarWorld(const JointKind& kind) : id(must(world.create_articulation({model()}))) {
     must(world.set_joint_states(id, start(), std::vector<double>(3)));
     JointDesc desc;
     desc.kind = kind;
@@ -198,12 +192,12 @@ struct FourBar {
 
 // The crank's angle after a second, by the constrained dynamics of a tree.
 double swung(double dt) {
-  const Model model = FourBar::model();
+  const Model model = FourBarWorld::model();
   ConstrainedData data(
-      model,
-      must(ConstraintSet::make(model, {close_hinge({1, SE3(kAlongY, {FourBar::kCoupler, 0, 0})},
-                                                   {2, SE3(kAlongY, {FourBar::kRocker, 0, 0})})})));
-  std::vector<double> q = FourBar::start(), v(3), tau(3);
+      model, must(ConstraintSet::make(
+                 model, {close_hinge({1, SE3(kAlongY, {FourBarWorld::kCoupler, 0, 0})},
+                                     {2, SE3(kAlongY, {FourBarWorld::kRocker, 0, 0})})})));
+  std::vector<double> q = FourBarWorld::start(), v(3), tau(3);
   Loads loads;
   loads.gravity = {0, 0, -kG};
   for (int i = 0; i < static_cast<int>(std::lround(1.0 / dt)); ++i) {
@@ -218,7 +212,7 @@ TEST(LinkJoint, AFourBarSwingsAsItsEquationsOfMotionSay) {
   for (const JointKind& kind : {JointKind{Hinge{}}, JointKind{BallSocket{}}}) {
     double off[2], gap = 0.0;
     for (int k = 0; k < 2; ++k) {
-      FourBar f(kind);
+      FourBarWorld f(kind);
       const double dt = k == 0 ? 1e-3 : 2.5e-4;
       for (int i = 0; i < static_cast<int>(std::lround(1.0 / dt)); ++i) {
         must(f.world.step(dt));
@@ -237,9 +231,9 @@ TEST(LinkJoint, AFourBarSwingsAsItsEquationsOfMotionSay) {
 
 // An impact acts on the entire loop at once.
 TEST(LinkJoint, ALoopStaysClosedWhenItIsStruck) {
-  FourBar f(Hinge{});
-  ColliderDesc rod = collider_of(Capsule{0.02, 0.5 * FourBar::kRocker}, {0.0, 0.5, 0.0});
-  rod.T_body_shape = SE3(Exp(Vec3{0, kPi / 2, 0}).matrix(), {0.5 * FourBar::kRocker, 0, 0});
+  FourBarWorld f(Hinge{});
+  ColliderDesc rod = collider_of(Capsule{0.02, 0.5 * FourBarWorld::kRocker}, {0.0, 0.5, 0.0});
+  rod.T_body_shape = SE3(Exp(Vec3{0, kPi / 2, 0}).matrix(), {0.5 * FourBarWorld::kRocker, 0, 0});
   must(f.world.add_collider(f.world.link_body(f.id, 2), rod));
   Part ball;
   ball.shape = Sphere{0.05};
@@ -256,7 +250,7 @@ TEST(LinkJoint, ALoopStaysClosedWhenItIsStruck) {
       struck |= e.kind == ContactEvent::Kind::hit;
     }
     gap = std::max(gap, f.gap());
-    const Vec3 x = f.end_of(1, FourBar::kCoupler);
+    const Vec3 x = f.end_of(1, FourBarWorld::kCoupler);
     speed = std::max(speed, norm(f.world.velocity_at(f.world.link_body(f.id, 1), x) -
                                  f.world.velocity_at(f.world.link_body(f.id, 2), x)));
   }
@@ -390,7 +384,7 @@ struct Gripper {
     for (int i = 0; i < 2; ++i) {
       links[static_cast<std::size_t>(i)].parent = i - 1;
       links[static_cast<std::size_t>(i)].joint = RevoluteJoint{{0, 1, 0}};
-      links[static_cast<std::size_t>(i)].inertia = FourBar::bar_along_x(1.0, kArm);
+      links[static_cast<std::size_t>(i)].inertia = FourBarWorld::bar_along_x(1.0, kArm);
       if (i > 0) links[1].T_parent_joint = SE3(Vec3{kArm, 0, 0});
     }
     arm = must(world.create_articulation({model_of(links)}));
@@ -494,7 +488,7 @@ TEST(LinkJoint, JoinedOnesDoNotMeetUnlessAsked) {
 // --- state and calls
 
 TEST(LinkJoint, ARestoredWorldGoesOnToTheSameBits) {
-  FourBar one(Hinge{});
+  FourBarWorld one(Hinge{});
   Gripper two;
   for (World* world : {&one.world, &two.world}) {
     run(*world, 0.3);
@@ -544,12 +538,12 @@ TEST(LinkJoint, ARecordingGoesToTheSameHashes) {
   World world;
   const auto recorder = std::make_shared<Recorder>();
   must(world.record(recorder));
-  const ArticulationId id = must(world.create_articulation({FourBar::model()}));
-  must(world.set_joint_states(id, FourBar::start(), std::vector<double>(3)));
+  const ArticulationId id = must(world.create_articulation({FourBarWorld::model()}));
+  must(world.set_joint_states(id, FourBarWorld::start(), std::vector<double>(3)));
   JointDesc desc;
   desc.kind = Hinge{-2.0, 2.0, {0.3, 0, 20, 2, 5}};
-  desc.T_a_joint = SE3(kAlongY, {FourBar::kCoupler, 0, 0});
-  desc.T_b_joint = SE3(kAlongY, {FourBar::kRocker, 0, 0});
+  desc.T_a_joint = SE3(kAlongY, {FourBarWorld::kCoupler, 0, 0});
+  desc.T_b_joint = SE3(kAlongY, {FourBarWorld::kRocker, 0, 0});
   must(world.create_joint(world.link_body(id, 1), world.link_body(id, 2), desc));
   run(world, 0.3);
   must(world.record(nullptr));

@@ -4,28 +4,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "joints_rig.h"
 #include "random.h"
-#include "rig.h"
 
 namespace vp::test {
 namespace {
 
-constexpr double kDt = 0.001;
-constexpr double kG = 9.81;
-
-void run(World& world, double seconds) {
-  const int ticks = static_cast<int>(std::lround(seconds / kDt));
-  for (int i = 0; i < ticks; ++i) must(world.step(kDt));
-}
 Vec3 world_velocity(const World& world, BodyId body) {
   return world.pose(body).rotate(world.velocity(body).v);
 }
 Vec3 world_rate(const World& world, BodyId body) {
   return world.pose(body).rotate(world.velocity(body).w);
-}
-double kinetic_energy(const World& world, BodyId body, const Inertia& J) {
-  const se3 V = world.velocity(body);
-  return 0.5 * (V * (J * V));
 }
 
 TEST(FreeFall, FollowsTheParabola) {

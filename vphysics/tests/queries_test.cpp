@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <functional>
-#include <limits>
 #include <memory>
 
 #include "collide/ray.h"
@@ -15,11 +14,6 @@
 
 namespace vp::test {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kUnboundedRadius = std::numeric_limits<double>::infinity();
-constexpr Kind kQueryKinds[] = {Kind::sphere,   Kind::capsule, Kind::box,
-                                Kind::cylinder, Kind::cone,    Kind::hull};
 
 // A world of random shapes, and the expected data of its colliders.
 struct Known {
@@ -64,8 +58,7 @@ Shape random_parted(Random& random, bool fixed) {
   if (!fixed) {
     std::vector<CompoundPart> parts;
     for (int i = 0; i < 4; ++i) {
-      parts.push_back(
-          {random_solid(random, kQueryKinds[random.word() % 6]).shape, random.pose(0.8)});
+      parts.push_back({random_solid(random, kBounded[random.word() % 6]).shape, random.pose(0.8)});
     }
     return Compound::of(parts).value();
   }
@@ -97,7 +90,7 @@ Scene random_scene(Random& random, int bodies, double size) {
       add(scene, body, random_parted(random, i % 3 == 0), random.pose(0.5), random);
     }
     for (int k = 0; k < parts; ++k) {
-      add(scene, body, random_solid(random, kQueryKinds[random.word() % 6]).shape, random.pose(0.5),
+      add(scene, body, random_solid(random, kBounded[random.word() % 6]).shape, random.pose(0.5),
           random);
     }
   }
@@ -109,7 +102,7 @@ Scene random_scene(Random& random, int bodies, double size) {
 // that do not count.
 struct Least {
   const Known* collider = nullptr;
-  double value = kUnboundedRadius;
+  double value = kInfinity;
 };
 Least least_of(const Scene& scene, const std::function<bool(const Known&)>& accepts,
                const std::function<std::optional<double>(const Geometry&, const SE3&)>& f) {
@@ -184,7 +177,7 @@ void expect_as_linear_scan(const Scene& scene, Random& random, double size, int 
       EXPECT_LE(rays[k - 1].distance, rays[k].distance);
     }
 
-    const Solid solid = random_solid(random, kQueryKinds[i % 6]);
+    const Solid solid = random_solid(random, kBounded[i % 6]);
     const SE3 T = random.pose(size);
     const CastMotion m{random.uniform(0, 1.5) * size * random.direction(),
                        random.uniform(0, 3) * random.direction()};
@@ -407,8 +400,8 @@ TEST(Queries, AreRightInClosedForm) {
 TEST(Queries, FarFromTheOriginAreAsGood) {
   Random random(704);
   for (int i = 0; i < 50; ++i) {
-    const Solid target = random_solid(random, kQueryKinds[i % 6]),
-                asker = random_solid(random, kQueryKinds[i / 6 % 6]);
+    const Solid target = random_solid(random, kBounded[i % 6]),
+                asker = random_solid(random, kBounded[i / 6 % 6]);
     const SE3 Tt = random.pose(0.2), Ta(random.rotation(), Vec3{4, 0, 0});
     const auto ask = [&](const Vec3& origin) {
       World world;
@@ -519,7 +512,7 @@ TEST(Queries, RefuseWhatIsNoQuestion) {
   std::vector<RayHit> rays;
   std::vector<ShapeHit> casts;
   std::vector<ColliderId> found;
-  for (const double bad : {kNan, kUnboundedRadius, -kUnboundedRadius, 2e9}) {
+  for (const double bad : {kNaN, kInfinity, -kInfinity, 2e9}) {
     expect_refused(world.ray_cast({bad, 0, 0}, {1, 0, 0}, 1));
     expect_refused(world.ray_cast({0, 0, 0}, {1, bad, 0}, 1));
     expect_refused(world.ray_cast({0, 0, 0}, {1, 0, 0}, bad));

@@ -13,8 +13,6 @@
 namespace vp::test {
 namespace {
 
-constexpr double kDt = 0.005;
-
 // Holds the sum of two bodies' heights.
 class Balance : public PairConstraint {
  public:
@@ -89,7 +87,7 @@ void build(Yard& yard, double hull_size = 0.1, double sum = 2.0) {
   must(world.create_joint(yard.boxes[6], yard.boxes[7], joint));
 }
 void play(Yard& yard, int steps) {
-  for (int i = 0; i < steps; ++i) must(yard.world.step(kDt));
+  for (int i = 0; i < steps; ++i) must(yard.world.step(kLongDt));
 }
 
 // Every call that changes a world.
@@ -268,7 +266,7 @@ Recorded record_drop(std::uint32_t hash_every = 1) {
   const BodyId ball = add_dynamic(world, {.pose = SE3(Vec3{0, 0, 0.11})});
   for (int i = 0; i < 12; ++i) {
     if (i == 4) must(world.apply_impulse(ball, {1, 0, 0}, {0, 0, 0.15}));
-    must(world.step(kDt));
+    must(world.step(kLongDt));
   }
   must(world.record(nullptr));
   out.bytes = out.recorder->take();
@@ -334,10 +332,10 @@ TEST(Recorder, NotesWhoIsWoken) {
   must(world.record(recorder));
   add_ground(world, {});
   const BodyId box = add_dynamic(world, {.shape = Box{{1, 1, 1}}, .pose = SE3(Vec3{0, 0, 1})});
-  for (int i = 0; i < 40; ++i) must(world.step(kDt));
+  for (int i = 0; i < 40; ++i) must(world.step(kLongDt));
   ASSERT_TRUE(world.is_asleep(box));
   must(world.wake(box));
-  must(world.step(kDt));
+  must(world.step(kLongDt));
   EXPECT_FALSE(world.is_asleep(box));
   must(world.record(nullptr));
   Replay replay = must_move(Replay::open(recorder->take()));
@@ -352,13 +350,13 @@ TEST(Recorder, LeavesOutWhatIsRefused) {
   const auto recorder = std::make_shared<Recorder>(0);
   must(yard.world.record(recorder));
   build(yard);
-  must(yard.world.step(kDt));
+  must(yard.world.step(kLongDt));
   const std::size_t before = recorder->bytes().size();
   EXPECT_FALSE(yard.world.set_pose({}, {}));
   EXPECT_FALSE(yard.world.step(0.0));
   EXPECT_FALSE(yard.world.set_drive(yard.rod, 7, 0, {}));
   EXPECT_FALSE(yard.world.restore({}));
-  must(yard.world.step(kDt));
+  must(yard.world.step(kLongDt));
   // length, code, check
   EXPECT_EQ(recorder->bytes().size() - before, 9u);
 }
@@ -387,7 +385,7 @@ TEST(Recorder, GoesWithTheWorldAndEndsWithIt) {
     must(yard.world.record(recorder));
     build(yard);
     World moved = std::move(yard.world);
-    must(moved.step(kDt));
+    must(moved.step(kLongDt));
     World other;
     EXPECT_FALSE(other.record(recorder)) << "it has been used";
   }

@@ -11,7 +11,7 @@
 namespace vp::test {
 namespace {
 
-constexpr double kDt = 1.0 / 240;
+constexpr double kQuarterFrame = 1.0 / 240;
 
 World world_of(int region_bodies) {
   WorldDesc desc;
@@ -45,7 +45,7 @@ TEST(Regions, AreAsManyAsNeeded) {
       must(world.destroy_body(boxes.back()));
       boxes.pop_back();
     }
-    must(world.step(kDt));
+    must(world.step(kQuarterFrame));
     return world.counters().regions;
   };
   EXPECT_EQ(regions_of(16), 0u);
@@ -74,7 +74,7 @@ TEST(Regions, CarryWhatLiesOnThem) {
           world, {.shape = Box{{0.5, 0.5, 0.5}}, .pose = SE3(Vec3{1.5 * t, 0, 0.5 + k})}));
     }
   }
-  for (int i = 0; i < 480; ++i) must(world.step(kDt));
+  for (int i = 0; i < 480; ++i) must(world.step(kQuarterFrame));
   EXPECT_EQ(world.counters().regions, 16u);
   EXPECT_EQ(world.counters().manifolds, boxes.size());
   for (std::size_t i = 0; i < boxes.size(); ++i) {
@@ -92,11 +92,11 @@ TEST(Regions, MayBeEmpty) {
   std::vector<BodyId> bodies;
   for (int i = 0; i < 9; ++i)
     bodies.push_back(add_dynamic(world, {.pose = SE3(Vec3{1.0 * i, 0, 0})}));
-  must(world.step(kDt));
+  must(world.step(kQuarterFrame));
   EXPECT_EQ(world.counters().regions, 16u);
   must(world.destroy_body(bodies[3]));
   must(world.destroy_body(bodies[7]));
-  for (int i = 0; i < 100; ++i) must(world.step(kDt));
+  for (int i = 0; i < 100; ++i) must(world.step(kQuarterFrame));
   EXPECT_EQ(world.counters().regions, 16u);
 }
 
@@ -112,7 +112,7 @@ TEST(Regions, AreCarriedByALift) {
                               .pose = SE3(Vec3{2.0 * (i % 8 - 4), 2.0 * (i / 8 - 4), 1}),
                               .velocity = {{}, speed}}));
     }
-    for (int i = 0; i < 240; ++i) must(world.step(kDt));
+    for (int i = 0; i < 240; ++i) must(world.step(kQuarterFrame));
     EXPECT_EQ(world.counters().regions, 16u);
     for (const BodyId box : boxes) EXPECT_LT(norm(world.velocity(box).v - speed), 2e-3);
   }
@@ -120,7 +120,7 @@ TEST(Regions, AreCarriedByALift) {
 
 // A wall connected across all regions stands as one that is solved as a single region.
 TEST(Regions, StandAsOnePieceDoes) {
-  for (const double dt : {1.0 / 60, kDt}) {
+  for (const double dt : {1.0 / 60, kQuarterFrame}) {
     double drift[2] = {};
     for (const int regions : {0, 1}) {
       World world = world_of(regions == 1 ? 12 : 2048);
@@ -248,7 +248,7 @@ TEST(Regions, PassABlowOn) {
     }
     balls.push_back(add_dynamic(world, ball));
   }
-  for (int i = 0; i < 24; ++i) must(world.step(kDt));
+  for (int i = 0; i < 24; ++i) must(world.step(kQuarterFrame));
   EXPECT_EQ(world.counters().regions, 8u);
   EXPECT_NEAR(world.velocity(balls.back()).v.x, 2.0, 1e-3);
   for (int i = 0; i < kBalls - 1; ++i) EXPECT_NEAR(world.velocity(balls[i]).v.x, 0.0, 1e-3) << i;
@@ -290,7 +290,7 @@ TEST(Regions, KeepMomentum) {
   const Sum before = sum_of();
   std::uint32_t contacts = 0;
   for (int i = 0; i < 480; ++i) {
-    must(world.step(kDt));
+    must(world.step(kQuarterFrame));
     contacts = std::max(contacts, world.counters().manifolds);
   }
   const Sum after = sum_of();
@@ -325,8 +325,8 @@ TEST(Regions, AreTakenBackWithTheState) {
     rolled.snapshot(bytes);
     must(rolled.step(1.0 / 60));
     must(rolled.restore(bytes));
-    must(rolled.step(kDt));
-    must(straight.step(kDt));
+    must(rolled.step(kQuarterFrame));
+    must(straight.step(kQuarterFrame));
     ASSERT_EQ(straight.state_hash(), rolled.state_hash()) << i;
   }
   EXPECT_EQ(straight.counters().regions, 16u);

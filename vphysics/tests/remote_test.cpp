@@ -12,7 +12,7 @@
 namespace vp::test {
 namespace {
 
-constexpr double kDt = 0.001, kHeight = 0.09, kPitch = 0.15;
+constexpr double kHeight = 0.09, kPitch = 0.15;
 constexpr int kRows = 4, kMenOfRow = 3;
 
 // Rows of men, each hinged on a slider for its row, as in the paper layout of the foosball table,

@@ -11,20 +11,19 @@ namespace vp::test {
 namespace {
 
 constexpr double kSteps[] = {0.001, 1.0 / 240, 1.0 / 60};
-constexpr double kG = 9.81;
 
-struct Kind {
+struct Dropped {
   const char* name;
   Shape shape;
   bool continuous;
   double height;  // of the body's origin above its support
 };
-const Kind kKinds[] = {{"swept ball", Sphere{0.05}, true, 0.05},
-                       {"ball", Sphere{0.05}, false, 0.05},
-                       {"capsule", Capsule{0.05, 0.1}, false, 0.15},
-                       {"box", Box{{0.5, 0.5, 0.5}}, false, 0.5}};
+const Dropped kDropped[] = {{"swept ball", Sphere{0.05}, true, 0.05},
+                            {"ball", Sphere{0.05}, false, 0.05},
+                            {"capsule", Capsule{0.05, 0.1}, false, 0.15},
+                            {"box", Box{{0.5, 0.5, 0.5}}, false, 0.5}};
 
-BodyId add(World& world, const Kind& kind, double restitution, double drop) {
+BodyId add(World& world, const Dropped& kind, double restitution, double drop) {
   Part part{.shape = kind.shape, .pose = SE3(Vec3{0, 0, kind.height + drop})};
   part.material = {0.5, restitution, 0.0};
   part.continuous = kind.continuous;
@@ -46,12 +45,12 @@ int count(const World& world, ContactEvent::Kind kind) {
                                         [kind](const ContactEvent& e) { return e.kind == kind; }));
 }
 // Height of the body's origin above its rest height.
-double rise(const World& world, BodyId body, const Kind& kind) {
+double rise(const World& world, BodyId body, const Dropped& kind) {
   return world.pose(body).position().z - kind.height;
 }
 
 TEST(Rest, OfABouncyBodyIsOneBeginAndNoMotionAtEveryStep) {
-  for (const Kind& kind : kKinds) {
+  for (const Dropped& kind : kDropped) {
     for (const double dt : {0.001, 1.0 / 240, 1.0 / 60, 0.1}) {
       World world;
       add_ground(world, {});
@@ -73,7 +72,7 @@ TEST(Rest, OfABouncyBodyIsOneBeginAndNoMotionAtEveryStep) {
 }
 
 TEST(Rest, IsReachedByWhatBouncesLessEachTime) {
-  for (const Kind& kind : kKinds) {
+  for (const Dropped& kind : kDropped) {
     for (const double dt : kSteps) {
       World world;
       add_ground(world, {});
@@ -92,7 +91,7 @@ TEST(Rest, IsReachedByWhatBouncesLessEachTime) {
 }
 
 // Maximum height after the first bounce, of a body dropped from the given height.
-double height_after_bounce(const Kind& kind, double e, double drop, double dt) {
+double height_after_bounce(const Dropped& kind, double e, double drop, double dt) {
   World world;
   add_ground(world, {});
   const BodyId body = add(world, kind, e, drop);
@@ -108,7 +107,7 @@ double height_after_bounce(const Kind& kind, double e, double drop, double dt) {
 
 // From many heights, so that contact occurs at any instant within a step.
 TEST(Bounce, HeightFallsByTheSquareOfRestitutionAtEveryStep) {
-  for (const Kind& kind : kKinds) {
+  for (const Dropped& kind : kDropped) {
     for (const double dt : kSteps) {
       double worst = 0.0;
       for (const double e : {0.3, 0.6, 0.9, 1.0}) {
@@ -132,12 +131,12 @@ struct OnABox {
 };
 // A ball dropped on a box that rests on the ground: its bounce must not include the load on the
 // box.
-OnABox drop_on_a_box(const Kind& kind, double drop, double dt) {
+OnABox drop_on_a_box(const Dropped& kind, double drop, double dt) {
   World world;
   add_ground(world, {});
   add_dynamic(world, {.shape = Box{{0.5, 0.5, 0.5}}, .pose = SE3(Vec3{0, 0, 0.5})});
   play(world, 0.5, dt, [](double) {});
-  Kind raised = kind;
+  Dropped raised = kind;
   raised.height += 1.0;
   const BodyId body = add(world, raised, 0.6, drop);
   OnABox out;
@@ -156,7 +155,7 @@ OnABox drop_on_a_box(const Kind& kind, double drop, double dt) {
 }
 
 TEST(Rest, IsReachedOnWhatRestsItself) {
-  for (const Kind& kind : {kKinds[0], kKinds[1]}) {
+  for (const Dropped& kind : {kDropped[0], kDropped[1]}) {
     for (const double dt : kSteps) {
       for (const double drop : {0.0, 0.1, 0.3, 1.0}) {
         const OnABox out = drop_on_a_box(kind, drop, dt);
@@ -173,7 +172,7 @@ TEST(Rest, IsReachedOnWhatRestsItself) {
 
 // Measured 1.0003 m at 1/60 s. Before the fix: 1.66 m.
 TEST(Bounce, OfRestitutionOneNeitherGainsNorLosesHeight) {
-  for (const Kind& kind : kKinds) {
+  for (const Dropped& kind : kDropped) {
     for (const double dt : kSteps) {
       World world;
       add_ground(world, {});

@@ -3,11 +3,21 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <vector>
 
 #include "vphysics/world.h"
 
 namespace vp::test {
+
+inline constexpr double kG = 9.81;
+inline constexpr Vec3 kGravity{0, 0, -kG};
+inline constexpr double kDt = 0.001, kLongDt = 0.005;      // steps [s]
+inline constexpr double kRates[] = {60.0, 240.0, 1000.0};  // of steps [Hz]
+inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+inline constexpr Material kRough{0.6, 0.0, 0.0}, kSmooth{0.0, 0.0, 0.0};
+inline const Shape kBox = Box{{0.5, 0.5, 0.5}};
 
 // Returns the value of a call that must succeed.
 template <class T>
@@ -76,6 +86,11 @@ inline BodyId add_dynamic(World& world, const Part& part) {
   collider.material = part.material;
   must(world.add_collider(body, collider));
   return body;
+}
+
+inline double kinetic_energy(const World& world, BodyId body, const Inertia& J) {
+  const se3 V = world.velocity(body);
+  return 0.5 * (V * (J * V));
 }
 
 inline JointForces stops(double lower, double upper) {

@@ -13,8 +13,6 @@
 namespace vp::test {
 namespace {
 
-constexpr double kRates[] = {60.0, 240.0, 1000.0};  // [Hz]
-
 std::vector<std::byte> snapshot_of(const World& world) {
   std::vector<std::byte> bytes;
   world.snapshot(bytes);

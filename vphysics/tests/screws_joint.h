@@ -6,7 +6,6 @@
 
 #include "trees.h"
 #include "vphysics/lie/dual.h"
-#include "vphysics/multibody/configuration.h"
 
 namespace vp::test {
 
@@ -148,14 +147,6 @@ inline Model tree_with_screws(Random& random, int links) {
     must_build(builder.add(link));
   }
   return must_build(builder.build());
-}
-
-inline std::vector<double> stepped(const Model& model, const std::vector<double>& q,
-                                   const std::vector<double>& delta, double h = 1.0) {
-  std::vector<double> scaled = delta, out(q.size());
-  for (double& x : scaled) x *= h;
-  integrate<double>(model, q, scaled, out);
-  return out;
 }
 
 }  // namespace vp::test

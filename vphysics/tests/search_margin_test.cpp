@@ -10,7 +10,7 @@
 namespace vp::test {
 namespace {
 
-constexpr double kDt = 1.0 / 60;
+constexpr double kFrame = 1.0 / 60;
 
 // A stick flies past a rotating ball with the ball's velocity at the stick's centre. There their
 // relative velocity is zero, but the stick's end approaches.
@@ -39,7 +39,7 @@ TEST(SearchMargin, AStickThatGoesWithATurningBoulderMeetsIt) {
                                 .velocity = {{}, tilt.unrotate(Vec3{rate * height, 0, 0})}});
         double deepest = 0.0;
         for (int i = 0; i < 200; ++i) {
-          must(world.step(kDt));
+          must(world.step(kFrame));
           const Vec3 at = inverse_times(world.pose(stick), world.pose(boulder).position());
           const auto beyond = [](double x, double half) {
             return std::max(std::fabs(x) - half, 0.0);
@@ -73,7 +73,7 @@ TEST(SearchMargin, ASpinThatEndsHidesNoPartOfALargeCompound) {
   collider.shape = Box{{1.0, 0.02, 0.02}};
   must(world.add_collider(body, collider));
   for (int i = 0; i < 40; ++i) {
-    must(world.step(kDt));
+    must(world.step(kFrame));
     EXPECT_GT(world.pose(body).position().z, 0.025);
   }
 }
@@ -120,7 +120,7 @@ TEST(SearchMargin, ABodyThatWasStoppedIsWhereItStopped) {
       bool touches = false;
       for (int k = 0; k < 150 && !touches; ++k) {
         if (k == 3) must(world.set_velocity(plate, {{}, {0.5, 0, 0}}));
-        must(world.step(kDt));
+        must(world.step(kFrame));
         touches = !world.contact_events().empty();
       }
       EXPECT_TRUE(touches) << speed << " m/s, " << gap << " m";

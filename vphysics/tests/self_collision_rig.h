@@ -11,9 +11,6 @@
 
 namespace vp::test {
 
-inline constexpr double kRates[] = {1000.0, 240.0, 60.0};
-inline const Material kRough{0.6, 0.0, 0.0};
-inline const Material kSmooth{0.0, 0.0, 0.0};
 inline constexpr Vec3 kY{0, 1, 0};
 
 // A rotation whose z axis is a given unit vector.

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <vector>
 
+#include "collide/distance.h"
 #include "collide/geometry.h"
 #include "random.h"
 
@@ -16,12 +17,21 @@ namespace vp::test {
 using collide::Geometry;
 using collide::Kind;
 
+inline constexpr Kind kBounded[] = {Kind::sphere,   Kind::capsule, Kind::box,
+                                    Kind::cylinder, Kind::cone,    Kind::hull};
+
 // A shape with its geometry. The geometry points into the shape.
 struct Solid {
   Shape shape;
   Geometry geometry;
   explicit Solid(Shape s) : shape(std::move(s)), geometry(collide::make_geometry(shape)) {}
 };
+
+inline collide::ClosestPoints closest(const Solid& a, const SE3& Ta, const Solid& b,
+                                      const SE3& Tb) {
+  collide::PairCache cache;
+  return collide::closest_points(a.geometry, Ta, b.geometry, Tb, cache);
+}
 
 inline ConvexHull hull_of(std::span<const Vec3> points, const HullOptions& options = {}) {
   auto made = ConvexHull::of(points, options);

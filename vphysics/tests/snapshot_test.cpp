@@ -10,8 +10,6 @@
 namespace vp::test {
 namespace {
 
-constexpr double kDt = 0.001;
-
 // A scene with many features: randomly driven rods, a fast ball, boxes, capsules, a rotating
 // kinematic plate, a sensor.
 struct Scene {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "collide/time_of_impact.h"
-#include "rig.h"
+#include "joints_rig.h"
 #include "surface_rig.h"
 #include "surfaces.h"
 
@@ -68,12 +68,6 @@ TEST(SurfaceMotion, FindsWhatAShapeEnters) {
     EXPECT_LE(missed, entered / 50) << angle;
     EXPECT_LT(2 * points, points_everywhere) << angle;
   }
-}
-
-WorldDesc weightless() {
-  WorldDesc desc;
-  desc.gravity = {};
-  return desc;
 }
 
 Compound hammer() {

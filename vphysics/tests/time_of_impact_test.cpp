@@ -13,9 +13,6 @@ namespace {
 using collide::ImpactQuery;
 using collide::MovingShape;
 
-constexpr Kind kConvex[] = {Kind::sphere,   Kind::capsule, Kind::box,
-                            Kind::cylinder, Kind::cone,    Kind::hull};
-
 double separation_at(const ImpactQuery& q, double t) {
   collide::PairCache fresh;
   return closest_points(*q.a.shape, pose_at(q.a, t), *q.b.shape, pose_at(q.b, t), fresh).distance;
@@ -66,8 +63,8 @@ class EveryPairsImpact : public testing::TestWithParam<std::pair<Kind, Kind>> {}
 
 std::vector<std::pair<Kind, Kind>> every_pair() {
   std::vector<std::pair<Kind, Kind>> pairs;
-  for (const Kind a : kConvex) {
-    for (const Kind b : kConvex) {
+  for (const Kind a : kBounded) {
+    for (const Kind b : kBounded) {
       if (a <= b) pairs.emplace_back(a, b);
     }
     pairs.emplace_back(a, Kind::half_space);
@@ -131,8 +128,8 @@ TEST(TimeOfImpact, IsTheSameSeenFromEitherShape) {
   Random random(503);
   int meets = 0;
   for (int i = 0; i < 200; ++i) {
-    const Solid a = random_solid(random, kConvex[i % 6]),
-                b = random_solid(random, kConvex[i / 6 % 6]);
+    const Solid a = random_solid(random, kBounded[i % 6]),
+                b = random_solid(random, kBounded[i / 6 % 6]);
     const SE3 Ta(random.rotation(), {1.6, 0, 0}), Tb(random.rotation(), Vec3{});
     const MovingShape ma =
         moving(a.geometry, Ta, {random.uniform(-30, 0), 0, 0}, 50.0 * random.direction());

@@ -16,6 +16,11 @@ inline ColliderDesc collider_of(const Shape& shape, const Material& material,
   return desc;
 }
 
+struct Plate {
+  ArticulationId id;  // of one link
+  BodyId body;
+};
+
 // A uniform bar along -z from the link's origin.
 inline Inertia bar(double mass, double length) {
   const double across = mass * length * length / 12.0;

@@ -15,10 +15,6 @@
 namespace vp::test {
 namespace {
 
-constexpr double kDt = 0.001;
-const Vec3 kGravity{0, 0, -9.81};
-const Material kSmooth{0.0, 0.0, 0.0};
-
 // An articulation's state in a world, with the quantities of its model.
 struct Look {
   Look(const World& world, ArticulationId id, const Model& of) : model(of), data(of) {

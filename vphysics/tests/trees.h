@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "random.h"
+#include "vphysics/multibody/configuration.h"
 #include "vphysics/multibody/dynamics.h"
 
 namespace vp::test {
@@ -122,6 +123,14 @@ inline State random_state(Random& random, const Model& model) {
     s.a.push_back(random.uniform(-1, 1));
   }
   return s;
+}
+
+inline std::vector<double> stepped(const Model& model, const std::vector<double>& q,
+                                   const std::vector<double>& delta, double h = 1.0) {
+  std::vector<double> scaled = delta, out(q.size());
+  for (double& x : scaled) x *= h;
+  integrate<double>(model, q, scaled, out);
+  return out;
 }
 
 inline double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {

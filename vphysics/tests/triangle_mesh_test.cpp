@@ -3,9 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include "collide/surface.h"
+#include "rig.h"
 #include "surfaces.h"
 #include "vphysics/shapes.h"
 
@@ -14,8 +13,6 @@ namespace {
 
 using collide::Surface;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 using Triangles = std::vector<TriangleMesh::Triangle>;
 
 void expect_refused(const std::vector<Vec3>& vertices, const Triangles& triangles, const char* word,

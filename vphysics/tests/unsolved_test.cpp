@@ -12,8 +12,6 @@
 namespace vp::test {
 namespace {
 
-constexpr double kRates[] = {60.0, 240.0, 1000.0};  // [Hz]
-
 struct Seen {
   double fastest = 0.0;  // of all bodies and steps [m/s]
   int reports = 0;       // steps with position_error

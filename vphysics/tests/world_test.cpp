@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <set>
 #include <utility>
@@ -15,9 +14,7 @@
 namespace vp::test {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInf = std::numeric_limits<double>::infinity();
-constexpr double kBad[] = {kNaN, kInf, -kInf, 1e300};
+constexpr double kBad[] = {kNaN, kInfinity, -kInfinity, 1e300};
 
 // Expects an error with a message, and no change.
 template <class Call>
@@ -64,7 +61,7 @@ TEST(AddCollider, RefusesWhatIsNoShape) {
     expect_refused(
         world, [&] { return world.add_collider(body, desc); }, code);
   };
-  for (const double bad : {kNaN, kInf, -1.0, 0.0}) {
+  for (const double bad : {kNaN, kInfinity, -1.0, 0.0}) {
     refused([&](ColliderDesc& d) { d.shape = Sphere{bad}; });
     refused([&](ColliderDesc& d) { d.shape = Box{{1, bad, 1}}; });
     refused([&](ColliderDesc& d) { d.shape = Capsule{bad, 1}; });
@@ -81,7 +78,7 @@ TEST(AddCollider, RefusesWhatIsNoShape) {
   refused([&](ColliderDesc& d) { d.material.restitution = kNaN; });
   refused([&](ColliderDesc& d) { d.material.rolling_friction = kNaN; });
   refused([&](ColliderDesc& d) { d.material.spinning_friction = -1; });
-  refused([&](ColliderDesc& d) { d.surface_velocity.y = kInf; });
+  refused([&](ColliderDesc& d) { d.surface_velocity.y = kInfinity; });
   refused([&](ColliderDesc& d) { d.T_body_shape = SE3(Vec3{kNaN, 0, 0}); });
 }
 
@@ -119,7 +116,7 @@ TEST(CreateArticulation, RefusesWhatItCannotSimulate) {
   states_refused({0, 0, 0, 0, 0, 0, 1.1}, rest);
   states_refused({0, 0, 0, 0, 0, 0, 0}, rest);
   states_refused({kNaN, 0, 0, 0, 0, 0, 1}, rest);
-  states_refused({0, 0, 0, 0, 0, 0, 1}, {0, 0, kInf, 0, 0, 0});
+  states_refused({0, 0, 0, 0, 0, 0, 1}, {0, 0, kInfinity, 0, 0, 0});
   must(world.set_joint_states(free, std::vector<double>{1, 2, 3, 0, 0, 1, 0}, rest));
   expect_refused(world, [&] { return world.set_joint_states({}, rest, rest); });
   const ArticulationId id = must(world.create_articulation(rod_desc(0, 0)));
@@ -130,7 +127,7 @@ TEST(CreateArticulation, RefusesWhatItCannotSimulate) {
   expect_refused(world, [&] { return world.set_drive(id, 0, 0, {0, 0, -1, 1, 1}); });
   expect_refused(world,
                  [&] { return world.set_joint_state(id, 0, 0, 0.5, 0); });  // beyond its limit
-  expect_refused(world, [&] { return world.set_joint_state(id, 0, 1, 0, kInf); });
+  expect_refused(world, [&] { return world.set_joint_state(id, 0, 1, 0, kInfinity); });
   const BodyId body = world.link_body(id, 0);
   expect_refused(world, [&] { return world.set_pose(body, {}); });
   expect_refused(world, [&] { return world.set_velocity(body, {}); });
@@ -152,7 +149,7 @@ TEST(CreateArticulation, TakesPointMassesAndThinRods) {
 
 TEST(Step, RefusesATimeThatIsNone) {
   World world;
-  for (const double dt : {0.0, -0.001, 0.11, kNaN, kInf, 0.9e-7, 1e-12, 1e-30, 1e-300}) {
+  for (const double dt : {0.0, -0.001, 0.11, kNaN, kInfinity, 0.9e-7, 1e-12, 1e-30, 1e-300}) {
     expect_refused(world, [&] { return world.step(dt); });
   }
 }

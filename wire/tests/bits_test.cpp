@@ -7,7 +7,7 @@
 
 #include "crc32.h"
 
-namespace wire {
+namespace wire::test {
 namespace {
 
 using Bytes = std::vector<std::byte>;
@@ -135,4 +135,4 @@ TEST(Crc32, IsThatOfZlibForEveryLengthAndAlignment) {
 }
 
 }  // namespace
-}  // namespace wire
+}  // namespace wire::test

@@ -6,7 +6,7 @@
 #include "samples.h"
 #include "wire/control.h"
 
-namespace wire {
+namespace wire::test {
 namespace {
 
 using samples::Bytes;
@@ -107,4 +107,4 @@ TEST(Characters, WhatIsSentIsCutToTheLimits) {
 }
 
 }  // namespace
-}  // namespace wire
+}  // namespace wire::test

@@ -7,7 +7,7 @@
 #include "wire/limits.h"
 #include "wire/text.h"
 
-namespace wire {
+namespace wire::test {
 namespace {
 
 using samples::Bytes;
@@ -326,4 +326,4 @@ TEST(CleanName, IsIdempotentAndNoLongerThanANameMayBe) {
 }
 
 }  // namespace
-}  // namespace wire
+}  // namespace wire::test

@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-namespace wire {
+namespace wire::test {
 namespace {
 
 using Octets = std::vector<std::uint8_t>;
@@ -19,7 +19,7 @@ DeviceCommand pulse(std::uint8_t rod, std::uint8_t amplitude, std::uint16_t dura
   return command;
 }
 
-Octets encoded(const DeviceCommand& command) {
+Octets octets_of(const DeviceCommand& command) {
   Octets bytes(kDeviceCommandBytes);
   encode_device_command(command, bytes.data());
   return bytes;
@@ -37,17 +37,18 @@ bool accepted(const Octets& bytes) {
 TEST(DeviceCommand, TheBytesAreThese) {
   DeviceCommand command = pulse(5, 200, 20);
   command.sequence = 0x1234;
-  EXPECT_EQ(encoded(command),
+  EXPECT_EQ(octets_of(command),
             (Octets{1, 1, 0x34, 0x12, 5, 200, 20, 0, 0, 0, 0, 0, 0, 0, 0xFF, 0x0F}));
   command = {};
   command.kind = kAllOffCommand;
-  EXPECT_EQ(encoded(command), (Octets{1, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xCD, 0x58}));
+  EXPECT_EQ(octets_of(command), (Octets{1, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xCD, 0x58}));
   command.kind = kSettingsCommand;
   command.resolution = 20;
   command.brightness = 64;
   command.ps2 = 0x81;
   command.switches = 1;
-  EXPECT_EQ(encoded(command), (Octets{1, 3, 0, 0, 0, 0, 0, 0, 20, 64, 0x81, 1, 0, 0, 0x5F, 0x8C}));
+  EXPECT_EQ(octets_of(command),
+            (Octets{1, 3, 0, 0, 0, 0, 0, 0, 20, 64, 0x81, 1, 0, 0, 0x5F, 0x8C}));
 }
 
 TEST(DeviceCommand, RoundTripIsExact) {
@@ -57,15 +58,15 @@ TEST(DeviceCommand, RoundTripIsExact) {
         pulse(static_cast<std::uint8_t>(random() % 8), static_cast<std::uint8_t>(random()),
               static_cast<std::uint16_t>(1 + random() % kMaxPulseMs));
     command.sequence = static_cast<std::uint16_t>(random());
-    const Octets bytes = encoded(command);
+    const Octets bytes = octets_of(command);
     DeviceCommand decoded{};
     ASSERT_TRUE(decode_device_command(bytes.data(), bytes.size(), decoded));
-    EXPECT_EQ(encoded(decoded), bytes);
+    EXPECT_EQ(octets_of(decoded), bytes);
   }
 }
 
 TEST(DeviceCommand, WrongSizesAndEverySingleBitFlipAreRefusedAndLeaveTheCommandAlone) {
-  Octets bytes = encoded(pulse(2, 90, 100));
+  Octets bytes = octets_of(pulse(2, 90, 100));
   DeviceCommand decoded = pulse(7, 1, 1);
   for (std::size_t size = 0; size < bytes.size(); ++size) {
     const Octets part(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
@@ -76,7 +77,7 @@ TEST(DeviceCommand, WrongSizesAndEverySingleBitFlipAreRefusedAndLeaveTheCommandA
     EXPECT_FALSE(decode_device_command(bytes.data(), bytes.size(), decoded)) << bit;
     bytes[bit / 8] = static_cast<std::uint8_t>(bytes[bit / 8] ^ 1 << bit % 8);
   }
-  EXPECT_EQ(encoded(decoded), encoded(pulse(7, 1, 1)));
+  EXPECT_EQ(octets_of(decoded), octets_of(pulse(7, 1, 1)));
 }
 
 TEST(DeviceCommand, WhatIsOutOfRangeIsRefusedUnderARightCrcToo) {
@@ -88,7 +89,7 @@ TEST(DeviceCommand, WhatIsOutOfRangeIsRefusedUnderARightCrcToo) {
   // bytes.
   for (const Case& c : {Case{0, 2}, Case{1, 0}, Case{1, 6}, Case{4, 8}, Case{6, 0}, Case{7, 1},
                         Case{8, 1}, Case{12, 1}, Case{13, 1}}) {
-    Octets bytes = encoded(pulse(2, 90, 100));
+    Octets bytes = octets_of(pulse(2, 90, 100));
     ASSERT_TRUE(accepted(bytes));
     bytes[c.at] = c.value;
     seal(bytes);
@@ -113,11 +114,11 @@ TEST(DeviceCommand, AStickHasATravelAndATurnOrNoneAndNothingOfOtherKinds) {
   DeviceCommand stick{};
   stick.kind = kStickCommand;
   stick.rod = 7;
-  EXPECT_TRUE(accepted(encoded(stick))) << "by the table's dimensions";
+  EXPECT_TRUE(accepted(octets_of(stick))) << "by the table's dimensions";
   stick.travel = 0x1234;
   stick.turn = kMinStickCounts;
   stick.reversed = 3;
-  const Octets bytes = encoded(stick);
+  const Octets bytes = octets_of(stick);
   EXPECT_EQ(Octets(bytes.begin(), bytes.begin() + 14),
             (Octets{1, 4, 0, 0, 7, 3, 0, 0, 0x34, 0x12, 64, 0, 0, 0}));
   DeviceCommand decoded{};
@@ -149,10 +150,10 @@ TEST(DeviceCommand, GarbageIsRefusedOrComesBackToTheBit) {
     seal(bytes);
     DeviceCommand command{};
     if (decode_device_command(bytes.data(), bytes.size(), command)) {
-      EXPECT_EQ(encoded(command), bytes);
+      EXPECT_EQ(octets_of(command), bytes);
     }
   }
 }
 
 }  // namespace
-}  // namespace wire
+}  // namespace wire::test

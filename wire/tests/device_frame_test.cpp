@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-namespace wire {
+namespace wire::test {
 namespace {
 
 using Octets = std::vector<std::uint8_t>;
@@ -26,7 +26,7 @@ DeviceFrame random_frame(std::mt19937_64& random) {
   return frame;
 }
 
-Octets encoded(const DeviceFrame& frame) {
+Octets octets_of(const DeviceFrame& frame) {
   Octets bytes(kDeviceFrameBytes);
   encode_device_frame(frame, bytes.data());
   return bytes;
@@ -58,17 +58,17 @@ TEST(DeviceFrame, CrcIsCcittFalse) {
 TEST(DeviceFrame, RoundTripIsExact) {
   std::mt19937_64 random(42);
   for (int i = 0; i < 1000; ++i) {
-    const Octets bytes = encoded(random_frame(random));
+    const Octets bytes = octets_of(random_frame(random));
     DeviceFrame decoded{};
     ASSERT_TRUE(decode_device_frame(bytes.data(), bytes.size(), decoded));
-    EXPECT_EQ(encoded(decoded), bytes);
+    EXPECT_EQ(octets_of(decoded), bytes);
   }
 }
 
 TEST(DeviceFrame, WrongSizesAndEverySingleBitFlipAreRefusedAndLeaveTheFrameAlone) {
   std::mt19937_64 random(43);
   const DeviceFrame frame = random_frame(random);
-  Octets bytes = encoded(frame);
+  Octets bytes = octets_of(frame);
   const DeviceFrame untouched = random_frame(random);
   DeviceFrame decoded = untouched;
   for (std::size_t size = 0; size < bytes.size(); ++size) {
@@ -83,7 +83,7 @@ TEST(DeviceFrame, WrongSizesAndEverySingleBitFlipAreRefusedAndLeaveTheFrameAlone
     EXPECT_FALSE(decode_device_frame(bytes.data(), bytes.size(), decoded)) << bit;
     bytes[bit / 8] = static_cast<std::uint8_t>(bytes[bit / 8] ^ 1 << bit % 8);
   }
-  EXPECT_EQ(encoded(decoded), encoded(untouched));
+  EXPECT_EQ(octets_of(decoded), octets_of(untouched));
 }
 
 Octets sealed(Octets bytes) {
@@ -95,11 +95,11 @@ TEST(DeviceFrame, ControllersAndRecordingsOfVersion1AreReadAndHaveNoIndexMarks) 
   std::mt19937_64 random(47);
   DeviceFrame sent = random_frame(random);
   sent.index = 0;
-  Octets bytes = encoded(sent);
+  Octets bytes = octets_of(sent);
   bytes[0] = 1;
   DeviceFrame decoded = random_frame(random);
   ASSERT_TRUE(decode_device_frame(sealed(bytes).data(), bytes.size(), decoded));
-  EXPECT_EQ(encoded(decoded), encoded(sent));
+  EXPECT_EQ(octets_of(decoded), octets_of(sent));
   bytes[43] = 4;  // reserved in that version
   EXPECT_FALSE(decode_device_frame(sealed(bytes).data(), bytes.size(), decoded));
   for (const int version : {0, 3, 255}) {
@@ -145,7 +145,7 @@ TEST(Cobs, GarbageStaysWithinItsBuffers) {
 
 TEST(Cobs, ATruncatedFrameIsNoFrame) {
   std::mt19937_64 random(46);
-  const Octets plain = encoded(random_frame(random));
+  const Octets plain = octets_of(random_frame(random));
   Octets coded(kDeviceCobsBytes), out(kDeviceFrameBytes);
   cobs_encode(plain.data(), plain.size(), coded.data());
   for (std::size_t size = 0; size + 1 < coded.size(); ++size) {
@@ -156,4 +156,4 @@ TEST(Cobs, ATruncatedFrameIsNoFrame) {
 }
 
 }  // namespace
-}  // namespace wire
+}  // namespace wire::test

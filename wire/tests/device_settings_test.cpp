@@ -6,7 +6,7 @@
 
 #include "samples.h"
 
-namespace wire {
+namespace wire::test {
 namespace {
 
 using Report = std::vector<std::uint8_t>;
@@ -88,4 +88,4 @@ TEST(DeviceSettings, WhatIsOutOfRangeIsRefusedUnderARightCrcToo) {
 }
 
 }  // namespace
-}  // namespace wire
+}  // namespace wire::test

@@ -9,7 +9,7 @@
 #include "seeds.h"
 #include "wire/read_file.h"
 
-namespace wire {
+namespace wire::test {
 namespace {
 
 using samples::encoded;
@@ -87,4 +87,4 @@ TEST(FuzzCorpus, IsMadeOfTheMessagesAsTheyAreNow) {
 }
 
 }  // namespace
-}  // namespace wire
+}  // namespace wire::test

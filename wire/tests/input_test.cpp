@@ -7,7 +7,7 @@
 #include "samples.h"
 #include "wire/description.h"
 
-namespace wire {
+namespace wire::test {
 namespace {
 
 using samples::Bytes;
@@ -120,4 +120,4 @@ TEST(InputDatagram, WhatIsNotFiniteIsZeroAndTheRestIsClamped) {
 }
 
 }  // namespace
-}  // namespace wire
+}  // namespace wire::test

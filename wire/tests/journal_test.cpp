@@ -11,7 +11,7 @@
 #include "samples.h"
 #include "wire/description.h"
 
-namespace wire {
+namespace wire::test {
 namespace {
 
 using samples::Bytes;
@@ -277,4 +277,4 @@ TEST(JournalGrid, ARodThatIsNotFiniteIsNotLive) {
 }
 
 }  // namespace
-}  // namespace wire
+}  // namespace wire::test

@@ -9,7 +9,7 @@
 #include "samples.h"
 #include "wire/description.h"
 
-namespace wire {
+namespace wire::test {
 namespace {
 
 using samples::Bytes;
@@ -86,4 +86,4 @@ TEST(PhoneMessages, WhatIsOutOfRangeIsClampedAndWhatIsNotFiniteIsZero) {
 }
 
 }  // namespace
-}  // namespace wire
+}  // namespace wire::test

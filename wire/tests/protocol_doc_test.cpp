@@ -7,7 +7,7 @@
 
 #include "wire/read_file.h"
 
-namespace wire {
+namespace wire::test {
 namespace {
 
 TEST(ProtocolDocument, TheCommittedOneIsTheOneThatTheCodeDescribes) {
@@ -32,4 +32,4 @@ TEST(ProtocolDocument, NamesEveryMessage) {
 }
 
 }  // namespace
-}  // namespace wire
+}  // namespace wire::test

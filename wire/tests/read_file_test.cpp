@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
-namespace wire {
+namespace wire::test {
 namespace {
 
 std::string written(const std::string& name, const std::string& text) {
@@ -59,4 +59,4 @@ TEST(ReadFile, AnEndlessDeviceIsCutAtTheCap) {
 }
 
 }  // namespace
-}  // namespace wire
+}  // namespace wire::test

@@ -8,7 +8,7 @@
 #include "samples.h"
 #include "wire/password_exchange.h"
 
-namespace wire {
+namespace wire::test {
 namespace {
 
 using samples::Bytes;
@@ -192,4 +192,4 @@ TEST(PasswordExchange, GivesOneKeyForOnePasswordAndChannelAndElseAnother) {
 }
 
 }  // namespace
-}  // namespace wire
+}  // namespace wire::test

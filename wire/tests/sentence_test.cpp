@@ -7,7 +7,7 @@
 
 #include "wire/control.h"
 
-namespace wire {
+namespace wire::test {
 namespace {
 
 TEST(Sentence, HasItsWordsInTheirPlaces) {
@@ -39,4 +39,4 @@ TEST(Sentence, FormsHaveTheirPlacesInOrderAreDifferentAndFitIntoAText) {
 }
 
 }  // namespace
-}  // namespace wire
+}  // namespace wire::test

@@ -10,7 +10,7 @@
 #include "wire/limits.h"
 #include "wire/snapshot_description.h"
 
-namespace wire {
+namespace wire::test {
 namespace {
 
 using samples::Bytes;
@@ -407,4 +407,4 @@ TEST(LayoutHash, ChangesWithNamesBitsAndRangesButNotWithMeanings) {
 }
 
 }  // namespace
-}  // namespace wire
+}  // namespace wire::test
