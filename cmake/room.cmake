@@ -30,17 +30,17 @@ if(SF_BUILD_TESTS)
   set(SF_DISPLAY ${XVFB_RUN} -a -s "-screen 0 1280x720x24 -noreset")
 endif()
 
-# sf_test(NAME SOURCES... LIBS... [LABELS fast [threads]|slow [display]] [TIMEOUT s] [SHARDS n] [SERIAL]):
+# sf_test(NAME SOURCES... LIBS... [LABELS fast [threads]|slow [display]] [TIMEOUT s] [SHARDS n]):
 # one GoogleTest program, each of its tests known to ctest; with the address sanitizer, whose programs
 # are slow to start, the program alone, or so many equal parts of it, which are begun first. Label "fast"
 # (the default) means: it also runs under the address sanitizer, with "threads" under the thread sanitizer
-# too, which has nothing to look at in a program of one thread. "display": it opens a window. SERIAL: it
-# measures time, nothing else runs beside it.
+# too, which has nothing to look at in a program of one thread. Tests labelled "slow" are begun first, so
+# that none runs alone in the end. "display": it opens a window.
 function(sf_test name)
   if(NOT SF_BUILD_TESTS)
     return()
   endif()
-  cmake_parse_arguments(ARG "SERIAL" "TIMEOUT;SHARDS" "SOURCES;LIBS;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "" "TIMEOUT;SHARDS" "SOURCES;LIBS;LABELS" ${ARGN})
   if(NOT ARG_LABELS)
     set(ARG_LABELS fast)
   endif()
@@ -50,9 +50,9 @@ function(sf_test name)
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 120)
   endif()
-  set(serial FALSE)
-  if(ARG_SERIAL)
-    set(serial TRUE)
+  set(cost 0)
+  if("slow" IN_LIST ARG_LABELS)
+    set(cost 1)
   endif()
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE sf_options ${ARG_LIBS} GTest::gtest GTest::gtest_main)
@@ -82,13 +82,13 @@ function(sf_test name)
       math(EXPR index "${shard} - 1")
       add_test(NAME ${name}_${shard} COMMAND ${name} --gtest_brief=1)
       set_tests_properties(${name}_${shard} PROPERTIES LABELS "${labels}" TIMEOUT 1200
-        RUN_SERIAL ${serial} COST ${ARG_SHARDS}
+        COST ${ARG_SHARDS}
         ENVIRONMENT "GTEST_TOTAL_SHARDS=${ARG_SHARDS};GTEST_SHARD_INDEX=${index};GTEST_OUTPUT=xml:${CMAKE_BINARY_DIR}/gtest/${name}_${shard}.xml")
     endforeach()
     return()
   endif()
   gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS "${labels}" TIMEOUT
-                       ${ARG_TIMEOUT} RUN_SERIAL ${serial})
+                       ${ARG_TIMEOUT} COST ${cost})
 endfunction()
 
 # The fuzz targets are known to ./check by this list: one line "NAME CORPUS" each.

@@ -8,6 +8,7 @@
 
 #include "collide/time_of_impact.h"
 #include "joints_rig.h"
+#include "samples.h"
 #include "surface_rig.h"
 #include "surfaces.h"
 
@@ -43,7 +44,7 @@ TEST(SurfaceMotion, FindsWhatAShapeEnters) {
     int entered = 0, missed = 0, points = 0, points_everywhere = 0;
     for (const Shape& shape : convex_shapes()) {
       const collide::Geometry geometry = collide::make_geometry(shape);
-      for (int k = 0; k < 600; ++k) {
+      for (int k = 0; k < samples(600); ++k) {
         const SE3 T(random.rotation(), Vec3{random.uniform(-0.8, 0.8), random.uniform(-0.8, 0.8),
                                             random.uniform(kHeight + 0.05, 0.8)});
         const collide::Motion motion{T.position(), random.in_cube(0.2), angle * random.direction()};
@@ -64,7 +65,7 @@ TEST(SurfaceMotion, FindsWhatAShapeEnters) {
         missed += least_after(found, motion) > kSlack + 1e-4;
       }
     }
-    EXPECT_GT(entered, 200) << angle;
+    EXPECT_GT(entered, samples(200)) << angle;
     EXPECT_LE(missed, entered / 50) << angle;
     EXPECT_LT(2 * points, points_everywhere) << angle;
   }
@@ -89,7 +90,7 @@ TEST(SurfaceMotion, RarelyPassesThroughWaves) {
     for (const Shape& shape :
          {Shape(Sphere{0.1}), Shape(Box{{0.1, 0.1, 0.1}}), Shape(Capsule{0.05, 0.3}),
           Shape(Box{{0.4, 0.05, 0.05}}), Shape(Cylinder{0.2, 0.1}), Shape(hammer())}) {
-      for (int i = 0; i < 40; ++i) {
+      for (int i = 0; i < samples(40); ++i) {
         World world;
         add_fixed(world, waves, kRough);
         Vec3 towards = random.direction();
