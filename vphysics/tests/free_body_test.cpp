@@ -110,6 +110,56 @@ TEST(FreeBody, OfEveryShapeKeepsMomentumAndEnergyAtEveryStep) {
 
 // The body has a contact slot, since its speed might take it to the other body, but it has no
 // contact.
+// A rope that is not taut changes nothing about a continuous body.
+TEST(FreeBody, OnASlackRopeKeepsMomentumAndEnergy) {
+  for (const double dt : {1.0 / 60.0, 0.001}) {
+    World world({.gravity = {}});
+    const BodyId body = add_dynamic(
+        world,
+        {.shape = Box{{0.5, 0.3, 0.1}}, .velocity = {{0.2, 4.0, 0.3}, {}}, .continuous = true});
+    JointDesc rope;
+    rope.kind = Distance{0.0, 100.0};
+    must(world.create_joint(add_fixed(world, Sphere{0.1}, {}, SE3(Vec3{5, 0, 0})), body, rope));
+    const Worst worst = worst_of(world, body, dt, 10.0);
+    EXPECT_LT(worst.momentum, 1e-9) << dt;
+    EXPECT_LT(worst.energy, 1e-7) << dt;
+  }
+}
+
+// A continuous disc that spins on a ball joint at the end of its axis: a torque about the vertical
+// axis does not exist, so that angular momentum about it stays, with an error of first order.
+TEST(FreeBody, ThatIsATopOnABallJointKeepsItsVerticalMomentum) {
+  double before = 1.0;
+  for (const double dt : {0.002, 0.001, 0.0005}) {
+    World world;
+    const BodyId pivot = add_fixed(world, Sphere{0.05}, {});
+    const BodyId disc = add_dynamic(world, {.shape = Cylinder{0.5, 0.05},
+                                            .pose = SE3(Exp(Vec3{0, 0.5 * kPi, 0}), Vec3{1, 0, 0}),
+                                            .continuous = true});
+    const Inertia J = world.inertia(disc);
+    const double mass = J.mass(), about_axis = 0.5 * mass * 0.25, spin = 60.0;
+    const double precession = mass * kG / (about_axis * spin);
+    const Vec3 w{spin, 0, precession};
+    must(world.set_velocity_world(disc, {cross(w, Vec3{1, 0, 0}), w}));
+    JointDesc ball;
+    ball.kind = BallSocket{};
+    ball.T_b_joint = SE3(Vec3{0, 0, -1});
+    must(world.create_joint(pivot, disc, ball));
+    const auto vertical = [&] {
+      const SE3 T = world.pose(disc);
+      const VelocityWorld V = world.velocity_world(disc);
+      const Vec3 spun = T.rotation() * (J.central() * transposed_times(T.rotation(), V.angular));
+      return (spun + mass * cross(T.position(), V.linear)).z;
+    };
+    const double start = vertical();
+    for (int i = 0; i < std::lround(1.0 / dt); ++i) must(world.step(dt));
+    const double error = std::fabs(vertical() - start) / start;
+    EXPECT_LT(error, 0.6 * before) << dt;
+    before = error;
+  }
+  EXPECT_LT(before, 0.1);
+}
+
 TEST(FreeBody, NearAnotherKeepsMomentumAndEnergy) {
   World world({.gravity = {}});
   add_fixed(world, Box{{1, 1, 0.1}}, {}, SE3(Vec3{0, 0, -0.28}));

@@ -52,6 +52,7 @@ void write_contact(const Passes& passes, ContactBlock<P>& block, int lane, const
 // hit.
 struct Net {
   std::vector<BodyState> states{kBodies + 1};
+  std::vector<BounceShift> shifts{kBodies + 1};
   ContactGraph graph;
   std::vector<std::uint32_t> bodies;
   std::vector<VelocityChange> velocity_changes{kBodies};
@@ -140,7 +141,7 @@ struct Net {
     passes.accelerate(states.data(), bodies.data(), n, kH);
     for (int round = 0; round < 4; ++round) {
       for_runs(passes, [&](const auto& p, const auto& run) {
-        bounces += p.apply_restitution(run, kH, 0.05f);
+        bounces += p.apply_restitution(run, kH, 0.05f, shifts.data());
       });
     }
     (first ? passes.keep : passes.repeat)(states.data(), velocity_changes.data(), bodies.data(), n);
@@ -167,6 +168,7 @@ struct Net {
       add(state.velocity);
       add(state.displacement);
     }
+    for (const BounceShift& shift : shifts) add(shift.displacement);
     for_runs(passes(), [&](const auto&, const auto& run) {
       for (std::uint32_t l = 0; l < run.slots; ++l) {
         auto& block = run.blocks[l / kLanes];

@@ -183,6 +183,52 @@ TEST(FastBodies, WithoutRotationPassThroughNothing) {
   }
 }
 
+// Neither do those that bounce: after the impact the rest of the step is searched on this side.
+TEST(FastBodies, ThatBouncePassThroughNothing) {
+  const TriangleMesh sheet = two_sided_square(2);
+  for (const Shape& shape :
+       {Shape(Sphere{0.05}), Shape(Box{{0.05, 0.05, 0.05}}), Shape(Capsule{0.02, 0.2})}) {
+    for (const Shape& wall : {Shape(Box{{0.01, 2, 2}}), Shape(sheet)}) {
+      for (const double restitution : {0.3, 0.6, 1.0}) {
+        for (const double speed : {20.0, 70.0, 200.0}) {
+          for (int i = 0; i < 20; ++i) {
+            SCOPED_TRACE(::testing::Message() << shape.index() << ' ' << wall.index() << ' '
+                                              << restitution << ' ' << speed << " m/s, " << i);
+            const Material bouncy{0.0, restitution, 0.0};
+            World world(without_gravity());
+            add_fixed(world, wall, bouncy);
+            const BodyId body =
+                add_dynamic(world, {.shape = shape,
+                                    .material = bouncy,
+                                    .pose = SE3(Vec3{-0.5 - speed / 60.0 * (i + 0.5) / 20, 0, 0}),
+                                    .velocity = {Vec3{}, Vec3{speed, 0, 0}}});
+            for (int k = 0; k < 4; ++k) must(world.step(1.0 / 60.0));
+            ASSERT_LT(world.pose(body).position().x, 0.0);
+            ASSERT_NEAR(world.velocity(body).v.x, -restitution * speed, 1e-3 * speed);
+          }
+        }
+      }
+    }
+  }
+}
+
+// Nor is what stands behind a wall hit by what bounces off it.
+TEST(FastBodies, ThatBounceHitNothingBehindAWall) {
+  const Material bouncy{0.0, 0.9, 0.0};
+  for (int i = 0; i < 40; ++i) {
+    World world(without_gravity());
+    add_fixed(world, Box{{0.25, 2, 2}}, bouncy);
+    const BodyId behind =
+        add_dynamic(world, {.shape = Box{{0.2, 0.2, 0.2}}, .pose = SE3(Vec3{0.6, 0, 0})});
+    add_dynamic(world, {.shape = Sphere{0.1},
+                        .material = bouncy,
+                        .pose = SE3(Vec3{-0.5 - 200.0 / 60.0 * (i + 0.5) / 40, 0, 0}),
+                        .velocity = {Vec3{}, Vec3{200, 0, 0}}});
+    for (int k = 0; k < 4; ++k) must(world.step(1.0 / 60.0));
+    EXPECT_EQ(norm(world.velocity(behind).v), 0.0) << i;
+  }
+}
+
 // Neither do bodies that rotate up to 1.7 rad in the step in which they arrive.
 TEST(FastBodies, WithRotationPassThroughNothing) {
   const TriangleMesh sheet = two_sided_square(9);

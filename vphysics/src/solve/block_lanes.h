@@ -69,6 +69,24 @@ class BlockLanes {
     scatter([this](int i) { return state_a(i).displacement; }, a, is_movable_a());
     scatter([this](int i) { return state_b(i).displacement; }, b, is_movable_b());
   }
+  // Moves both bodies, and adds that to the shifts.
+  void shift(const V& by_a, const V& rotation_by_a, const V& by_b, const V& rotation_by_b,
+             BounceShift* shifts) {
+    x_a += by_a;
+    rotation_a += rotation_by_a;
+    x_b += by_b;
+    rotation_b += rotation_by_b;
+    scatter_displacements();
+    const auto add = [shifts](std::uint32_t state, const V& x, const V& rotation, int i) {
+      const F* const by[6] = {&x.x, &x.y, &x.z, &rotation.x, &rotation.y, &rotation.z};
+      for (int k = 0; k < 6; ++k) shifts[state].displacement[k] += by[k]->lanes[i];
+    };
+    const unsigned a = lanes::bits_of(is_movable_a()), b = lanes::bits_of(is_movable_b());
+    for (int i = 0; i < W; ++i) {
+      if ((a >> i & 1u) != 0) add(block_.a.lane[at_ + i], by_a, rotation_by_a, i);
+      if ((b >> i & 1u) != 0) add(block_.b.lane[at_ + i], by_b, rotation_by_b, i);
+    }
+  }
   // Linear accelerations by forces. Only the restitution pass reads them.
   void gather_accelerations(V& a, V& b) const {
     F r[8];

@@ -29,6 +29,11 @@ struct alignas(64) BodyState {
 struct alignas(32) StartDisplacement {
   float displacement[8] = {};
 };
+// How far bounces have moved a state in the present sub-step (restitution_pass.h), in the layout of
+// its displacement. Zero between sub-steps.
+struct alignas(32) BounceShift {
+  float displacement[8] = {};
+};
 inline constexpr int kInverseMass = 6, kFalls = 7;           // in velocity
 inline constexpr int kKeepLinear = 6, kKeepAngular = 7;      // in inertia
 inline constexpr int kSupported = 6, kFractionMinusOne = 7;  // in displacement

@@ -109,10 +109,10 @@ void load_inertias(const typename ContactPasses<P>::Run& run) {
 }
 template <int P>
 [[gnu::flatten]] bool apply_restitution(const typename ContactPasses<P>::Run& run, float h,
-                                        float threshold) {
+                                        float threshold, BounceShift* shifts) {
   bool bounced = false;
   for_lanes<P>(run, [&](LanesOf<W, P>& c, std::size_t, int) {
-    bounced = apply_restitution_lanes<W, P>(c, h, threshold) || bounced;
+    bounced = apply_restitution_lanes<W, P>(c, h, threshold, shifts) || bounced;
   });
   return bounced;
 }

@@ -51,7 +51,8 @@ struct ContactPasses {
   void (*renew)(ContactBlock<P>& block, const NewContacts& contacts);
   // Before the sub-steps of a step.
   void (*load_inertias)(const Run& run);
-  bool (*apply_restitution)(const Run& run, float h, float threshold);  // true: something bounced
+  // Returns true if something bounced. Adds to the shifts, which are by index of the state.
+  bool (*apply_restitution)(const Run& run, float h, float threshold, BounceShift* shifts);
   void (*warm_start)(const Run& run);
   // Iterations with bias velocities: the first of a sub-step, and later ones.
   void (*solve_first)(const Run& run, const Soft& soft);

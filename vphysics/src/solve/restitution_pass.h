@@ -3,8 +3,9 @@
 // apply_restitution: a contact that approaches faster than the threshold and touches within the
 // sub-step h hits. If it has restitution, it bounces immediately, one contact after another: each
 // changes the bodies' velocities by Newton's impact law. So an impact propagates through a row of
-// balls as in Newton's cradle. The displacements of its bodies are corrected for the time of impact
-// within the sub-step.
+// balls as in Newton's cradle. The displacements of its bodies are shifted for the time of impact
+// within the sub-step, to where the new velocities lead to the right place at its end: that may be
+// behind what was hit, so that contacts are searched for without the shifts.
 //
 // Velocities include the forces of the whole sub-step, so they are its midpoint velocities. With c
 // the approach speed, g the acceleration that closes the separation s (of bodies in free fall; 0
@@ -59,7 +60,7 @@ struct Approaching {
 
 // Returns true if any lane bounced. Skips blocks that the relax pass has found idle.
 template <int W, int P>
-bool apply_restitution_lanes(LanesOf<W, P>& c, float h, float threshold) {
+bool apply_restitution_lanes(LanesOf<W, P>& c, float h, float threshold, BounceShift* shifts) {
   using F = Lanes<W>;
   using V = Vec3T<F>;
   auto& block = c.block();
@@ -125,11 +126,8 @@ bool apply_restitution_lanes(LanesOf<W, P>& c, float h, float threshold) {
   const F error = target - (larger(F(0.0f), separation) + F(h) * speed);
   const auto moves = both(bounces, gained > F(1e-9f));
   const F part = select(moves, clamped(error / larger(gained, F(1e-9f)), F(h)), F(0.0f));
-  c.x_a += part * (c.v_a - v_a);
-  c.rotation_a += part * (c.w_a - w_a);
-  c.x_b += part * (c.v_b - v_b);
-  c.rotation_b += part * (c.w_b - w_b);
-  c.scatter_displacements();
+  c.shift(part * (c.v_a - v_a), part * (c.w_a - w_a), part * (c.v_b - v_b), part * (c.w_b - w_b),
+          shifts);
 
   // Friction during the bounce.
   const Grip<W, P> at(c, normals);

@@ -138,19 +138,20 @@ bool stop_if_out_of_range(const StepContext& s, std::uint32_t index, const SE3& 
   body.prescribed = {};
   body.T = start;
   body.moved();
-  restart_displacement(s, index);
+  restart_displacement(s, index, false);  // the others are at different times of the step
   forget_joints(s.bodies[index], s.joints);
   return true;
 }
 
-// The clearances are set again at the present poses: rotations are added as vectors, and the sum of
-// many says less and less about the orientation.
-void restart_displacement(const Stores& s, std::uint32_t index) {
+// Clearances that are kept are set again at the present poses: rotations are added as vectors, and
+// the sum of many says less and less about the orientation.
+void restart_displacement(const Stores& s, std::uint32_t index, bool keeps_clearances) {
   const auto is_speculative = [](const Contact& c) {
     return c.slot.points == 0 && !c.sensor && !c.of_link && !c.parked;
   };
   s.contact_store.for_each_of(s.bodies[index], [&](std::uint32_t, const Contact& c) {
-    if (is_speculative(c) && !c.dirty) s.contact_store.use_clearance(c, s.body_set);
+    if (keeps_clearances && is_speculative(c) && !c.dirty)
+      s.contact_store.use_clearance(c, s.body_set);
   });
   std::fill_n(s.body_states[index + 1].displacement, 6, 0.0f);
   s.start_displacements[index] = {};
@@ -158,7 +159,7 @@ void restart_displacement(const Stores& s, std::uint32_t index) {
   s.contact_store.for_each_of(s.bodies[index], [&](std::uint32_t contact, const Contact& c) {
     const bool speculative = is_speculative(c);
     if (speculative && c.dirty) return;
-    const double left = speculative ? s.contact_store.clearance(c) : 0.0;
+    const double left = keeps_clearances && speculative ? s.contact_store.clearance(c) : 0.0;
     if (left > 0.0) return s.contact_store.set_clearance(c, left, s.body_set);
     if (speculative) s.contact_store.reset_speculative(c, s.body_set);
     s.contact_store.mark_dirty(contact);

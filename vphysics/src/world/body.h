@@ -95,7 +95,9 @@ struct alignas(64) Body {
   // Its solver state moves it; otherwise it falls freely.
   bool is_solver_driven() const { return contact_slots > 0 || first_joint != kNone || on_link; }
   bool tumbles() const { return motion == Motion::dynamic && !is_link && !isotropic; }
-  bool rotates_freely() const { return !is_solver_driven() || untouched; }
+  // Between the impulses that it gets. Those of a continuous body, of its joints too, act at the
+  // start of a step and at its impacts.
+  bool rotates_freely() const { return !is_solver_driven() || untouched || continuous; }
   void moved() {
     posed = bounded = false;
     ++pose_number;

@@ -247,6 +247,7 @@ Expected<void> World::set_material(ColliderId id, const Material& material) {
   if (!c) return unknown_id("set_material", "the collider");
   if (auto problem = problem_with(material)) return invalid("set_material: " + *problem);
   c->material = material;
+  impl_->sub_step.some_bounce |= material.restitution > 0.0;
   impl_->wake_all_about(c->body);
   impl_->contact_store.mark_contacts_dirty(impl_->bodies[c->body]);
   TopologyHash(impl_->topology_hash)

@@ -89,6 +89,9 @@ void ImpactStage::begin_step(double dt, std::size_t pairs) {
     drift_.assign(n, {});
     forced_.assign(n, {});
   }
+}
+
+void ImpactStage::note_start() {
   for (const std::uint32_t i : moving_bodies()) {
     drift_[i] = forced_[i] = {};
     if (!s_.bodies[i].is_link) start_poses_[i] = s_.bodies[i].T;

@@ -39,6 +39,9 @@ class ImpactStage {
 
   // Reserves memory for a number of pairs.
   void begin_step(double dt, std::size_t pairs);
+  // Stores the poses at the start of the step: before the sub-steps, and when bodies have woken
+  // within one, since poses change only after them.
+  void note_start();
   void integrate_forces(double dt);
   // drift: mean velocity over the step less that at its end.
   void note_sub_steps_of(std::uint32_t body, const Velocity& drift);

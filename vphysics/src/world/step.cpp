@@ -56,6 +56,7 @@ void World::Impl::begin_step(double dt) {
   if (!lists.awake_bodies.empty()) contact_store.graph.reserve(lists.awake_bodies.size());
   sub_step.start_displacements.resize(n);
   sub_step.velocity_changes.resize(n);
+  if (sub_step.some_bounce) sub_step.bounce_shifts.resize(n + 1);
   sub_step.searched.resize(n);
   sub_step.fast_rotation.rotates_fast.reserve(n);
   sub_step.fast_rotation.shortened.reserve(64 + n / 8);  // grows if more bodies rotate fast
@@ -117,6 +118,7 @@ void World::Impl::run(double dt) {
     find_contacts(dt);
     list_bodies();  // the narrow phase may have woken some
   }
+  if (has_impact_stage()) impacts.note_start();
   sub_step.awake_body_changed.resize(lists.awake_bodies.size());
   counters.awake = static_cast<std::uint32_t>(lists.awake_bodies.size());
   run_sub_steps(dt);
@@ -147,6 +149,7 @@ SearchedAgain World::Impl::find_contacts_within_step(double left) {
   const std::size_t awake = lists.awake_bodies.size();
   list_bodies();
   changed.has_woken = lists.awake_bodies.size() != awake;
+  if (changed.has_woken && has_impact_stage()) impacts.note_start();
   changed.has_old_slots |= changed.has_woken;
   changed.has_new_slots |= changed.has_old_slots;
   sub_step.awake_body_changed.resize(lists.awake_bodies.size());

@@ -55,6 +55,7 @@ struct SubStepContext {
   const Workers& workers;
   std::span<solve::BodyState> states;
   std::span<solve::VelocityChange> velocity_changes;  // of each body, by the contacts of a sub-step
+  std::span<solve::BounceShift> bounce_shifts;        // of each state; empty if none bounces
   float restitution_threshold;
 };
 
@@ -87,6 +88,16 @@ class SubSteps {
       if (std::find(words, words + blocks_, 1u) == words + blocks_) return iteration;
     }
     return kMaxRestitutionPasses;
+  }
+  // Moves all states by these fractions of their shifts by bounces.
+  void shift_bounced(float fraction) const {
+    for (std::size_t i = 0; i < context_.states.size(); ++i) {
+      const float* const shift = context_.bounce_shifts[i].displacement;
+      for (int k = 0; k < 6; ++k) context_.states[i].displacement[k] += fraction * shift[k];
+    }
+  }
+  void forget_shifts() const {
+    std::fill(context_.bounce_shifts.begin(), context_.bounce_shifts.end(), solve::BounceShift{});
   }
   void keep_velocities(std::size_t region) const {
     for_moving_bodies(region, [&](const std::uint32_t* some, std::size_t count) {
@@ -137,7 +148,10 @@ class SubSteps {
   void apply_restitution(std::size_t region) const {
     context_.contacts.for_parts_of(region, [&](const auto& p, const auto& part, std::size_t first) {
       context_.contacts.words()[first] =
-          p.apply_restitution(part, h_, context_.restitution_threshold) ? 1u : 0u;
+          p.apply_restitution(part, h_, context_.restitution_threshold,
+                              context_.bounce_shifts.data())
+              ? 1u
+              : 0u;
     });
   }
   solve::BodyState* states() const { return context_.states.data(); }
@@ -192,7 +206,7 @@ void World::Impl::take_sub_steps(double dt, int n) {
                  kMaxBiasVelocity * speed_unit, kMaxCorrectionSpeed * speed_unit);
   const ContactRuns runs = contact_runs();
   SubSteps steps({runs, regions, workers, body_states, sub_step.velocity_changes,
-                  static_cast<float>(desc.restitution_threshold)},
+                  sub_step.bounce_shifts, static_cast<float>(desc.restitution_threshold)},
                  h,
                  {.rate = static_cast<float>(kUseBias / state.last_step_length),
                   .fraction = static_cast<float>(1.0 - kImpulseDecay),
@@ -219,20 +233,25 @@ void World::Impl::take_sub_steps(double dt, int n) {
   for (int k = 0; k < n; ++k) {
     const bool last = k == n - 1;
     runs.everywhere([&](std::size_t region) { steps.accelerate(region, repeats && k > 0); });
-    bool warm_starts = k == 0 || !repeats;
+    bool warm_starts = k == 0 || !repeats, some_bounced = false;
     for (int search = 0; search < kMaxSearches; ++search) {
       const int bounces = steps.apply_restitution();
       counters.restitution_iterations += static_cast<std::uint32_t>(bounces);
       status.bounce_limit |= bounces == kMaxRestitutionPasses;
       // The velocities of the first sub-step are those of the search, unless something bounces.
       if (bounces == 0 && (k == 0 || search > 0)) break;
+      // What bounces starts on this side of what it has hit.
+      some_bounced |= bounces > 0;
+      if (some_bounced) steps.shift_bounced(-1.0f);
       const SearchedAgain changed = find_contacts_within_step(static_cast<double>(h) * (n - k));
+      if (some_bounced) steps.shift_bounced(1.0f);
       if (!changed.has_new_slots) break;
       steps.number_contacts();
       if (changed.has_woken)
         runs.everywhere([&](std::size_t region) { steps.load_inertias(region); });
       warm_starts |= changed.has_old_slots;
     }
+    if (some_bounced) steps.forget_shifts();
     if (links) link_contacts.begin_sub_step(h);
     runs.everywhere([&](std::size_t region) { joint_steps.warm_start(region); });
     if (repeats) {

@@ -156,6 +156,7 @@ Expected<ColliderId> World::add_collider(BodyId body_handle, const ColliderDesc&
   c.geometry = collide::make_geometry(c.shape);
   c.T_body_shape = SE3(orthonormalized(desc.T_body_shape.rotation()), desc.T_body_shape.position());
   c.material = desc.material;
+  impl_->sub_step.some_bounce |= c.material.restitution > 0.0;
   c.density = desc.density;
   c.surface_velocity = desc.surface_velocity;
   c.filter = desc.filter;
