@@ -39,7 +39,7 @@ struct SubStepScratch {
   BlockBits blocks;
   solve::LargeVector<solve::VelocityChange>
       velocity_changes;                           // of each body, by the contacts of a sub-step
-  bool some_bounce = false;  // a collider has or had restitution
+  bool some_bounce = false;                       // a collider has or had restitution
   std::vector<solve::BounceShift> bounce_shifts;  // of each state; empty if none bounces
   std::vector<solve::StartDisplacement>
       start_displacements;  // of each body: displacement of its state at the start of the step
