@@ -126,6 +126,27 @@ TEST(FreeBody, OnASlackRopeKeepsMomentumAndEnergy) {
   }
 }
 
+// A continuous rod on a hinge whose axis is no principal axis: only a free one would tumble.
+TEST(FreeBody, OnAHingeAboutAnyAxisKeepsItsSpinAndItsAxis) {
+  constexpr double kTilt = 0.5, kSpin = 20.0;
+  for (const double dt : {1.0 / 60.0, 0.001}) {
+    World world({.gravity = {}});
+    const SE3 tilted{Exp(Vec3{kTilt, 0, 0}), Vec3{}};
+    const BodyId rod =
+        add_dynamic(world, {.shape = Box{{0.05, 0.05, 0.5}}, .pose = tilted, .continuous = true});
+    JointDesc hinge;
+    hinge.kind = Hinge{};
+    hinge.T_a_joint = SE3(Vec3{-5, 0, 0});
+    hinge.T_b_joint = Inv(tilted);
+    must(world.create_joint(add_fixed(world, Sphere{0.1}, {}, SE3(Vec3{5, 0, 0})), rod, hinge));
+    must(world.set_velocity_world(rod, {{}, {0, 0, kSpin}}));
+    for (int i = 0; i < std::lround(5.0 / dt); ++i) must(world.step(dt));
+    const Vec3 axis = world.pose(rod).rotation() * (Inv(tilted).rotation() * Vec3{0, 0, 1});
+    EXPECT_LT(norm(axis - Vec3{0, 0, 1}), 1e-9) << dt;
+    EXPECT_NEAR(world.velocity_world(rod).angular.z, kSpin, 1e-6) << dt;
+  }
+}
+
 // A continuous disc that spins on a ball joint at the end of its axis: a torque about the vertical
 // axis does not exist, so that angular momentum about it stays, with an error of first order.
 TEST(FreeBody, ThatIsATopOnABallJointKeepsItsVerticalMomentum) {

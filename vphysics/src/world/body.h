@@ -50,6 +50,7 @@ struct alignas(64) Body {
   bool requested_continuous = false;            // when it is dynamic
   bool remote = false;                          // a link of a remote articulation (remote.cpp)
   std::uint16_t region = solve::kSharedRegion;  // regions.cpp
+  std::uint16_t rotation_locks = 0;             // number of its joints that lock a rotation
   std::uint32_t contact_slots = 0;              // number of its contact slots in the solver
   std::uint32_t first_joint = kNone, first_collider = kNone;
   std::uint32_t load = kNone;  // index into the world's loads; kNone for links
@@ -96,8 +97,10 @@ struct alignas(64) Body {
   bool is_solver_driven() const { return contact_slots > 0 || first_joint != kNone || on_link; }
   bool tumbles() const { return motion == Motion::dynamic && !is_link && !isotropic; }
   // Between the impulses that it gets. Those of a continuous body, of its joints too, act at the
-  // start of a step and at its impacts.
-  bool rotates_freely() const { return !is_solver_driven() || untouched || continuous; }
+  // start of a step and at its impacts. What a joint keeps from rotating follows its solved rate.
+  bool rotates_freely() const {
+    return !is_solver_driven() || untouched || (continuous && rotation_locks == 0);
+  }
   void moved() {
     posed = bounded = false;
     ++pose_number;

@@ -163,8 +163,9 @@ void ContactStore::set_clearance(const Contact& c, double clearance, const BodyS
     const float* displacement = on.states[state].displacement;
     std::copy_n(displacement, 3, x);
     std::copy_n(displacement + 3, 3, rotation);
-    const bool moves = state != solve::kWorldState && clearance > 0.0;
-    put(arm, moves ? at.centre - reference_point(body) : Vec3{});
+    // Without a clearance any motion uses it up, so that the poses need not be those of one time.
+    const bool has_arm = state != solve::kWorldState && clearance > 0.0;
+    put(arm, has_arm ? at.centre - reference_point(body) : Vec3{});
   };
   put_end(pair.a, on.bodies[a.body], pair.x_a, pair.rotation_a, pair.arm_a);
   put_end(pair.b, on.bodies[b.body], pair.x_b, pair.rotation_b, pair.arm_b);

@@ -43,7 +43,7 @@ void ImpactStage::remove_cancelled_forces(std::uint32_t body, const Vec3& change
   remove_cancelled(forced_[body].v, change_v);
 }
 
-// Marks articulations in contact, or joined by rows.
+// Marks articulations in contact, and what joints in rows keep from rotating freely.
 void ImpactStage::note_touched_articulations() {
   const auto touch = [this](const Body& body) {
     if (body.is_link) s_.articulations[body.articulation].touched = true;
@@ -55,7 +55,10 @@ void ImpactStage::note_touched_articulations() {
   for (const std::uint32_t i : rows_.joints()) {
     const BodyJoint& joint = s_.joints[i];
     if (rows_.is_in_sub_steps(joint)) continue;
-    for (const std::uint32_t b : {joint.a, joint.b}) touch(s_.bodies[b]);
+    for (const std::uint32_t b : {joint.a, joint.b}) {
+      if (s_.bodies[b].rotation_locks > 0) in_contact_[b] = 1;
+      touch(s_.bodies[b]);
+    }
   }
 }
 

@@ -38,6 +38,8 @@ struct JointSpec {
   int user_rows = 0;
 };
 JointSpec spec_of(const JointKind& kind);
+// Whether it locks a rotation. A gear couples two, a user's constraint may.
+bool locks_rotation(const JointSpec& spec);
 
 // A row of a joint: its force law for one sub-step length. solve/joint_block.h describes the
 // fields.

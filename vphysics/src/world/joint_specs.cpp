@@ -1,4 +1,5 @@
 // The rows of each kind of joint, and the checks of their descriptions.
+#include <algorithm>
 #include <cmath>
 #include <type_traits>
 
@@ -273,6 +274,12 @@ JointSpec spec_of(const JointKind& kind) {
   JointSpec spec;
   std::visit([&](const auto& k) { fill(spec, k); }, kind);
   return spec;
+}
+bool locks_rotation(const JointSpec& spec) {
+  if (spec.form == JointSpec::Form::distance) return false;
+  if (spec.form != JointSpec::Form::axes) return true;
+  return std::any_of(spec.axes + 3, spec.axes + 6,
+                     [](const AxisDesc& axis) { return axis.motion == AxisMotion::locked; });
 }
 
 double first_rotation(const JointSpec& spec) {

@@ -28,6 +28,7 @@ void link_joint(Bodies& bodies, Joints& joints, std::uint32_t index) {
     if (body.first_joint != kNone)
       joints[body.first_joint / 2].previous[body.first_joint % 2] = edge;
     body.first_joint = edge;
+    if (locks_rotation(joint.spec)) ++body.rotation_locks;
   }
 }
 
@@ -38,6 +39,7 @@ void World::Impl::remove_joint(std::uint32_t index) {
     const std::uint32_t next = joint.next[side], previous = joint.previous[side];
     if (next != kNone) joints[next / 2].previous[next % 2] = previous;
     (previous != kNone ? joints[previous / 2].next[previous % 2] : body.first_joint) = next;
+    if (locks_rotation(joint.spec)) --body.rotation_locks;
   }
   contact_store.mark_contacts_dirty(bodies[joint.a]);
   if (joint.in_rows) lists.invalidate();

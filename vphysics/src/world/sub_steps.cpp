@@ -89,12 +89,13 @@ class SubSteps {
     }
     return kMaxRestitutionPasses;
   }
-  // Moves all states by these fractions of their shifts by bounces.
-  void shift_bounced(float fraction) const {
-    for (std::size_t i = 0; i < context_.states.size(); ++i) {
-      const float* const shift = context_.bounce_shifts[i].displacement;
-      for (int k = 0; k < 6; ++k) context_.states[i].displacement[k] += fraction * shift[k];
-    }
+  // Calls f with what bounces on its side of what it has hit. bounced: something has a shift.
+  template <class F>
+  auto without_shifts(bool bounced, const F& f) const {
+    if (bounced) shift_bounced(-1.0f);
+    const auto result = f();
+    if (bounced) shift_bounced(1.0f);
+    return result;
   }
   void forget_shifts() const {
     std::fill(context_.bounce_shifts.begin(), context_.bounce_shifts.end(), solve::BounceShift{});
@@ -153,6 +154,13 @@ class SubSteps {
               ? 1u
               : 0u;
     });
+  }
+  // Moves all states by these fractions of their shifts.
+  void shift_bounced(float fraction) const {
+    for (std::size_t i = 0; i < context_.states.size(); ++i) {
+      const float* const shift = context_.bounce_shifts[i].displacement;
+      for (int k = 0; k < 6; ++k) context_.states[i].displacement[k] += fraction * shift[k];
+    }
   }
   solve::BodyState* states() const { return context_.states.data(); }
   template <class F>
@@ -240,11 +248,10 @@ void World::Impl::take_sub_steps(double dt, int n) {
       status.bounce_limit |= bounces == kMaxRestitutionPasses;
       // The velocities of the first sub-step are those of the search, unless something bounces.
       if (bounces == 0 && (k == 0 || search > 0)) break;
-      // What bounces starts on this side of what it has hit.
       some_bounced |= bounces > 0;
-      if (some_bounced) steps.shift_bounced(-1.0f);
-      const SearchedAgain changed = find_contacts_within_step(static_cast<double>(h) * (n - k));
-      if (some_bounced) steps.shift_bounced(1.0f);
+      const SearchedAgain changed = steps.without_shifts(some_bounced, [&] {
+        return find_contacts_within_step(static_cast<double>(h) * (n - k));
+      });
       if (!changed.has_new_slots) break;
       steps.number_contacts();
       if (changed.has_woken)
