@@ -29,6 +29,9 @@ int row_of(const MenuPage& page, const std::string& label) {
 // --- tuning --------------------------------------------------------------------------------------
 
 class TuningPanel : public testing::Test {
+ public:
+  ~TuningPanel() override { std::filesystem::remove_all(folder); }
+
  protected:
   TuningPanel()
       : folder((std::filesystem::path(testing::TempDir()) /
@@ -39,7 +42,6 @@ class TuningPanel : public testing::Test {
     std::filesystem::create_directories(folder);
     menu.update(1, reported, true);
   }
-  ~TuningPanel() override { std::filesystem::remove_all(folder); }
   int row(const std::string& label) const { return row_of(menu.page(0), label); }
   // A server that grants every request, for this time; returns the requests.
   std::vector<wire::MatchRequest> grant(std::int64_t long_us, std::uint64_t session = 1) {

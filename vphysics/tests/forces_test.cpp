@@ -59,7 +59,7 @@ void make(Crate& c, Carrier kind) {
   must(c.world.add_collider(c.body, collider_of(kCrate, m)));
 }
 void push(World& world, BodyId body, const Vec3& force, double seconds, double rate) {
-  for (int i = 0; i < static_cast<int>(seconds * rate + 0.5); ++i) {
+  for (int i = 0; i < std::lround(seconds * rate); ++i) {
     must(world.apply_force(body, force));
     must(world.step(1.0 / rate));
   }

@@ -79,9 +79,9 @@ TEST(Regions, CarryWhatLiesOnThem) {
   EXPECT_EQ(world.counters().manifolds, boxes.size());
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     const Vec3 x = world.pose(boxes[i]).position();
-    const double t = static_cast<double>(i / kHigh), k = static_cast<double>(i % kHigh);
-    EXPECT_NEAR(x.x, 1.5 * t, 1e-3);
-    EXPECT_NEAR(x.z, 0.5 + k, 2e-3);
+    const std::size_t tower = i / kHigh, level = i % kHigh;
+    EXPECT_NEAR(x.x, 1.5 * static_cast<double>(tower), 1e-3);
+    EXPECT_NEAR(x.z, 0.5 + static_cast<double>(level), 2e-3);
     EXPECT_LT(norm(world.velocity(boxes[i]).v), 1e-3);
   }
 }
@@ -107,10 +107,10 @@ TEST(Regions, AreCarriedByALift) {
     add_kinematic(world, Box{{10, 10, 0.5}}, {{}, speed});
     std::vector<BodyId> boxes;
     for (int i = 0; i < 64; ++i) {
-      boxes.push_back(
-          add_dynamic(world, {.shape = Box{{0.5, 0.5, 0.5}},
-                              .pose = SE3(Vec3{2.0 * (i % 8 - 4), 2.0 * (i / 8 - 4), 1}),
-                              .velocity = {{}, speed}}));
+      const int column = i % 8 - 4, row = i / 8 - 4;
+      boxes.push_back(add_dynamic(world, {.shape = Box{{0.5, 0.5, 0.5}},
+                                          .pose = SE3(Vec3{2.0 * column, 2.0 * row, 1}),
+                                          .velocity = {{}, speed}}));
     }
     for (int i = 0; i < 240; ++i) must(world.step(kQuarterFrame));
     EXPECT_EQ(world.counters().regions, 16u);
@@ -310,8 +310,8 @@ TEST(Regions, AreTakenBackWithTheState) {
     for (int i = 0; i < 60; ++i) {
       Part part{.shape = Box{{0.1, 0.1, 0.1}}, .material = {.restitution = i % 7 == 0 ? 0.5 : 0.0}};
       if (i % 4 == 0) part.shape = Sphere{0.1};
-      part.pose =
-          SE3(random.rotation(), Vec3{0.25 * (i % 4), 0.25 * (i / 4 % 4), 0.2 + 0.3 * (i / 16)});
+      const int column = i % 4, row = i / 4 % 4, level = i / 16;
+      part.pose = SE3(random.rotation(), Vec3{0.25 * column, 0.25 * row, 0.2 + 0.3 * level});
       const BodyId body = add_dynamic(world, part);
       if (i % 8 == 7) join(world, last, body, BallSocket{}, part.pose);
       last = body;

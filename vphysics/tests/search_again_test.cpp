@@ -66,8 +66,8 @@ TEST(SearchAgain, ElasticBallsThatFallTogether) {
         Random random(7);
         Balls balls{world, {}};
         for (int i = 0; i < kAlong * kAlong * kAlong; ++i) {
-          const Vec3 at{1.0 * (i % kAlong), 1.0 * (i / kAlong % kAlong),
-                        1.0 * (i / (kAlong * kAlong))};
+          const int column = i % kAlong, row = i / kAlong % kAlong, level = i / (kAlong * kAlong);
+          const Vec3 at{1.0 * column, 1.0 * row, 1.0 * level};
           const Vec3 off = pitch > 2.1 ? random.in_cube(0.005) : Vec3{};
           balls.add(pitch * kRadius * at + Vec3{0, 0, height} + off, elastic);
         }

@@ -200,8 +200,8 @@ TEST(ElasticBalls, GainNoEnergy) {
         Random random(7);
         std::vector<BodyId> balls;
         for (int i = 0; i < kAlong * kAlong * kAlong; ++i) {
-          const Vec3 at{1.0 * (i % kAlong), 1.0 * (i / kAlong % kAlong),
-                        1.0 * (i / (kAlong * kAlong))};
+          const int column = i % kAlong, row = i / kAlong % kAlong, level = i / (kAlong * kAlong);
+          const Vec3 at{1.0 * column, 1.0 * row, 1.0 * level};
           const Vec3 off = pitch > 2.1 ? random.in_cube(0.005) : Vec3{};
           balls.push_back(add_dynamic(
               world, {.shape = Sphere{kRadius},
