@@ -36,11 +36,12 @@ namespace vp {
 inline constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
 // A motor: force = clamp(stiffness (position - q) + damping (velocity - v), +-max_force),
-// integrated implicitly, so that one drive is stable at any stiffness. Stiff drives in series
-// between bodies are not (docs/limits.md): use an articulation or more sub-steps. For a velocity
-// motor, set the stiffness to 0 and a damping so large that max_force limits the force. Units: of a
-// translation | of a rotation. For a ball or a free joint of an articulation it drives one of the
-// velocities, and stiffness must be 0.
+// integrated implicitly, so that it is stable at any stiffness. Between bodies a drive is at most
+// as stiff as a locked axis: stiffness h^2 = 4 m, where h is the sub-step and m the mass that it
+// moves (of a rotation, the moment of inertia); a larger stiffness and its damping act reduced to
+// that. For a velocity motor, set the stiffness to 0 and a damping so large that max_force limits
+// the force. Units: of a translation | of a rotation. For a ball or a free joint of an articulation
+// it drives one of the velocities, and stiffness must be 0.
 struct JointDrive {
   double position = 0.0;   // [m] | [rad]
   double velocity = 0.0;   // [m/s] | [rad/s]

@@ -28,6 +28,8 @@
 namespace vphysics_solver {
 
 inline constexpr int kJointRows = 6;
+// Of hard rows: the fraction of an error that a sub-step corrects, and G as a fraction of K.
+inline constexpr double kJointBias = 0.2, kJointLoss = 0.05;
 inline constexpr float kNoBound = 1e30f;        // an absent limit
 inline constexpr float kMaxAngularBias = 3.0f;  // maximum bias velocity of angular rows [rad/s]
 
@@ -112,7 +114,7 @@ struct JointBlock {
   [[no_unique_address]] std::conditional_t<kOfAxes, NoPart<2>, Field3> anchor;
   [[no_unique_address]] std::conditional_t<kOfAxes, PointPart, NoPart<0>> point;
   [[no_unique_address]] std::conditional_t<kOfAxes && kOthers != 0, AxesPart, NoPart<1>> axes;
-  // Of all rows, prepared in each sub-step: rate C; K_ii without G.
+  // Of all rows, prepared in each sub-step: rate C, of a drive C - position; K_ii without G.
   Field bias[kAll], own[kAll];
   Field factor[kAll * (kAll + 1) / 2];  // L below the diagonal; 1 / D on it
   [[no_unique_address]] SomeOf<RowPart, kOthers> rows;

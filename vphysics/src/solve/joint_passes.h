@@ -17,6 +17,9 @@ inline constexpr int kBoundedSweeps = 4;
 // without gain or loss of energy; a stiffer one increasingly implicitly. Sixteen such springs on
 // one body are still stable: the limit is 4.
 inline constexpr float kExplicit = 0.25f;
+// The stiffest spring of a drive, in the same unit: as stiff as a locked row. The iterations of a
+// sub-step do not solve a stiffer one where several act in series, and it would throw the bodies.
+inline constexpr float kStiffest = static_cast<float>(kJointBias / kJointLoss);
 // A pivot below this fraction of its row's own K belongs to a row that depends on other rows.
 inline constexpr float kDependent = 1e-6f;
 inline constexpr float kMinResponse = 1e-30f;  // the smallest pivot that is inverted
@@ -261,19 +264,27 @@ F clamped(const F& x, const F& min_impulse, const F& max_impulse) {
 }
 
 // The change of a drive's impulse at the speed u. K: the change of that speed by a unit impulse.
+// The force is that at the end of the sub-step, by its speed, from the error at its start. So the
+// relaxation, after the bodies have moved, uses the error that the iterations have stored.
 template <int W, class B, int kRows, int kLocked>
-Lanes<W> drive_change(const JointLanes<W, B, kRows, kLocked>& c, int i, const Lanes<W>& u,
-                      const Lanes<W>& K, float h) {
+Lanes<W> drive_change(JointLanes<W, B, kRows, kLocked>& c, int i, const Lanes<W>& u,
+                      const Lanes<W>& K, float h, bool pushes) {
   using F = Lanes<W>;
   const BoundPart& bound = c.block().bounds[i];
   const F min_impulse = c.get(bound.min_impulse), max_impulse = c.get(bound.max_impulse);
   const F impulse = c.get(c.block().rows[i].impulse);
-  const F stiffness = c.get(bound.stiffness), damping = c.get(bound.damping);
-  const F s = F(h * h) * stiffness * K;
+  const F by_h_squared = F(h * h) * K, s0 = by_h_squared * c.get(bound.stiffness);
+  // A softer spring with its damper keeps its time constant.
+  const LaneMask<W> too_stiff = s0 > F(kStiffest);
+  const F part = select(too_stiff, F(kStiffest) / select(too_stiff, s0, F(1.0f)), F(1.0f));
+  const F stiffness = part * c.get(bound.stiffness), damping = part * c.get(bound.damping);
+  const F s = by_h_squared * stiffness;
   const LaneMask<W> stiff = s > F(kExplicit);
   const F implicit = select(stiff, F(1.0f) - F(kExplicit) / select(stiff, s, F(1.0f)), F(0.0f));
   const F g = F(h) * damping + implicit * F(h * h) * stiffness;
-  const F error = c.get(c.block().rows[i].residual) - c.get(bound.position);
+  Field& stored = c.block().bias[B::kPointRows + i];
+  if (pushes) c.put(stored, c.get(c.block().rows[i].residual) - c.get(bound.position));
+  const F error = c.get(stored);
   const F target =
       impulse - (F(h) * stiffness * error + g * u - F(h) * damping * c.get(bound.speed) + impulse) /
                     (F(1.0f) + g * K);
@@ -362,11 +373,7 @@ void solve_rows(JointLanes<W, B, kRows, kLocked>& c, const LaneMask<W>& goes_on,
           for (int j = locked; j < n; ++j) u[j] += (j < i ? L(i, j) : L(j, i)) * p;
         };
         const LaneMask<W> holds = c.get(block.bounds[k].holds) > zero;
-        F by_drive = drive_change(c, k, u[i], K, h);
-        // Springs are already integrated implicitly: relaxation would apply them twice.
-        if (!pushes) {
-          by_drive = select(c.get(block.bounds[k].stiffness) > zero, zero, by_drive);
-        }
+        F by_drive = drive_change(c, k, u[i], K, h, pushes);
         if (!none(holds)) by_drive = select(holds, hold_change(c, k, u[i], K, h, pushes), by_drive);
         give(block.rows[k].impulse, by_drive);
         give(block.bounds[k].stop, stop_change(c, k, u[i], K, h, max_bias_velocity, pushes));

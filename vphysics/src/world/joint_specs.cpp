@@ -9,9 +9,6 @@
 namespace vp {
 namespace {
 
-// Of hard rows: the fraction of an error that a sub-step corrects, and G as a fraction of K.
-constexpr double kJointBias = 0.2;
-constexpr double kJointLoss = 0.05;
 // For rows that are almost free; times K it stays finite in single precision.
 constexpr double kMaxLoss = 1e9;
 
@@ -77,8 +74,8 @@ void fill(JointSpec& spec, const UserConstraint& user) {
 // implicitly.
 void soften(BodyJointRow& row, double frequency, double damping_ratio, double h) {
   if (frequency == 0.0) {
-    row.rate = kJointBias / h;
-    row.loss = kJointLoss;
+    row.rate = solve::kJointBias / h;
+    row.loss = solve::kJointLoss;
     row.relaxes = true;
     return;
   }
