@@ -34,6 +34,12 @@ struct alignas(32) StartDisplacement {
 struct alignas(32) BounceShift {
   float displacement[8] = {};
 };
+// Rotational inertia of a body that precesses and its inverse, at the start of the step, world
+// axes: xx yy zz xy yz zx. In a unit of about its own size, so that products stay in the range of
+// numbers; inverse[6] is the inverse of that unit [1/(kg m^2)].
+struct alignas(64) BodyInertia {
+  float inertia[8] = {}, inverse[8] = {};
+};
 inline constexpr int kInverseMass = 6, kFalls = 7;           // in velocity
 inline constexpr int kKeepLinear = 6, kKeepAngular = 7;      // in inertia
 inline constexpr int kSupported = 6, kFractionMinusOne = 7;  // in displacement

@@ -3,9 +3,11 @@
 #include "solve/joint_passes.h"
 
 #include <algorithm>
+#include <array>
 #include <type_traits>
 
 #include "solve/passes.h"
+#include "solve/precession_pass.h"
 
 namespace vp::solve {
 namespace {
@@ -30,6 +32,49 @@ void find_step_motions(const BodyState* states, const StartDisplacement* start,
     const F motion[8] = {q.x, q.y, q.z, w, to[0], to[1], to[2], F(0.0f)};
     lanes::scatter8<kWidth>([&](int i) { return reinterpret_cast<float*>(&motions[body(i) + 1]); },
                             motion, [](int) { return true; });
+  }
+}
+
+void precess(BodyState* states, const StartDisplacement* start, const std::uint32_t* bodies,
+             std::size_t count, const BodyInertia* inertias, float h) {
+  using F = Lanes<kWidth>;
+  using V = Vec3T<F>;
+  const auto row_of = [](const auto& row) {
+    std::array<F, 8> r;
+    lanes::gather8<kWidth>(row, r.data());
+    return r;
+  };
+  const auto sym_of = [](const std::array<F, 8>& r) {
+    return Sym3T<F>{r[0], r[1], r[2], r[3], r[4], r[5]};
+  };
+  const auto put = [](const auto& row, const std::array<F, 8>& r) {
+    lanes::scatter8<kWidth>(row, r.data(), [](int) { return true; });
+  };
+  for (std::size_t first = 0; first < count; first += kWidth) {
+    // The last group is filled up with its last body.
+    const auto at = [&](int i) { return std::min(first + static_cast<std::size_t>(i), count - 1); };
+    const auto state = [&](int i) -> BodyState& { return states[bodies[at(i)] + 1]; };
+    const auto velocity_of = [&](int i) { return state(i).velocity; };
+    const auto displacement_of = [&](int i) { return state(i).displacement; };
+    const auto inertia_of = [&](int i) { return state(i).inertia; };
+    auto velocity = row_of(velocity_of), displacement = row_of(displacement_of),
+         inertia = row_of(inertia_of);
+    const auto from = row_of([&](int i) { return start[bodies[at(i)]].displacement; });
+    const auto inverse_row = row_of([&](int i) { return inertias[at(i)].inverse; });
+    const Sym3T<F> I = sym_of(row_of([&](int i) { return inertias[at(i)].inertia; })),
+                   inverse = sym_of(inverse_row);
+    Precession<kWidth> body{{}, {}, {velocity[3], velocity[4], velocity[5]}};
+    const V since = V{displacement[3], displacement[4], displacement[5]} -
+                    V{from[3], from[4], from[5]} - F(h) * body.rate;
+    quaternion_of<kWidth>(since, body.q, body.w);
+    body.rotate(I, inverse, h);
+    const V rotation = V{from[3], from[4], from[5]} + rotation_vector_of<kWidth>(body.q, body.w);
+    const Sym3T<F> now = inverse_row[6] * body.rotated(inverse);
+    put(velocity_of, {velocity[0], velocity[1], velocity[2], body.rate.x, body.rate.y, body.rate.z,
+                      velocity[6], velocity[7]});
+    put(displacement_of, {displacement[0], displacement[1], displacement[2], rotation.x, rotation.y,
+                          rotation.z, displacement[6], displacement[7]});
+    put(inertia_of, {now.xx, now.yy, now.zz, now.xy, now.yz, now.zx, inertia[6], inertia[7]});
   }
 }
 
@@ -66,6 +111,10 @@ void load_joint_masses(const typename JointPasses<B>::Run& run) {
   });
 }
 template <class B>
+[[gnu::flatten]] void load_joint_inertias(const typename JointPasses<B>::Run& run) {
+  for_joints<B>(run, [](auto& c, int) { c.load_inertias(); });
+}
+template <class B>
 [[gnu::flatten]] bool prepare_joints(const typename JointPasses<B>::Run& run) {
   bool some_far = false;
   for_joints<B>(run, [&](auto& c, int at) {
@@ -94,15 +143,18 @@ template <class B>
 
 template <class B>
 constexpr JointPasses<B> passes_of() {
-  return {load_joint_masses<B>,     prepare_joints<B>,         warm_start_joints<B>,
-          solve_joint_run<B, true>, solve_joint_run<B, false>, relax_joints<B>};
+  return {load_joint_masses<B>, load_joint_inertias<B>,   prepare_joints<B>,
+          warm_start_joints<B>, solve_joint_run<B, true>, solve_joint_run<B, false>,
+          relax_joints<B>};
 }
 
 }  // namespace
 }  // namespace vp::solve
 
 const vphysics_solver::AllJointPasses vphysics_solver::VP_JOINT_PASSES = {
-    vp::solve::find_step_motions, vp::solve::passes_of<vphysics_solver::BallBlock>(),
+    vp::solve::find_step_motions,
+    vp::solve::precess,
+    vp::solve::passes_of<vphysics_solver::BallBlock>(),
     vp::solve::passes_of<vphysics_solver::AxesBlock>(),
     vp::solve::passes_of<vphysics_solver::FrameBlock>(),
     vp::solve::passes_of<vphysics_solver::RowsBlock>()};

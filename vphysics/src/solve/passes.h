@@ -117,7 +117,8 @@ struct JointPasses {
     float max_bias_velocity = 3.0f;  // for errors of hard rows [m/s]
     bool some_far = true;            // false: prepare has returned false for all
   };
-  void (*load_masses)(const Run& run);  // before the sub-steps of a step
+  void (*load_masses)(const Run& run);    // before the sub-steps of a step
+  void (*load_inertias)(const Run& run);  // after its bodies have precessed
   // Returns true if an error is too large to be corrected at its full rate.
   bool (*prepare)(const Run& run);
   void (*warm_start)(const Run& run);
@@ -130,6 +131,10 @@ struct AllJointPasses {
   // Over bodies: their motion since the states' displacements were `start`.
   void (*find_step_motions)(const BodyState* states, const StartDisplacement* start,
                             const std::uint32_t* bodies, std::size_t count, StepMotion* motions);
+  // Over bodies that have moved by a sub-step h: their rotation in it becomes that of free bodies,
+  // and their angular velocities and inverse inertias those at its end. inertias: of each of them.
+  void (*precess)(BodyState* states, const StartDisplacement* start, const std::uint32_t* bodies,
+                  std::size_t count, const BodyInertia* inertias, float h);
   JointPasses<BallBlock> ball;
   JointPasses<AxesBlock> axes;
   JointPasses<FrameBlock> frames;

@@ -73,8 +73,8 @@ Articulation::Articulation(const Model& model, const Vec3& gravity)
   v.resize(n);
   dofs.resize(n);
   for (std::vector<double>* scratch :
-       {&damping_, &forced_, &sub_step_velocity_, &drift_, &rate_, &change_, &force_, &zero_,
-        &applied_forces_, &velocity_, &shift_}) {
+       {&damping_, &forced_, &sub_step_velocity_, &drift_, &rate_, &change_, &last_change_, &force_,
+        &zero_, &applied_forces_, &velocity_, &shift_}) {
     scratch->resize(n);
   }
   composites_.resize(floating_.size());

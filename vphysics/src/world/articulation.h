@@ -124,7 +124,9 @@ class Articulation {
   }
 
   // --- in sub-steps, while sub-stepped bodies are on its links (link_contacts.cpp)
-  bool sub_stepped = false;      // in this step
+  bool sub_stepped = false;  // in this step
+  // Whether velocity-dependent forces will change its velocities far in a step dt.
+  bool turns_far(double dt);
   bool touched = false;          // by a contact of the current instant, in the impact stage
   bool needs_next_pose = false;  // scratch of find_next_poses (row_solve.cpp)
   // Stores the velocities at which advance_sub_step() moves: v with the solver's changes so far.
@@ -189,6 +191,8 @@ class Articulation {
   void update_line_poses();
   se3 twist_in_data(int link, const Vec3& point) const;
   void find_change(double dt, std::span<const double> at);
+  void find_change_at_middle(double dt);
+  void find_midpoint_change(double dt);
   void find_force_response();
   void add_loads_of_trees(double dt);
   void add_impulse(int link, double dt);
@@ -256,8 +260,8 @@ class Articulation {
   std::vector<double> sub_step_velocity_,
       drift_;                   // sub-steps: v while moving; mean velocity less v
   std::vector<double> forced_;  // velocity changes from the forces of this step
-  std::vector<double> start_q_, start_v_, moved_q_, rate_, change_, force_, zero_, applied_forces_,
-      velocity_, shift_;
+  std::vector<double> start_q_, start_v_, moved_q_, rate_, change_, last_change_, force_, zero_,
+      applied_forces_, velocity_, shift_;
   std::vector<double> remote_q_;
   std::vector<CompositeBody> composites_;
   std::vector<double> gravity_acceleration_;  // acceleration from gravity if constant_

@@ -8,6 +8,19 @@
 #include "world/validate.h"
 
 namespace vp {
+namespace {
+
+// Half of the angle by which velocity-dependent forces may turn the velocities in a step until one
+// evaluation at the midpoint no longer suffices.
+constexpr double kSmallTurn = 0.05;
+
+double size_of(std::span<const double> x) {
+  double sum = 0.0;
+  for (const double each : x) sum += each * each;
+  return std::sqrt(sum);
+}
+
+}  // namespace
 
 // change_ = (M + dt D)^-1 dt (f - h(q, at) - D v); the factor has the twists of `at`.
 void Articulation::find_change(double dt, std::span<const double> at) {
@@ -24,6 +37,62 @@ void Articulation::find_change(double dt, std::span<const double> at) {
     for (std::size_t i = 0; i < v.size(); ++i) change_[i] += implicit_.impulse(i, v[i]);
   }
   factor_.solve(change_);
+}
+
+void Articulation::find_change_at_middle(double dt) {
+  for (std::size_t i = 0; i < v.size(); ++i) rate_[i] = v[i] + 0.5 * change_[i];
+  if (!has_user_joints_) factor_.twists(rate_);
+  find_change(dt, rate_);
+}
+
+// The change whose velocity-dependent forces are those at v + change / 2. change_ is that at v. One
+// evaluation suffices unless the velocities change far within the sub-step by these forces: fast
+// rotation would then gain energy. The iterations are damped for forces that rotate the velocities,
+// as gyroscopic ones do; `turn` is half of the angle.
+void Articulation::find_midpoint_change(double dt) {
+  constexpr double kConverged = 1e-4;
+  constexpr int kMaxIterations = 12;
+  const double size = size_of(change_);
+  last_change_ = change_;
+  double turn = 0.0, relaxation = 1.0;
+  for (int i = 0; i < kMaxIterations; ++i) {
+    find_change_at_middle(dt);
+    for (std::size_t k = 0; k < v.size(); ++k) last_change_[k] = change_[k] - last_change_[k];
+    const double error = size_of(last_change_);
+    if (i == 0) {
+      turn = error / size;
+      if (!(turn > kSmallTurn)) return;
+      relaxation = 1.0 / (1.0 + turn * turn);
+    }
+    if (error <= kConverged * size) return;
+    for (std::size_t k = 0; k < v.size(); ++k) change_[k] -= (1.0 - relaxation) * last_change_[k];
+    last_change_ = change_;
+  }
+  // Too fast for a sub-step: without these forces.
+  if (!has_user_joints_) factor_.twists(zero_);
+  find_change(dt, zero_);
+}
+
+bool Articulation::turns_far(double dt) {
+  constexpr double kFast =
+      0.15;  // rotation of a link in a step [rad]: slower ones are not examined
+  if (constant_) return false;
+  double fastest = 0.0;
+  for (int l = 0; l < model_.links(); ++l) {
+    const Vec3 w = link_velocity(l, {}).w;
+    fastest = std::max(fastest, dot(w, w));
+  }
+  if (!(dt * dt * fastest > kFast * kFast)) return false;
+  update_factor();
+  factor_.twists(v);
+  implicit_.clear();
+  find_change(dt, v);
+  last_change_ = change_;
+  find_change_at_middle(dt);
+  const double size = size_of(last_change_);
+  for (std::size_t i = 0; i < v.size(); ++i) change_[i] -= last_change_[i];
+  update_twists();
+  return size_of(change_) > kSmallTurn * size;
 }
 
 void Articulation::clear_loads() {
@@ -223,9 +292,7 @@ bool Articulation::add_forces(double dt, bool& changed) {
   }
   if (loaded_) find_force_response();
   find_change(dt, v);
-  for (std::size_t i = 0; i < v.size(); ++i) rate_[i] = v[i] + 0.5 * change_[i];
-  if (!has_user_joints_) factor_.twists(rate_);
-  find_change(dt, rate_);
+  sub_stepped ? find_midpoint_change(dt) : find_change_at_middle(dt);
   for (std::size_t i = 0; i < v.size(); ++i) v[i] += change_[i];
   if (!floating_.empty()) factor_.twists(v);
   for (std::size_t i = 0; i < floating_.size(); ++i) {

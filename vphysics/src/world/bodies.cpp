@@ -64,7 +64,7 @@ void advance_body(Body& body, const collide::Motion& m, double h, bool freely, c
   const Mat3& R = body.T.rotation();
   const bool turns = m.w.x != 0.0 || m.w.y != 0.0 || m.w.z != 0.0;
   const Mat3 next = turns ? rotated(R, h * m.w) : R;
-  if (tumbles && turns) {
+  if (tumbles && turns && !body.precesses) {
     body.w = body.rotates_freely() ? mean_rate(body, next) : rate_at(body, next);
   }
   set_pose(body, m.x + h * m.v, next);

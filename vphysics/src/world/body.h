@@ -44,6 +44,7 @@ struct alignas(64) Body {
   bool bounded = false;       // `bounds` matches T
   bool untouched = false;     // nothing changed its rotation in this step: it has rotated freely
   bool advanced = false;   // within a step: has its pose of the present sub-step (find_again.cpp)
+  bool precesses = false;  // in this step: rotates freely within sub-steps (precession.h)
   bool shortened = false;  // its motion in this step ended at an impact (fast_rotation.h)
   bool allow_sleep = true;
   bool mass_from_colliders = false;             // updated as colliders are added and removed

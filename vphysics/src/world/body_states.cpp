@@ -11,6 +11,7 @@
 
 #include "solve/state_vector.h"
 #include "world/free_rotation.h"
+#include "world/precession.h"
 #include "world/solver_limits.h"
 #include "world/validate.h"
 
@@ -96,7 +97,7 @@ Mat3 rotated(const Mat3& R, const Vec3& t) {
 }
 
 bool BodyStates::load(Body& body, std::uint32_t index) const {
-  body.untouched = body.shortened = false;
+  body.untouched = body.shortened = body.precesses = false;
   solve::BodyState& state = states[index + 1];
   const bool pushed = body.motion == Motion::dynamic;
   put(state.velocity, body.v);
@@ -116,6 +117,7 @@ bool BodyStates::load(Body& body, std::uint32_t index) const {
     state.displacement[solve::kFractionMinusOne] =
         static_cast<float>(kMaxUnscaledContacts / static_cast<double>(body.contact_slots) - 1.0);
   const float* displacement = state.displacement;
+  Vec3 gyroscopic{};
   if (!pushed) {
     std::fill(std::begin(state.rate), std::end(state.rate), 0.0f);
     std::fill_n(state.inertia, 6, 0.0f);
@@ -126,12 +128,15 @@ bool BodyStates::load(Body& body, std::uint32_t index) const {
     for (int i = 0; i < 6; ++i) state.inertia[i] = static_cast<float>(inertia[i]);
     const Velocity a = loads.acceleration(body, desc.gravity);
     put(state.rate, a.v);
-    const Vec3 gyroscopic = gyroscopic_acceleration(body, dt);
-    put(state.rate + 3, loads.is_torqued(body) ? gyroscopic + a.w : gyroscopic);
+    gyroscopic = gyroscopic_acceleration(body, dt);
+    body.precesses =
+        precesses(body, gyroscopic, body.gravity_scale * norm(desc.gravity), dt, sub_steps);
+    const Vec3 torqued = loads.is_torqued(body) ? a.w : Vec3{};
+    put(state.rate + 3, body.precesses ? torqued : gyroscopic + torqued);
   }
   std::copy_n(displacement, 8, start_displacements[index].displacement);
   note_searched(index);
-  set_search_limits(body, index);
+  set_search_limits(body, index, gyroscopic);
   const float* v = state.velocity;
   const float speed = std::max({std::fabs(v[0]), std::fabs(v[1]), std::fabs(v[2])});
   const float far = kMaxDisplacement * static_cast<float>(desc.length_unit) +
@@ -144,7 +149,8 @@ bool BodyStates::load(Body& body, std::uint32_t index) const {
 }
 
 // What acceleration by forces moves it, it may deviate in addition: the margins allow for that.
-void BodyStates::set_search_limits(const Body& body, std::uint32_t index) const {
+void BodyStates::set_search_limits(const Body& body, std::uint32_t index,
+                                   const Vec3& gyroscopic) const {
   solve::SearchedMotion& motion = searched[index];
   motion.distance = motion.angle = std::numeric_limits<float>::max();
   if (body.motion != Motion::dynamic || body.first_collider == kNone) return;
@@ -159,6 +165,7 @@ void BodyStates::set_search_limits(const Body& body, std::uint32_t index) const 
   if (body.bounding_radius <= body.min_size * (1.0 + 1e-9)) return;
   motion.angle =
       static_cast<float>(kDeviation * body.min_size / body.bounding_radius) + by_forces(3);
+  if (body.precesses) motion.angle += static_cast<float>(0.25 * dt * dt * norm(gyroscopic));
 }
 
 void BodyStates::note_searched(std::uint32_t index) const {
@@ -246,7 +253,7 @@ bool BodyStates::advance(Body& body, std::uint32_t index) const {
     R = rotated_approximately(body.T.rotation(), rotation);
     if (needs_orthonormalizing(R)) R = orthonormalized_by_newton(R);
     body.w = w;
-    if (!body.isotropic && !hardly_rotates(w, dt)) body.w = rate_at(body, R);
+    if (!body.isotropic && !body.precesses && !hardly_rotates(w, dt)) body.w = rate_at(body, R);
   }
   body.T = SE3(R, x - R * body.centre);
   body.moved();

@@ -34,7 +34,7 @@ struct BodyStates {
   void note_searched(std::uint32_t index) const;
 
  private:
-  void set_search_limits(const Body& body, std::uint32_t index) const;
+  void set_search_limits(const Body& body, std::uint32_t index, const Vec3& gyroscopic) const;
   bool leave_untouched(Body& body, std::uint32_t index) const;
 };
 

@@ -59,7 +59,8 @@ class ContactSearch {
   void find_pairs();
   void update(double dt, const ContactRuns& runs);
   // left: remaining time of the step. has_woken is left to the caller, who updates the body lists.
-  SearchedAgain find_again(double left);
+  // precessing: bodies whose touching contacts are renewed in any case.
+  SearchedAgain find_again(double left, std::span<const std::uint32_t> precessing);
   // Removes a contact and its pair of the broad phase.
   void drop(std::uint32_t contact);
   // Manifolds put into contact slots in this step.
@@ -99,6 +100,8 @@ class ContactSearch {
   bool list_deviating_bodies(double left);
   void advance_within_step(std::uint32_t body);
   void list_contacts_of_deviating(double left);
+  void list_contacts_of_precessing(std::span<const std::uint32_t> precessing);
+  void take_contacts_to_test();
 
   const StepContext s_;
   ManifoldWriter writer_;

@@ -88,7 +88,7 @@ void ContactSearch::advance_within_step(std::uint32_t index) {
   s_.states_in(s_.dt).copy_to_body(body, index);
 }
 
-// Lists in dirty_ the contacts to test.
+// Marks the contacts to test.
 void ContactSearch::list_contacts_of_deviating(double left) {
   for (const std::uint32_t i : deviating_) {
     advance_within_step(i);
@@ -104,6 +104,20 @@ void ContactSearch::list_contacts_of_deviating(double left) {
         s_.contact_store.mark_dirty(index);
     });
   }
+}
+
+void ContactSearch::list_contacts_of_precessing(std::span<const std::uint32_t> precessing) {
+  for (const std::uint32_t i : precessing) {
+    if (!is_in_range(s_.body_states[i + 1])) continue;
+    s_.contact_store.for_each_of(s_.bodies[i], [&](std::uint32_t index, const Contact& c) {
+      if (c.dirty || c.of_link || c.sensor || c.parked || c.is_part()) return;
+      if (c.slot.points > 0 || c.first_part != kNone) s_.contact_store.mark_dirty(index);
+    });
+  }
+}
+
+// Moves the contacts to test, and the poses of their bodies, to dirty_.
+void ContactSearch::take_contacts_to_test() {
   s_.contact_store.take_dirty(dirty_);
   std::erase_if(dirty_, [&](std::uint32_t index) {
     const Contact& c = s_.contact_store[index];
@@ -123,13 +137,16 @@ void ContactSearch::list_contacts_of_deviating(double left) {
   });
 }
 
-SearchedAgain ContactSearch::find_again(double left) {
+SearchedAgain ContactSearch::find_again(double left, std::span<const std::uint32_t> precessing) {
   SearchedAgain changed;
-  if (!list_deviating_bodies(left)) return changed;
+  const bool some_deviate = list_deviating_bodies(left);
+  if (!some_deviate && precessing.empty()) return changed;
   // Contacts that wait for the next step are not tested now.
   dirty_next_step_.clear();
   dirty_next_step_.swap(s_.contact_store.dirty);
-  list_contacts_of_deviating(left);
+  if (some_deviate) list_contacts_of_deviating(left);
+  list_contacts_of_precessing(precessing);
+  take_contacts_to_test();
   for (std::size_t done = 0; done < dirty_.size(); done += results_.size()) {
     const std::span<const std::uint32_t> waiting = std::span(dirty_).subspan(done);
     find_manifolds_of(waiting.first(std::min(waiting.size(), kContactBatch)), left);

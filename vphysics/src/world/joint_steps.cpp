@@ -308,7 +308,9 @@ void JointSteps::solve(std::size_t region, int iteration) {
 }
 void JointSteps::prepare_and_relax(std::size_t region) {
   if (empty()) return;
+  const bool precess = context_.precession.concerns(region);
   prepare(region, [&](const auto& passes, const auto& part, std::size_t, const auto&) {
+    if (precess) passes.load_inertias(part);
     evaluate_rows(part);
     const bool some_far = passes.prepare(part);
     passes.relax(part, static_cast<float>(h_));

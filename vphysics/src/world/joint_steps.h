@@ -13,6 +13,7 @@
 #include "world/joint.h"
 #include "world/joint_runs.h"
 #include "world/parallel.h"
+#include "world/precession.h"
 #include "world/runs.h"
 
 namespace vp {
@@ -24,6 +25,7 @@ struct JointContext {
   std::span<solve::BodyState> states;
   std::span<const solve::StartDisplacement> start_displacements;  // of each body
   const Workers& workers;
+  const Precession& precession;
   double speed_unit;
 };
 
@@ -45,6 +47,7 @@ struct SubStepScratch {
       start_displacements;  // of each body: displacement of its state at the start of the step
   solve::LargeVector<solve::SearchedMotion> searched;  // of each body
   FastRotationScratch fast_rotation;
+  Precession precession;
   // Of each awake body; 1: its state alone does not advance it.
   std::vector<std::uint8_t> awake_body_changed;
   JointScratch joints;

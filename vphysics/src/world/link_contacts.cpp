@@ -10,7 +10,8 @@
 namespace vp {
 
 void LinkContacts::begin_step(std::size_t contacts) {
-  if (!bodies_.empty()) {
+  if (!empty()) {
+    is_empty_ = true;
     for (const std::uint32_t i : bodies_) s_.bodies[i].on_link = false;
     for (Articulation& art : s_.articulations) art.sub_stepped = false;
     bodies_.clear();
@@ -43,7 +44,7 @@ void LinkContacts::find_bodies() {
       put_on_link(index, *art);
     }
   }
-  bool again = !bodies_.empty();
+  bool again = !empty();
   const auto join = [&](const Body& body_a, const Body& body_b) {
     Articulation *a = articulation_of(body_a), *b = articulation_of(body_b);
     if (!a || !b || a->sub_stepped == b->sub_stepped) return;
@@ -57,6 +58,26 @@ void LinkContacts::find_bodies() {
     }
     for (const std::uint32_t i : rows_.joints())
       join(s_.bodies[s_.joints[i].a], s_.bodies[s_.joints[i].b]);
+  }
+}
+
+// Those with colliders stay in the impact stage, which finds their contacts again at each impact;
+// in the sub-steps, links that rotate far would pass through what they meet.
+void LinkContacts::find_fast(double dt) {
+  const auto has_collider = [this](std::uint32_t body) {
+    return s_.bodies[body].first_collider != kNone;
+  };
+  const auto is_joined = [this](std::uint32_t body) {
+    return s_.bodies[body].first_joint != kNone;
+  };
+  for (Articulation& art : s_.articulations) {
+    if (!art.alive || art.remote || art.sub_stepped || s_.bodies[art.bodies.front()].asleep)
+      continue;
+    if (std::any_of(art.bodies.begin(), art.bodies.end(), has_collider) ||
+        std::any_of(art.bodies.begin(), art.bodies.end(), is_joined) || !art.turns_far(dt))
+      continue;
+    art.sub_stepped = true;
+    is_empty_ = false;
   }
 }
 
@@ -74,6 +95,7 @@ void LinkContacts::find_joined_bodies() {
 
 void LinkContacts::put_on_link(std::uint32_t index, Articulation& art) {
   art.sub_stepped = true;
+  is_empty_ = false;
   Body& body = s_.bodies[index];
   if (body.on_link) return;
   body.on_link = true;
@@ -242,7 +264,7 @@ void LinkContacts::relax(double h) {
 
 // Events, impulses for the next step's warm start, and the articulations' mean motion.
 void LinkContacts::end_sub_steps(double dt, int sub_steps, std::span<Velocity> drift) {
-  if (bodies_.empty()) return;
+  if (empty()) return;
   pair_contacts_.remember(contacts_, sub_steps);
   for (solve::ContactConstraint& c : contacts_) {
     for (int i = 0; i < c.count; ++i) {

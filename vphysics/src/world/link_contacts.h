@@ -1,16 +1,17 @@
 // Contacts between links and sub-stepped bodies, in the sub-steps.
 //
 // An articulation that supports a body takes part in the sub-steps, together with everything that
-// it touches. In each sub-step its forces are integrated; its joint rows and contacts are solved in
-// iterations, alternating with the contact blocks and the joints of bodies; and it moves. It
-// responds to impulses through its own joints (solve/link_side.h), so no joint separates under a
-// load. Afterwards it returns to its pose at the start of the step. The impact stage then moves
-// it, with everything else, along its mean velocities, so that swept bodies collide with it on its
-// path.
+// it touches. So does one that turns far in a step and has no colliders. In each sub-step its
+// forces are integrated; its joint rows and contacts are solved in iterations, alternating with the
+// contact blocks and the joints of bodies; and it moves. It responds to impulses through its own
+// joints (solve/link_side.h), so no joint separates under a load. Afterwards it returns to its pose
+// at the start of the step. The impact stage then moves it, with everything else, along its mean
+// velocities, so that swept bodies collide with it on its path.
 //
-// An articulation without such a body nearby is left to the impact stage, with its contacts.
+// Other articulations are left to the impact stage, with their contacts.
 //
 //   find_bodies       after the broad phase: bodies near links, articulations that take part
+//   find_fast         afterwards: articulations without colliders that turn far
 //   begin_sub_steps   contacts of the links
 //   begin_sub_step, iterate, move, relax   in each sub-step
 //   end_sub_steps     events, warm starts; the articulations return to their start
@@ -36,8 +37,10 @@ class LinkContacts {
   // Reserves memory for a number of contacts.
   void begin_step(std::size_t contacts);
   void find_bodies();
+  // Adds the articulations without colliders and joints to bodies that turn far in a step dt.
+  void find_fast(double dt);
   // No articulation takes part.
-  bool empty() const { return bodies_.empty(); }
+  bool empty() const { return is_empty_; }
   void begin_sub_steps(double dt, int sub_steps);
   // Integrates the forces of the sub-step and prepares the solver's data.
   void begin_sub_step(double h);
@@ -60,6 +63,7 @@ class LinkContacts {
   const StepContext s_;
   PairContacts& pair_contacts_;
   RowSolve& rows_;
+  bool is_empty_ = true;
   std::vector<std::uint32_t> bodies_;  // on links: in contact with or joined to one
   std::vector<solve::ContactConstraint> contacts_;
   std::vector<Velocity> forced_;     // of links: change from a sub-step's forces

@@ -65,6 +65,7 @@ void World::Impl::begin_step(double dt) {
     row_solve.begin_step(capacity);
     impacts.begin_step(dt, capacity);
   }
+  sub_step.precession.reserve(64 + std::min(n, 2 * joints.size()));  // grows if more precess
   sub_step.joints.runs.reserve(joints.size(), contact_store.graph.regions());
   events.report_destroyed(colliders);
   finds_contacts = contact_search.is_needed();
@@ -118,6 +119,7 @@ void World::Impl::run(double dt) {
     find_contacts(dt);
     list_bodies();  // the narrow phase may have woken some
   }
+  link_contacts.find_fast(dt);
   if (has_impact_stage()) impacts.note_start();
   sub_step.awake_body_changed.resize(lists.awake_bodies.size());
   counters.awake = static_cast<std::uint32_t>(lists.awake_bodies.size());
@@ -145,7 +147,7 @@ void World::Impl::find_contacts(double dt) {
 
 // Before a sub-step.
 SearchedAgain World::Impl::find_contacts_within_step(double left) {
-  SearchedAgain changed = contact_search.find_again(left);
+  SearchedAgain changed = contact_search.find_again(left, sub_step.precession.on_contacts());
   const std::size_t awake = lists.awake_bodies.size();
   list_bodies();
   changed.has_woken = lists.awake_bodies.size() != awake;

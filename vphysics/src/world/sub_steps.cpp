@@ -52,8 +52,10 @@ void rescale_impulses(solve::ContactGraph& graph, Joints& joints, double ratio) 
 struct SubStepContext {
   ContactRuns contacts;
   const Regions& regions;
+  const Precession& precession;
   const Workers& workers;
   std::span<solve::BodyState> states;
+  std::span<const solve::StartDisplacement> start_displacements;  // of each body
   std::span<solve::VelocityChange> velocity_changes;  // of each body, by the contacts of a sub-step
   std::span<solve::BounceShift> bounce_shifts;        // of each state; empty if none bounces
   float restitution_threshold;
@@ -123,6 +125,8 @@ class SubSteps {
     for_moving_bodies(region, [&](const std::uint32_t* some, std::size_t count) {
       pass_.move(states(), some, count, h_);
     });
+    context_.precession.rotate(region, context_.states, context_.start_displacements,
+                               context_.velocity_changes, h_);
   }
   // last: the last sub-step of the step. Contact changes are found before the relaxation: an
   // impulse that separates overlapping bodies is a load, although it leaves nothing in the
@@ -192,7 +196,7 @@ int sub_steps_in(const WorldDesc& desc, double speed_unit, double dt) {
 void World::Impl::run_sub_steps(double dt) {
   const int n = sub_steps_in(desc, speed_unit, dt);
   sub_steps_taken = n;
-  if (!lists.some_sub_stepped) return;
+  if (!lists.some_sub_stepped && link_contacts.empty()) return;
   take_sub_steps(dt, n);
   const auto stage = in(Stage::report);
   report_changes();
@@ -213,8 +217,10 @@ void World::Impl::take_sub_steps(double dt, int n) {
       std::clamp(kUseBias / state.last_step_length * kSmallDepth * desc.length_unit,
                  kMaxBiasVelocity * speed_unit, kMaxCorrectionSpeed * speed_unit);
   const ContactRuns runs = contact_runs();
-  SubSteps steps({runs, regions, workers, body_states, sub_step.velocity_changes,
-                  sub_step.bounce_shifts, static_cast<float>(desc.restitution_threshold)},
+  sub_step.precession.list(bodies, regions, contact_store.graph.regions());
+  SubSteps steps({runs, regions, sub_step.precession, workers, body_states,
+                  sub_step.start_displacements, sub_step.velocity_changes, sub_step.bounce_shifts,
+                  static_cast<float>(desc.restitution_threshold)},
                  h,
                  {.rate = static_cast<float>(kUseBias / state.last_step_length),
                   .fraction = static_cast<float>(1.0 - kImpulseDecay),
@@ -225,7 +231,7 @@ void World::Impl::take_sub_steps(double dt, int n) {
                   .h = h,
                   .idle_speed = static_cast<float>(speed_unit)});
   JointSteps joint_steps({bodies, joints, contact_store.graph.regions(), body_states,
-                          sub_step.start_displacements, workers, speed_unit},
+                          sub_step.start_displacements, workers, sub_step.precession, speed_unit},
                          sub_step.joints, h);
   const bool links = !link_contacts.empty();
   if (links) link_contacts.begin_sub_steps(dt, n);
@@ -259,7 +265,7 @@ void World::Impl::take_sub_steps(double dt, int n) {
       warm_starts |= changed.has_old_slots;
     }
     if (some_bounced) steps.forget_shifts();
-    if (links) link_contacts.begin_sub_step(h);
+    if (links) link_contacts.begin_sub_step(dt / n);
     runs.everywhere([&](std::size_t region) { joint_steps.warm_start(region); });
     if (repeats) {
       runs.everywhere([&](std::size_t region) {
@@ -271,13 +277,13 @@ void World::Impl::take_sub_steps(double dt, int n) {
       for (int iteration = 0; iteration < kIterations; ++iteration) {
         runs.everywhere([&](std::size_t region) { joint_steps.solve(region, iteration); });
         runs.everywhere([&](std::size_t region) { steps.solve_contacts(region, iteration); });
-        if (links) link_contacts.iterate(h);
+        if (links) link_contacts.iterate(dt / n);
       }
-      if (links) link_contacts.move(h);
+      if (links) link_contacts.move(dt / n);
       runs.everywhere([&](std::size_t region) { steps.move(region); });
       runs.everywhere([&](std::size_t region) { joint_steps.prepare_and_relax(region); });
       runs.everywhere([&](std::size_t region) { steps.relax(region, last); });
-      if (links) link_contacts.relax(h);
+      if (links) link_contacts.relax(dt / n);
     } else {
       // All consecutive operations on one region are done at once, so that its contacts and joints
       // are read from memory once, except by the restitution pass and the warm start.
