@@ -54,13 +54,6 @@ struct Chain {
     }
     return sum;
   }
-
- private:
-  static WorldDesc without_sleep() {
-    WorldDesc desc;
-    desc.sleep_after = 0.0;
-    return desc;
-  }
 };
 
 TEST(FastTrees, StayBoundedHoweverFar) {

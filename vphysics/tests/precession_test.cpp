@@ -48,9 +48,8 @@ class Mechanism {
 
  private:
   static WorldDesc described(double gravity) {
-    WorldDesc desc;
+    WorldDesc desc = without_sleep();
     desc.gravity = {0, 0, -gravity};
-    desc.sleep_after = 0.0;
     return desc;
   }
   double gravity_;

@@ -34,12 +34,6 @@ End settle(World& world, BodyId last, double dt) {
   return end;
 }
 
-WorldDesc without_sleep() {
-  WorldDesc desc;
-  desc.sleep_after = 0.0;
-  return desc;
-}
-
 // A horizontal arm: links of 0.4 m and 2 kg on hinges, 10 kg welded to the last.
 End settle_arm(int links, const JointDrive& drive, double dt) {
   constexpr double kLength = 0.4;

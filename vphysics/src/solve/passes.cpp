@@ -147,9 +147,10 @@ template <int P>
   });
 }
 template <int P>
-[[gnu::flatten]] void find_changes(const typename ContactPasses<P>::Run& run, std::uint32_t* bits) {
+[[gnu::flatten]] void find_changes(const typename ContactPasses<P>::Run& run, float keeps_load,
+                                   std::uint32_t* bits) {
   for_lanes<P>(run, [&](LanesOf<W, P>& c, std::size_t block, int at) {
-    const std::uint32_t found = find_changed_slots<W, P>(c, at) << at;
+    const std::uint32_t found = find_changed_slots<W, P>(c, at, keeps_load) << at;
     const std::uint32_t slots = used(run.slots, run.stride, block);
     bits[block] = (at == 0 ? 0u : bits[block]) | (found & (slots | slots << kLanes));
   });

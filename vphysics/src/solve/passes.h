@@ -61,8 +61,9 @@ struct ContactPasses {
   // All find functions: a bit per slot, a word per block.
   void (*find_moved)(const Run& run, float dt, float rotation, std::uint32_t* bits);
   // Slots with something to report: a contact that begins or ends, or a hit. The upper half of the
-  // word has the slots with a load. Marks the bodies that are supported.
-  void (*find_changes)(const Run& run, std::uint32_t* bits);
+  // word has the slots that touch: with a load in this sub-step or, with keeps_load 1, in an
+  // earlier one of the step. Marks the bodies that are supported.
+  void (*find_changes)(const Run& run, float keeps_load, std::uint32_t* bits);
 };
 
 // The change of a body's velocity by the contacts of a sub-step, in the layout of its state. During

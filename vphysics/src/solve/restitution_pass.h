@@ -169,16 +169,18 @@ std::uint32_t find_moved_slots(LanesOf<W, P>& c, float dt, float rotation) {
 }
 
 // Bits of slots that hit, or whose reported touching state has changed. From bit kLanes on: the
-// slots with a load.
+// slots that touch: with a load now or, with keeps_load 1, in an earlier sub-step of the step.
 template <int W, int P>
-std::uint32_t find_changed_slots(const LanesOf<W, P>& c, int at) {
-  const Lanes<W> zero(0.0f), impact = c.get(c.block().impact);
+std::uint32_t find_changed_slots(const LanesOf<W, P>& c, int at, float keeps_load) {
+  using F = Lanes<W>;
+  const F zero(0.0f), impact = c.get(c.block().impact);
   const auto loaded = sum_of_impulses(c) + impact > zero;
+  const auto touched = either(loaded, F(keeps_load) * c.get(c.block().given) > zero);
   const auto hits = c.get(c.block().approach_speed) + impact > zero;
   std::uint32_t bits = 0;
   for (int i = 0; i < W; ++i) {
-    const bool pushes = loaded.lanes[i] != 0;
-    if (pushes) c.mark_supported(i);
+    const bool pushes = touched.lanes[i] != 0;
+    if (loaded.lanes[i] != 0) c.mark_supported(i);
     const bool changed = hits.lanes[i] != 0 || pushes != (c.block().touches.lane[at + i] != 0);
     bits |= (changed ? 1u : 0u) << i | (pushes ? 1u << kLanes : 0u) << i;
   }

@@ -1,6 +1,7 @@
 // Per-step work on bodies: poses, lists, solver states, enlarged bounds.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "solve/state_vector.h"
 #include "world/impl.h"
@@ -30,11 +31,25 @@ collide::Bounds bounds_along(const collide::Bounds& b, const Vec3& displacement,
   return grown(merged(b, end), more);
 }
 
-// The body's origin moves along the chord to where its twist takes it.
-void prescribe_velocity(Body& body, double dt) {
+// The part of a change that continues the last one, each component for itself.
+Vec3 continued(const Vec3& change, const Vec3& last) {
+  const auto smaller = [](double a, double b) {
+    return a * b > 0.0 ? std::copysign(std::min(std::fabs(a), std::fabs(b)), a) : 0.0;
+  };
+  return {smaller(change.x, last.x), smaller(change.y, last.y), smaller(change.z, last.z)};
+}
+
+// The body's origin moves along the chord to where its twist takes it. Returns the change of
+// velocity within the step, about the mean: of a motion with a steady acceleration, the
+// acceleration times dt. A sudden change of velocity acts at the start of the step.
+Velocity prescribe_velocity(Body& body, double dt) {
   const SE3 end = body.T * Exp(dt * body.prescribed);
+  const Velocity before{body.w, body.v};
   body.w = body.T.rotate(body.prescribed.w);
   body.v = (1.0 / dt) * (end.position() - body.T.position());
+  const Velocity change{body.w - before.w, body.v - before.v};
+  const Velocity last = std::exchange(body.last_change, change);
+  return {continued(change.w, last.w), continued(change.v, last.v)};
 }
 
 // The angular velocity of a body after rotation to `next` at a constant twist. It conserves the
@@ -136,6 +151,7 @@ bool stop_if_out_of_range(const StepContext& s, std::uint32_t index, const SE3& 
   s.status.non_finite = true;
   body.w = body.v = {};
   body.prescribed = {};
+  body.last_change = {};
   body.T = start;
   body.moved();
   restart_displacement(s, index, false);  // the others are at different times of the step
@@ -167,8 +183,9 @@ void restart_displacement(const Stores& s, std::uint32_t index, bool keeps_clear
 }
 
 void World::Impl::load_states(double dt) {
-  constexpr std::uint8_t kFar = 1, kLeaves = 2, kPulled = 4;
+  constexpr std::uint8_t kFar = 1, kLeaves = 2, kPulled = 4, kAccelerates = 8;
   sub_step.awake_body_changed.resize(lists.awake_bodies.size());
+  sub_step.accelerating.clear();
   const BodyStates step = context.states_in(dt);
   const Approach approach = context.approach_in(dt);
   workers.in_parallel(
@@ -176,13 +193,17 @@ void World::Impl::load_states(double dt) {
         for (std::size_t k = begin; k < end; ++k) {
           const std::uint32_t i = lists.awake_bodies[k];
           Body& body = bodies[i];
-          if (body.motion == Motion::kinematic) prescribe_velocity(body, dt);
+          Velocity change;
+          if (body.motion == Motion::kinematic) change = prescribe_velocity(body, dt);
           const bool far = step.load(body, i);
+          const bool accelerates = !(change == Velocity{});
+          if (accelerates) step.set_acceleration(i, change);
           const bool stays = joins_sub_steps(body) &&
                              stays_within_bounds(body, body_states[i + 1], static_cast<float>(dt));
           const bool pulled = !(approach.pull_of(body) == Velocity{});
           sub_step.awake_body_changed[k] = static_cast<std::uint8_t>(
-              (far ? kFar : 0) | (pulled ? kPulled : 0) | (far || !stays ? kLeaves : 0));
+              (far ? kFar : 0) | (pulled ? kPulled : 0) | (far || !stays ? kLeaves : 0) |
+              (accelerates ? kAccelerates : 0));
         }
       });
   const auto changed_at = [&](std::size_t k) {
@@ -192,6 +213,8 @@ void World::Impl::load_states(double dt) {
     prefetch_bodies(context, changed_at, k, lists.awake_bodies.size());
     const std::uint32_t i = changed_at(k);
     if (i == kNone) continue;
+    if ((sub_step.awake_body_changed[k] & kAccelerates) != 0) sub_step.accelerating.push_back(i);
+    if (sub_step.awake_body_changed[k] == kAccelerates) continue;
     if ((sub_step.awake_body_changed[k] & kFar) != 0) restart_displacement(context, i);
     if ((sub_step.awake_body_changed[k] & kPulled) != 0)
       contact_store.mark_contacts_dirty(bodies[i]);

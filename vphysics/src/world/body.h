@@ -76,6 +76,7 @@ struct alignas(64) Body {
   std::uint64_t island = 0;  // the island that it was last found in (sleep.cpp)
   double mass = 0.0;
   se3 prescribed;         // kinematic: body frame
+  Velocity last_change;   // kinematic: of its mean velocity over a step, by the last step
   collide::Bounds local;  // of its bounded colliders, body frame
   // Of a link that only slides along and rotates about a line: bounds of its bounded colliders for
   // all rotations, about its origin in world axes. Otherwise empty.

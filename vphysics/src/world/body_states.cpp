@@ -148,6 +148,18 @@ bool BodyStates::load(Body& body, std::uint32_t index) const {
   return beyond(0, far) || beyond(3, kMaxRotation);
 }
 
+void BodyStates::set_acceleration(std::uint32_t index, const Velocity& change) const {
+  put(states[index + 1].rate, (1.0 / dt) * change.v);
+  put(states[index + 1].rate + 3, (1.0 / dt) * change.w);
+}
+// A sub-step adds its part of the change before it moves: n sub-steps move by the mean velocity if
+// they start with it less (n + 1) / (2 n) of the change.
+void BodyStates::start_acceleration(std::uint32_t index) const {
+  solve::BodyState& state = states[index + 1];
+  const auto time = static_cast<float>(0.5 * dt * (1.0 + 1.0 / sub_steps));
+  for (int i = 0; i < 6; ++i) state.velocity[i] -= time * state.rate[i];
+}
+
 // What acceleration by forces moves it, it may deviate in addition: the margins allow for that.
 void BodyStates::set_search_limits(const Body& body, std::uint32_t index,
                                    const Vec3& gyroscopic) const {

@@ -23,6 +23,10 @@ struct BodyStates {
 
   // Before the sub-steps. True if the state's displacement is so long that it must restart at zero.
   bool load(Body& body, std::uint32_t index) const;
+  // Of a kinematic body whose velocity changes evenly over the sub-steps, by `change` in a step,
+  // with the mean that it has. After load(); and when its contacts have been found, by that mean.
+  void set_acceleration(std::uint32_t index, const Velocity& change) const;
+  void start_acceleration(std::uint32_t index) const;
   // After the sub-steps: sets a dynamic body's velocities to those at the end of the step. more:
   // mean velocities over the step less these. False if they are out of range: the body stops.
   bool settle(Body& body, std::uint32_t index, Velocity& more) const;

@@ -50,6 +50,7 @@ struct SubStepScratch {
   Precession precession;
   // Of each awake body; 1: its state alone does not advance it.
   std::vector<std::uint8_t> awake_body_changed;
+  std::vector<std::uint32_t> accelerating;  // kinematic bodies whose velocity changes evenly
   JointScratch joints;
 };
 

@@ -21,6 +21,7 @@ struct SavedBody {
   SE3 T;
   Vec3 w, v;
   se3 prescribed;
+  Velocity last_change;
 };
 // The state of a degree of freedom.
 struct DofState {
@@ -43,12 +44,15 @@ SE3 read_pose(Reader& in) {
   return T;
 }
 
-void read(Reader& in, SavedBody& state) {
+void read(Reader& in, const Body& body, SavedBody& state) {
   state.T = read_pose(in);
   state.w = in.nearly_bounded_vector();
   state.v = in.nearly_bounded_vector();
   state.prescribed.w = in.vector();
   state.prescribed.v = in.vector();
+  if (body.motion != Motion::kinematic) return;
+  state.last_change.w = in.finite_vector();
+  state.last_change.v = in.finite_vector();
 }
 
 void read(Reader& in, const JointDof& dof, DofState& state) {
@@ -211,7 +215,7 @@ const char* World::Impl::Incoming::read(Reader& in) {
   in.check(impact_step >= 0.0);
   bodies.clear();
   for (const Body& body : world.bodies) {
-    if (!body.is_link) vp::read(in, bodies.emplace_back());
+    if (!body.is_link) vp::read(in, body, bodies.emplace_back());
   }
   read_joints(in);
   read_records(in, count, destroyed_count);
@@ -303,6 +307,7 @@ void World::Impl::adopt(Incoming& from) {
     body.w = state->w;
     body.v = state->v;
     body.prescribed = state->prescribed;
+    body.last_change = state->last_change;
     ++state;
   }
   auto q = from.q.cbegin();

@@ -133,10 +133,10 @@ class SubSteps {
   // velocities.
   void relax(std::size_t region, bool last) {
     if (last) {
-      context_.contacts.for_parts_of(region,
-                                     [&](const auto& p, const auto& part, std::size_t first) {
-                                       p.find_changes(part, context_.contacts.words() + first);
-                                     });
+      context_.contacts.for_parts_of(
+          region, [&](const auto& p, const auto& part, std::size_t first) {
+            p.find_changes(part, soft_.keeps_load, context_.contacts.words() + first);
+          });
     }
     solve::Soft soft = soft_;
     soft.last = last;
@@ -205,6 +205,8 @@ void World::Impl::run_sub_steps(double dt) {
 void World::Impl::take_sub_steps(double dt, int n) {
   const auto stage = in(Stage::sub_steps);
   counters.sub_steps = static_cast<std::uint32_t>(n);
+  const BodyStates state_of_step = context.states_in(dt);
+  for (const std::uint32_t i : sub_step.accelerating) state_of_step.start_acceleration(i);
   const float h = static_cast<float>(dt / n);
   SubStepState& state = sub_step_state;
   const double before = std::exchange(state.length, h);
