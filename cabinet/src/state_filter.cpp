@@ -162,7 +162,11 @@ void StateFilter::update(double d_slide, double d_angle, std::int64_t frame_us) 
       append(stood.time_us, {0, 0});
     }
   }
-  reports_[newest_].time_us = std::min(reports_[newest_].time_us, time - kShortestUs);
+  // Several reports may have the same time: those before are moved apart, since rates divide by the
+  // time between two.
+  double latest = time - kShortestUs;
+  for (int k = 0; k < known_ && report(k).time_us > latest; ++k, latest -= kShortestUs)
+    report(k).time_us = latest;
   append(time, {d_slide, d_angle});
   located_ = true;
   seen_us_ = now;

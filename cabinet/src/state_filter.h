@@ -68,6 +68,7 @@ class StateFilter {
   void learn_period(double until_us, bool fast);
   void append(double time_us, const std::array<double, 2>& step);
   const Report& report(int back) const { return reports_[(newest_ - back + kReports) % kReports]; }
+  Report& report(int back) { return reports_[(newest_ - back + kReports) % kReports]; }
   int steady_reports(int axis) const;
   Line line(int axis) const;
   bool due(double frame_us) const;

@@ -111,6 +111,21 @@ TEST(StateFilter, WithoutFramesAMotionIsNotPredictedForLong) {
   EXPECT_EQ(seen.filter.at(seen.now_us + 10'000'000).angle_rate, 0);
 }
 
+// The time stamps of a mouse are untrusted. Ten reports of one time, in all ways to slide and to
+// turn of three numbers.
+TEST(StateFilter, ReportsOfOneTimeHaveRates) {
+  constexpr int kWays = 3 * 3 * 3 * 3 * 3;
+  for (int slides = 0; slides < kWays; ++slides) {
+    StateFilter filter(kCount, true);
+    for (int k = 0, rest = slides; k < 10; ++k, rest = k == 5 ? slides : rest / 3) {
+      filter.update(0.01 * (rest % 3 - 1), 0.05, 5'000'000);
+      const RodAhead ahead = filter.at(5'001'000);
+      for (const double x : {ahead.slide, ahead.angle, ahead.slide_rate, ahead.angle_rate})
+        EXPECT_TRUE(std::isfinite(x)) << slides << ' ' << k;
+    }
+  }
+}
+
 TEST(StateFilter, CountsOfALostSecondAreNoBurstOfSpeed) {
   StateFilter filter(kCount);
   filter.update(0, 0, 1'000);
