@@ -117,6 +117,27 @@ TEST(Kinematic, APaddleHitsWithItsSpeed) {
   }
 }
 
+// However it gathers speed, it throws a body that does not bounce at hardly more than its speed.
+TEST(Kinematic, ThrowsWithItsSpeed) {
+  for (const double dt : {1.0 / 60.0, 1.0 / 240.0}) {
+    for (const int steps : {1, 2, 3, 10}) {
+      WorldDesc desc = without_sleep();
+      desc.gravity = {};
+      World world(desc);
+      const BodyId pusher = add_kinematic(world, Box{{0.1, 0.5, 0.5}}, {}, {0.0, 0.0});
+      const BodyId box = add_dynamic(
+          world,
+          {.shape = Box{{0.1, 0.1, 0.1}}, .material = {0.0, 0.0}, .pose = SE3(Vec3{0.2, 0, 0})});
+      for (int i = 1; i <= 60; ++i) {
+        const double speed = 10.0 * std::min(1.0, static_cast<double>(i) / steps);
+        must(world.set_velocity_world(pusher, {{speed, 0, 0}, {}}));
+        must(world.step(dt));
+      }
+      EXPECT_NEAR(world.velocity_world(box).linear.x, 10.0, 0.03 + 10.0 * dt) << steps;
+    }
+  }
+}
+
 // A paddle that slows down pushes a ball within a step and has lost it by the end of the step.
 TEST(Kinematic, WhatItPushesWithinAStepIsReported) {
   int pushed = 0;
@@ -142,7 +163,7 @@ TEST(Kinematic, WhatItPushesWithinAStepIsReported) {
   EXPECT_GT(pushed, 20);
 }
 
-// The last change of velocity is part of the state.
+// The last acceleration is part of the state.
 TEST(Kinematic, ASnapshotKeepsItsAcceleration) {
   const auto make = [](World& world) {
     const BodyId plate = add_kinematic(world, Box{{1, 1, 0.1}}, {}, {.friction = 0.5});

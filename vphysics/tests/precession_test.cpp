@@ -204,6 +204,28 @@ TEST(Precession, OfTwoJoinedBodiesKeepsMomentumAndEnergy) {
   }
 }
 
+// On a link the joint is solved in rows, with the inertia of the start of the step: it must not
+// gain energy.
+TEST(Precession, OfAGyroscopeOnALinkGainsNoEnergy) {
+  for (const double spin : {20.0, 60.0}) {
+    Mechanism mechanism(kG);
+    World& world = mechanism.world();
+    ModelBuilder builder;
+    LinkSpec post;
+    post.name = "post";
+    post.joint = RevoluteJoint{{0, 0, 1}};
+    post.inertia = solid_inertia(Box{{0.2, 0.2, 0.2}}, 5000.0);
+    must(builder.add(post));
+    const ArticulationId id = must(world.create_articulation({must(builder.build())}));
+    must(world.set_drives(id, std::vector<JointDrive>{{0.0, 0.0, 1e6, 1e4, 1e9}}));
+    const BodyId body =
+        mechanism.add(solid_inertia(Cylinder{0.5, 0.05}, 1000.0), SE3(kAlongX, Vec3{1, 0, 0}),
+                      {spin, 0, kG / (0.5 * 0.25 * spin)});
+    join(world, world.link_body(id, 0), body, BallSocket{}, SE3{});
+    EXPECT_LT(drift_over(mechanism, 5.0, 1.0 / 60.0).most, 1.01) << spin;
+  }
+}
+
 // A top on the floor, on a round tip. It tilts by 0.15 rad, and falls if it loses its spin.
 struct Top {
   World world;

@@ -31,25 +31,33 @@ collide::Bounds bounds_along(const collide::Bounds& b, const Vec3& displacement,
   return grown(merged(b, end), more);
 }
 
-// The part of a change that continues the last one, each component for itself.
-Vec3 continued(const Vec3& change, const Vec3& last) {
-  const auto smaller = [](double a, double b) {
-    return a * b > 0.0 ? std::copysign(std::min(std::fabs(a), std::fabs(b)), a) : 0.0;
+// A kinematic body that accelerates faster, in multiples of gravity and in length units [m/s^2] at
+// least, does the rest at the start of the step. At the end of an acceleration it overshoots by
+// half of what it gains in a step: this bounds the speed at which it throws what it carries.
+constexpr double kMaxOfGravity = 2.0, kMaxSteadyAcceleration = 20.0;
+
+// The part of an acceleration that continues the last one, each component for itself.
+Vec3 continued(const Vec3& now, const Vec3& last, double limit) {
+  const auto smaller = [limit](double a, double b) {
+    return a * b > 0.0 ? std::copysign(std::min({std::fabs(a), std::fabs(b), limit}), a) : 0.0;
   };
-  return {smaller(change.x, last.x), smaller(change.y, last.y), smaller(change.z, last.z)};
+  return {smaller(now.x, last.x), smaller(now.y, last.y), smaller(now.z, last.z)};
 }
 
 // The body's origin moves along the chord to where its twist takes it. Returns the change of
 // velocity within the step, about the mean: of a motion with a steady acceleration, the
 // acceleration times dt. A sudden change of velocity acts at the start of the step.
-Velocity prescribe_velocity(Body& body, double dt) {
+Velocity prescribe_velocity(Body& body, double dt, const WorldDesc& desc) {
   const SE3 end = body.T * Exp(dt * body.prescribed);
   const Velocity before{body.w, body.v};
   body.w = body.T.rotate(body.prescribed.w);
   body.v = (1.0 / dt) * (end.position() - body.T.position());
-  const Velocity change{body.w - before.w, body.v - before.v};
-  const Velocity last = std::exchange(body.last_change, change);
-  return {continued(change.w, last.w), continued(change.v, last.v)};
+  const Velocity now{(1.0 / dt) * (body.w - before.w), (1.0 / dt) * (body.v - before.v)};
+  const Velocity last = std::exchange(body.last_acceleration, now);
+  const double limit =
+      std::max(kMaxOfGravity * norm(desc.gravity), kMaxSteadyAcceleration * desc.length_unit);
+  const double angular = limit / std::max(body.bounding_radius, 1e-6 * desc.length_unit);
+  return {dt * continued(now.w, last.w, angular), dt * continued(now.v, last.v, limit)};
 }
 
 // The angular velocity of a body after rotation to `next` at a constant twist. It conserves the
@@ -151,7 +159,7 @@ bool stop_if_out_of_range(const StepContext& s, std::uint32_t index, const SE3& 
   s.status.non_finite = true;
   body.w = body.v = {};
   body.prescribed = {};
-  body.last_change = {};
+  body.last_acceleration = {};
   body.T = start;
   body.moved();
   restart_displacement(s, index, false);  // the others are at different times of the step
@@ -185,7 +193,6 @@ void restart_displacement(const Stores& s, std::uint32_t index, bool keeps_clear
 void World::Impl::load_states(double dt) {
   constexpr std::uint8_t kFar = 1, kLeaves = 2, kPulled = 4, kAccelerates = 8;
   sub_step.awake_body_changed.resize(lists.awake_bodies.size());
-  sub_step.accelerating.clear();
   const BodyStates step = context.states_in(dt);
   const Approach approach = context.approach_in(dt);
   workers.in_parallel(
@@ -194,7 +201,7 @@ void World::Impl::load_states(double dt) {
           const std::uint32_t i = lists.awake_bodies[k];
           Body& body = bodies[i];
           Velocity change;
-          if (body.motion == Motion::kinematic) change = prescribe_velocity(body, dt);
+          if (body.motion == Motion::kinematic) change = prescribe_velocity(body, dt, desc);
           const bool far = step.load(body, i);
           const bool accelerates = !(change == Velocity{});
           if (accelerates) step.set_acceleration(i, change);

@@ -45,13 +45,17 @@ struct alignas(64) Body {
   bool untouched = false;     // nothing changed its rotation in this step: it has rotated freely
   bool advanced = false;   // within a step: has its pose of the present sub-step (find_again.cpp)
   bool precesses = false;  // in this step: rotates freely within sub-steps (precession.h)
+  bool is_top = false;     // it precesses and has its contacts renewed within the step
   bool shortened = false;  // its motion in this step ended at an impact (fast_rotation.h)
   bool allow_sleep = true;
-  bool mass_from_colliders = false;             // updated as colliders are added and removed
-  bool requested_continuous = false;            // when it is dynamic
-  bool remote = false;                          // a link of a remote articulation (remote.cpp)
+  bool mass_from_colliders = false;   // updated as colliders are added and removed
+  bool requested_continuous = false;  // when it is dynamic
+  bool remote = false;                // a link of a remote articulation (remote.cpp)
+  bool has_sensor = false;
+  bool unbounded = false;                       // carries a half-space
   std::uint16_t region = solve::kSharedRegion;  // regions.cpp
   std::uint16_t rotation_locks = 0;             // number of its joints that lock a rotation
+  std::uint16_t row_joints = 0;                 // number of its joints in rows
   std::uint32_t contact_slots = 0;              // number of its contact slots in the solver
   std::uint32_t first_joint = kNone, first_collider = kNone;
   std::uint32_t load = kNone;  // index into the world's loads; kNone for links
@@ -75,9 +79,9 @@ struct alignas(64) Body {
 
   std::uint64_t island = 0;  // the island that it was last found in (sleep.cpp)
   double mass = 0.0;
-  se3 prescribed;         // kinematic: body frame
-  Velocity last_change;   // kinematic: of its mean velocity over a step, by the last step
-  collide::Bounds local;  // of its bounded colliders, body frame
+  se3 prescribed;              // kinematic: body frame
+  Velocity last_acceleration;  // kinematic: of its mean velocity over a step, by the last step
+  collide::Bounds local;       // of its bounded colliders, body frame
   // Of a link that only slides along and rotates about a line: bounds of its bounded colliders for
   // all rotations, about its origin in world axes. Otherwise empty.
   collide::Bounds around_line;
@@ -89,8 +93,6 @@ struct alignas(64) Body {
   std::uint32_t last_collider = kNone;
   std::uint32_t first_edge = kNone;         // head of its list of contacts
   std::uint32_t categories = 0, masks = 0;  // union over its colliders
-  bool has_sensor = false;
-  bool unbounded = false;  // carries a half-space
   std::uint64_t user_data = 0;
 
   // Of a link: T, w and v are kept up to date.

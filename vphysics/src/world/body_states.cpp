@@ -97,7 +97,7 @@ Mat3 rotated(const Mat3& R, const Vec3& t) {
 }
 
 bool BodyStates::load(Body& body, std::uint32_t index) const {
-  body.untouched = body.shortened = body.precesses = false;
+  body.untouched = body.shortened = body.precesses = body.is_top = false;
   solve::BodyState& state = states[index + 1];
   const bool pushed = body.motion == Motion::dynamic;
   put(state.velocity, body.v);
@@ -129,8 +129,9 @@ bool BodyStates::load(Body& body, std::uint32_t index) const {
     const Velocity a = loads.acceleration(body, desc.gravity);
     put(state.rate, a.v);
     gyroscopic = gyroscopic_acceleration(body, dt);
-    body.precesses =
-        precesses(body, gyroscopic, body.gravity_scale * norm(desc.gravity), dt, sub_steps);
+    const double weight = std::fabs(body.gravity_scale) * norm(desc.gravity);
+    body.precesses = precesses(body, gyroscopic, weight, dt, sub_steps);
+    body.is_top = body.precesses && is_top(body, weight, dt);
     const Vec3 torqued = loads.is_torqued(body) ? a.w : Vec3{};
     put(state.rate + 3, body.precesses ? torqued : gyroscopic + torqued);
   }

@@ -168,7 +168,7 @@ void World::Impl::change_motion(std::uint32_t index, Motion motion,
   body.region = solve::kSharedRegion;
   body.w = body.v = {};
   body.prescribed = motion == Motion::kinematic ? V : se3{};
-  body.last_change = {};
+  body.last_acceleration = {};
   if (motion == Motion::dynamic) {
     if (inertia) set_mass(body, *inertia);
     body.w = body.T.rotate(V.w);

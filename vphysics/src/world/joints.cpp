@@ -29,6 +29,7 @@ void link_joint(Bodies& bodies, Joints& joints, std::uint32_t index) {
       joints[body.first_joint / 2].previous[body.first_joint % 2] = edge;
     body.first_joint = edge;
     if (locks_rotation(joint.spec)) ++body.rotation_locks;
+    if (joint.in_rows) ++body.row_joints;
   }
 }
 
@@ -40,6 +41,7 @@ void World::Impl::remove_joint(std::uint32_t index) {
     if (next != kNone) joints[next / 2].previous[next % 2] = previous;
     (previous != kNone ? joints[previous / 2].next[previous % 2] : body.first_joint) = next;
     if (locks_rotation(joint.spec)) --body.rotation_locks;
+    if (joint.in_rows) --body.row_joints;
   }
   contact_store.mark_contacts_dirty(bodies[joint.a]);
   if (joint.in_rows) lists.invalidate();

@@ -45,12 +45,16 @@ double rate_of_change(const Sym3& I, const Vec3& w) {
 }  // namespace
 
 bool precesses(const Body& body, const Vec3& gyroscopic, double weight, double dt, int sub_steps) {
-  if (!body.tumbles() || body.continuous || !body.is_solver_driven()) return false;
+  if (!body.tumbles() || body.continuous || !body.is_solver_driven() || body.row_joints > 0)
+    return false;
   if (trace(body.central) * trace(body.inverse_central) > kMaxCondition) return false;
   const double h = dt / sub_steps;
   if (!(h * h * dot(body.w, body.w) < kMaxRotation * kMaxRotation)) return false;
   if (!(0.5 * dt * dot(gyroscopic, gyroscopic) > kMinLoss * dot(body.w, body.w))) return false;
-  if (body.first_joint != kNone) return true;
+  return body.first_joint != kNone || is_top(body, weight, dt);
+}
+
+bool is_top(const Body& body, double weight, double dt) {
   if (!(weight > 0.0)) return false;
   const Vec3 w = transposed_times(body.T.rotation(), body.w);
   return 0.5 * dot(w, body.central * w) > kMinEnergy * body.mass * weight * body.bounding_radius &&
@@ -73,7 +77,7 @@ void Precession::list(const Bodies& bodies, const Regions& regions, std::size_t 
       const Body& body = bodies[i];
       if (!body.precesses) continue;
       bodies_.push_back(i);
-      if (body.first_joint == kNone) on_contacts_.push_back(i);
+      if (body.is_top) on_contacts_.push_back(i);
       solve::BodyInertia& inertia = inertias_.emplace_back();
       const double unit = trace(body.central);
       put(inertia.inertia, (1.0 / unit) * rotated(body.T.rotation(), body.central));

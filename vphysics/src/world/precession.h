@@ -2,11 +2,12 @@
 //
 // With the torque of the start of the step (body_states.cpp), a top that precesses would lose its
 // spin, in proportion to the square of the angle by which it precesses in a step. Instead, such
-// bodies rotate in each sub-step as free bodies do between impulses. Joints follow their rotation.
-// Contacts do not, so those of a body without joints are searched for again before each sub-step:
-// otherwise the arms of the start of the step would spin it up. This costs much more than a contact
-// of other bodies, so it is for tops, not for what tumbles down: for bodies that rotate about an
-// axis of symmetry, with several times the energy that it takes to lift them by their own radius.
+// bodies rotate in each sub-step as free bodies do between impulses. Joints in blocks follow their
+// rotation; bodies with joints in rows are left to the torque of the start. Contacts do not, so
+// those of a top are searched for again before each sub-step: otherwise the arms of the start of
+// the step would spin it up. This costs much more than a contact of other bodies, so it is for
+// tops, not for what tumbles down: for bodies that rotate about an axis of symmetry, with several
+// times the energy that it takes to lift them by their own radius.
 #pragma once
 
 #include <cstdint>
@@ -25,13 +26,16 @@ namespace vp {
 // acceleration without torques; weight: the magnitude of gravity on it [m/s^2].
 bool precesses(const Body& body, const Vec3& gyroscopic, double weight, double dt, int sub_steps);
 
+// Whether its contacts must follow it. Precondition: it precesses.
+bool is_top(const Body& body, double weight, double dt);
+
 class Precession {
  public:
   void reserve(std::size_t bodies);
   // Lists the bodies with Body::precesses. regions: with kSharedRegion.
   void list(const Bodies& bodies, const Regions& regions, std::size_t count);
   bool empty() const { return bodies_.empty(); }
-  // Those without joints.
+  // Those that are tops.
   std::span<const std::uint32_t> on_contacts() const { return on_contacts_; }
   // Whether joints in the region may be of bodies that precess.
   bool concerns(std::size_t region) const {

@@ -21,7 +21,7 @@ struct SavedBody {
   SE3 T;
   Vec3 w, v;
   se3 prescribed;
-  Velocity last_change;
+  Velocity last_acceleration;
 };
 // The state of a degree of freedom.
 struct DofState {
@@ -51,8 +51,8 @@ void read(Reader& in, const Body& body, SavedBody& state) {
   state.prescribed.w = in.vector();
   state.prescribed.v = in.vector();
   if (body.motion != Motion::kinematic) return;
-  state.last_change.w = in.finite_vector();
-  state.last_change.v = in.finite_vector();
+  state.last_acceleration.w = in.finite_vector();
+  state.last_acceleration.v = in.finite_vector();
 }
 
 void read(Reader& in, const JointDof& dof, DofState& state) {
@@ -307,7 +307,7 @@ void World::Impl::adopt(Incoming& from) {
     body.w = state->w;
     body.v = state->v;
     body.prescribed = state->prescribed;
-    body.last_change = state->last_change;
+    body.last_acceleration = state->last_acceleration;
     ++state;
   }
   auto q = from.q.cbegin();

@@ -3,8 +3,8 @@
 //   magic, format, topology hash; numbers of bodies, articulations, pair records, destroyed pairs;
 //   sub-step lengths: of the impulses, of the bias velocity; 1 if the last step ended with a
 //   position error, else 0; step length of the records and joints
-//   bodies:          pose (12), w, v, prescribed twist (6), of a kinematic one also the last change
-//                    of w and v; of a link, nothing
+//   bodies:          pose (12), w, v, prescribed twist (6), of a kinematic one also its last
+//                    accelerations; of a link, nothing
 //   articulations:   coordinates; for each velocity: itself, drive (5), impulses (5)
 //   records:         key, a | b, count | number of the manifold and touching, rolling, 4 points
 //   destroyed pairs: a (index, generation), b, sensor
@@ -135,8 +135,8 @@ void World::Impl::write(Sink& sink) {
       put(sink, *v);
     }
     if (body.motion != Motion::kinematic) continue;
-    put(sink, body.last_change.w);
-    put(sink, body.last_change.v);
+    put(sink, body.last_acceleration.w);
+    put(sink, body.last_acceleration.v);
   }
   for (const Articulation& art : articulations) {
     if (!art.alive) continue;

@@ -59,6 +59,7 @@ void World::Impl::begin_step(double dt) {
   if (sub_step.some_bounce) sub_step.bounce_shifts.resize(n + 1);
   sub_step.searched.resize(n);
   sub_step.fast_rotation.rotates_fast.reserve(n);
+  sub_step.accelerating.clear();
   sub_step.accelerating.reserve(n);
   sub_step.fast_rotation.shortened.reserve(64 + n / 8);  // grows if more bodies rotate fast
   row_solve.forget_joints();

@@ -109,7 +109,7 @@ Expected<void> World::destroy_body(BodyId id) {
   impl_->loads.remove(impl_->bodies, id.index - 1);
   body->w = body->v = {};
   body->prescribed = {};
-  body->last_change = {};
+  body->last_acceleration = {};
   if (id.index < impl_->body_states.size()) impl_->body_states[id.index] = {};
   body->first_collider = kNone;
   impl_->lists.invalidate();
