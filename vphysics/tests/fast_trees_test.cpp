@@ -20,7 +20,7 @@ const Inertia kLink = solid_inertia(Box{{0.25, 0.05, 0.1}}, 1000.0).InvXform(SE3
 
 // Three links in a row with random velocities of up to max_rate.
 struct Chain {
-  World world{without_sleep()};
+  World world;
   ArticulationId id;
 
   Chain(Kind kind, double max_rate) {

@@ -27,7 +27,7 @@ double sine_of_2_hz(double t) {
 // A lift with a slope of 0.3 rad that needs 0.62 of the friction, at up to 0.8 of the gravity.
 TEST(Kinematic, ALiftCarriesWhatFrictionHolds) {
   for (const double dt : {1.0 / 60.0, 1.0 / 240.0, 0.001}) {
-    World world(without_sleep());
+    World world;
     const Material material{.friction = 0.5};
     const SE3 slope(Exp(Vec3{0, 0.3, 0}), {});
     const BodyId lift = add_kinematic(world, Box{{1, 1, 0.1}}, {}, material, slope);
@@ -47,7 +47,7 @@ TEST(Kinematic, ALiftCarriesWhatFrictionHolds) {
 // Two fingers on a hand that shakes squeeze a box with three times the force that it needs at rest.
 TEST(Kinematic, AGripperHoldsWhatItShakes) {
   for (const double dt : {1.0 / 60.0, 1.0 / 240.0, 0.001}) {
-    WorldDesc desc = without_sleep();
+    WorldDesc desc;
     desc.length_unit = 0.1;
     World world(desc);
     const Material material{.friction = 0.5};
@@ -91,7 +91,7 @@ TEST(Kinematic, APaddleHitsWithItsSpeed) {
   const Material elastic{0.0, 1.0};
   for (const double dt : {1.0 / 60.0, 1.0 / 240.0, 0.001}) {
     for (const bool at_once : {true, false}) {
-      WorldDesc desc = without_sleep();
+      WorldDesc desc;
       desc.gravity = {};
       World world(desc);
       const BodyId paddle = add_kinematic(world, Box{{0.1, 0.5, 0.5}}, {}, elastic);
@@ -117,23 +117,32 @@ TEST(Kinematic, APaddleHitsWithItsSpeed) {
   }
 }
 
+// Something without friction and restitution before a pusher, in its way along x.
+struct Push {
+  World world{weightless()};
+  BodyId pusher = add_kinematic(world, Box{{0.1, 0.5, 0.5}}, {}, {0.0, 0.0});
+  BodyId body;
+
+  Push(const Shape& shape, double x)
+      : body(add_dynamic(world,
+                         {.shape = shape, .material = {0.0, 0.0}, .pose = SE3(Vec3{x, 0, 0})})) {}
+  void step(double speed, double dt) {
+    must(world.set_velocity_world(pusher, {{speed, 0, 0}, {}}));
+    must(world.step(dt));
+  }
+  double speed() const { return world.velocity_world(body).linear.x; }
+};
+
 // However it gathers speed, it throws a body that does not bounce at hardly more than its speed.
 TEST(Kinematic, ThrowsWithItsSpeed) {
   for (const double dt : {1.0 / 60.0, 1.0 / 240.0}) {
     for (const int steps : {1, 2, 3, 10}) {
-      WorldDesc desc = without_sleep();
-      desc.gravity = {};
-      World world(desc);
-      const BodyId pusher = add_kinematic(world, Box{{0.1, 0.5, 0.5}}, {}, {0.0, 0.0});
-      const BodyId box = add_dynamic(
-          world,
-          {.shape = Box{{0.1, 0.1, 0.1}}, .material = {0.0, 0.0}, .pose = SE3(Vec3{0.2, 0, 0})});
+      Push push(Box{{0.1, 0.1, 0.1}}, 0.2);
       for (int i = 1; i <= 60; ++i) {
         const double speed = 10.0 * std::min(1.0, static_cast<double>(i) / steps);
-        must(world.set_velocity_world(pusher, {{speed, 0, 0}, {}}));
-        must(world.step(dt));
+        push.step(speed, dt);
       }
-      EXPECT_NEAR(world.velocity_world(box).linear.x, 10.0, 0.03 + 10.0 * dt) << steps;
+      EXPECT_NEAR(push.speed(), 10.0, 0.03 + 10.0 * dt) << steps;
     }
   }
 }
@@ -142,21 +151,14 @@ TEST(Kinematic, ThrowsWithItsSpeed) {
 TEST(Kinematic, WhatItPushesWithinAStepIsReported) {
   int pushed = 0;
   for (int k = 0; k < 40; ++k) {
-    WorldDesc desc = without_sleep();
-    desc.gravity = {};
-    World world(desc);
-    const BodyId paddle = add_kinematic(world, Box{{0.1, 0.5, 0.5}}, {}, {0.0, 0.0});
-    const BodyId ball = add_dynamic(
-        world,
-        {.shape = Sphere{0.1}, .material = {0.0, 0.0}, .pose = SE3(Vec3{0.31 + 0.002 * k, 0, 0})});
+    Push push(Sphere{0.1}, 0.31 + 0.002 * k);
     int begun = 0;
     for (int i = 0; i < 20; ++i) {
-      must(world.set_velocity_world(paddle, {{std::max(0.0, 4.0 - 0.5 * i), 0, 0}, {}}));
-      must(world.step(1.0 / 60.0));
-      for (const ContactEvent& event : world.contact_events())
+      push.step(std::max(0.0, 4.0 - 0.25 * i), 1.0 / 60.0);
+      for (const ContactEvent& event : push.world.contact_events())
         begun += event.kind == ContactEvent::Kind::begin ? 1 : 0;
     }
-    const bool moves = world.velocity_world(ball).linear.x > 0.0;
+    const bool moves = push.speed() > 0.0;
     pushed += moves ? 1 : 0;
     EXPECT_EQ(begun > 0, moves) << k;
   }

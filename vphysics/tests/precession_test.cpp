@@ -48,7 +48,7 @@ class Mechanism {
 
  private:
   static WorldDesc described(double gravity) {
-    WorldDesc desc = without_sleep();
+    WorldDesc desc;
     desc.gravity = {0, 0, -gravity};
     return desc;
   }

@@ -56,12 +56,6 @@ inline BodyId add_ground(World& world, const Material& material, const Vec3& nor
   return add_fixed(world, HalfSpace{}, material, SE3(R, {}));
 }
 
-inline WorldDesc without_sleep() {
-  WorldDesc desc;
-  desc.sleep_after = 0.0;
-  return desc;
-}
-
 // A kinematic body with a velocity in the body frame.
 inline BodyId add_kinematic(World& world, const Shape& shape, const se3& velocity,
                             const Material& material = {}, const SE3& pose = {}) {

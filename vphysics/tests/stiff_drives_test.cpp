@@ -37,7 +37,7 @@ End settle(World& world, BodyId last, double dt) {
 // A horizontal arm: links of 0.4 m and 2 kg on hinges, 10 kg welded to the last.
 End settle_arm(int links, const JointDrive& drive, double dt) {
   constexpr double kLength = 0.4;
-  World world(without_sleep());
+  World world;
   BodyId last = add_anchor(world);
   for (int i = 0; i < links; ++i) {
     const BodyId link = add_mass(world, solid_inertia(Box{{0.2, 0.04, 0.04}}, 781.25),
@@ -91,7 +91,7 @@ TEST(StiffDrives, OfHingesInSeriesSagAsInStatics) {
 TEST(StiffDrives, OfSlidersInSeriesComeToRest) {
   for (const double dt : kSteps) {
     for (const double stiffness : {1e5, 1e6, 1e8}) {
-      World world(without_sleep());
+      World world;
       BodyId last = add_anchor(world);
       for (int i = 0; i < 5; ++i) {
         const double mass = i == 4 ? 50.0 : 1.0, moment = 0.01 * mass;
@@ -116,7 +116,7 @@ TEST(StiffDrives, OfSlidersInSeriesComeToRest) {
 TEST(StiffDrives, OfSixDofJointsInSeriesComeToRest) {
   for (const double dt : kSteps) {
     for (const double stiffness : {1e4, 1e6, 1e8}) {
-      World world(without_sleep());
+      World world;
       BodyId last = add_anchor(world);
       SixDof joint;
       for (int axis = 0; axis < 3; ++axis) joint.axes[axis].motion = AxisMotion::locked;
@@ -140,7 +140,7 @@ TEST(StiffDrives, OfSixDofJointsInSeriesComeToRest) {
 // The target moves: an arm follows it, whatever the stiffness.
 TEST(StiffDrives, FollowAMovingTarget) {
   for (const double stiffness : {1e5, 1e6, 1e8}) {
-    World world(without_sleep());
+    World world;
     BodyId last = add_anchor(world);
     std::vector<JointId> hinges;
     for (int i = 0; i < 3; ++i) {

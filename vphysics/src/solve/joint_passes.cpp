@@ -57,13 +57,13 @@ void precess(BodyState* states, const StartDisplacement* start, const std::uint3
     const auto velocity_of = [&](int i) { return state(i).velocity; };
     const auto displacement_of = [&](int i) { return state(i).displacement; };
     const auto inertia_of = [&](int i) { return state(i).inertia; };
-    auto velocity = row_of(velocity_of), displacement = row_of(displacement_of),
-         inertia = row_of(inertia_of);
+    const auto velocity = row_of(velocity_of), displacement = row_of(displacement_of),
+               inertia = row_of(inertia_of);
     const auto from = row_of([&](int i) { return start[bodies[at(i)]].displacement; });
     const auto inverse_row = row_of([&](int i) { return inertias[at(i)].inverse; });
     const Sym3T<F> I = sym_of(row_of([&](int i) { return inertias[at(i)].inertia; })),
                    inverse = sym_of(inverse_row);
-    Precession<kWidth> body{{}, {}, {velocity[3], velocity[4], velocity[5]}};
+    PrecessingLanes<kWidth> body{{}, {}, {velocity[3], velocity[4], velocity[5]}};
     const V since = V{displacement[3], displacement[4], displacement[5]} -
                     V{from[3], from[4], from[5]} - F(h) * body.rate;
     quaternion_of<kWidth>(since, body.q, body.w);

@@ -57,7 +57,7 @@ Vec3T<Lanes<W>> rotation_vector_of(const Vec3T<Lanes<W>>& q, const Lanes<W>& w) 
 // A body's rotation q, w since the start of the step, and its angular velocity. Body axes are those
 // that coincide with the world's at the start of the step.
 template <int W>
-struct Precession {
+struct PrecessingLanes {
   using F = Lanes<W>;
   using V = Vec3T<F>;
   V q;

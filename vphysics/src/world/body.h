@@ -80,7 +80,7 @@ struct alignas(64) Body {
   std::uint64_t island = 0;  // the island that it was last found in (sleep.cpp)
   double mass = 0.0;
   se3 prescribed;              // kinematic: body frame
-  Velocity last_acceleration;  // kinematic: of its mean velocity over a step, by the last step
+  Velocity last_acceleration;  // kinematic: from one step's mean velocity to the next one's
   collide::Bounds local;       // of its bounded colliders, body frame
   // Of a link that only slides along and rotates about a line: bounds of its bounded colliders for
   // all rotations, about its origin in world axes. Otherwise empty.

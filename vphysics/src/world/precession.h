@@ -3,7 +3,7 @@
 // With the torque of the start of the step (body_states.cpp), a top that precesses would lose its
 // spin, in proportion to the square of the angle by which it precesses in a step. Instead, such
 // bodies rotate in each sub-step as free bodies do between impulses. Joints in blocks follow their
-// rotation; bodies with joints in rows are left to the torque of the start. Contacts do not, so
+// rotation; bodies with joints in rows keep the torque of the start. Contacts do not follow, so
 // those of a top are searched for again before each sub-step: otherwise the arms of the start of
 // the step would spin it up. This costs much more than a contact of other bodies, so it is for
 // tops, not for what tumbles down: for bodies that rotate about an axis of symmetry, with several
