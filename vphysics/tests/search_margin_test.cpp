@@ -101,6 +101,28 @@ TEST(SearchMargin, ARodThatWobblesMeetsWhatIsInItsWay) {
   }
 }
 
+// The displacements of both restart every few steps, while the pair has its clearance for hundreds.
+TEST(SearchMargin, TwoThatTravelFarTogetherMeetInTheEnd) {
+  for (const double travel : {5.0, 60.0, 500.0}) {  // [m/s]
+    for (const double gap : {0.02, 0.3}) {
+      World world({.gravity = {}});
+      constexpr double kClosing = 0.05;  // [m/s]
+      const Shape box = Box{{0.1, 0.1, 0.1}};
+      add_dynamic(world, {.shape = box, .velocity = {{}, {travel, 0, 0}}});
+      const BodyId behind = add_dynamic(world, {.shape = box,
+                                                .pose = SE3(Vec3{0, -0.2 - gap, 0}),
+                                                .velocity = {{}, {travel, kClosing, 0}}});
+      double time = 0.0;
+      while (world.contact_events().empty() && time < 10.0) {
+        must(world.step(kFrame));
+        time += kFrame;
+      }
+      EXPECT_NEAR(time, gap / kClosing, 2.0 * kFrame) << travel << " m/s, " << gap << " m";
+      EXPECT_GT(world.pose(behind).position().x, 0.9 * travel * time);
+    }
+  }
+}
+
 // A body that leaves the range of positions stops where the step began. What comes near it
 // afterwards touches it there.
 TEST(SearchMargin, ABodyThatWasStoppedIsWhereItStopped) {

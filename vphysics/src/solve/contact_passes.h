@@ -113,6 +113,15 @@ class Points {
     }
     return x;
   }
+  // Without impulses so far: the impulse if all points that act have the same one. With a start
+  // from there what falls flat does not begin to rotate.
+  F shared(int i, const F* acts) const {
+    F sum(1.0f);
+    for (int j = 0; j < P; ++j) {
+      if (j != i) sum += acts[j] * k_[i][j];
+    }
+    return select(sum > F(0.0f), larger(e_[i] / larger(sum, F(0.25f)), F(0.0f)), F(0.0f));
+  }
   // If no point has an impulse: m_i times the remaining approach speed.
   const F& approach_speed(int i) const { return e_[i]; }
 

@@ -13,6 +13,8 @@ namespace vp::solve {
 
 // Bounded rows are few. Their sweeps work on the Schur complement and do not access the bodies.
 inline constexpr int kBoundedSweeps = 4;
+// A sweep that changes no impulse by more than this fraction is the last.
+inline constexpr float kBoundedConverged = 1e-6f;
 // A drive's spring softer than this, in (sub-steps times natural frequency)^2, is integrated
 // without gain or loss of energy; a stiffer one increasingly implicitly. Sixteen such springs on
 // one body are still stable: the limit is 4.
@@ -263,16 +265,32 @@ F clamped(const F& x, const F& min_impulse, const F& max_impulse) {
   return smaller(larger(x, min_impulse), max_impulse);
 }
 
-// The change of a drive's impulse at the speed u. K: the change of that speed by a unit impulse.
-// The force is that at the end of the sub-step, by its speed, from the error at its start. So the
-// relaxation, after the bodies have moved, uses the error that the iterations have stored.
+// What does not change of a force law while the rows' impulses are found. At the speed u an impulse
+// p becomes p - (m u + k + l p), within bounds.
+template <int W>
+struct ImpulseLaw {
+  using F = Lanes<W>;
+  F m{0.0f}, k{0.0f}, l{0.0f};
+  F min_impulse{-kNoBound}, max_impulse{kNoBound};
+
+  F next(const F& p, const F& u) const {
+    return clamped(p - (m * u + k + l * p), min_impulse, max_impulse);
+  }
+};
+template <int W>
+ImpulseLaw<W> select(const LaneMask<W>& mask, const ImpulseLaw<W>& a, const ImpulseLaw<W>& b) {
+  return {select(mask, a.m, b.m), select(mask, a.k, b.k), select(mask, a.l, b.l),
+          select(mask, a.min_impulse, b.min_impulse), select(mask, a.max_impulse, b.max_impulse)};
+}
+
+// Of a drive. K: the change of the row's speed by a unit impulse. The force is that at the end of
+// the sub-step, by its speed, from the error at its start. So the relaxation, after the bodies have
+// moved, uses the error that the iterations have stored.
 template <int W, class B, int kRows, int kLocked>
-Lanes<W> drive_change(JointLanes<W, B, kRows, kLocked>& c, int i, const Lanes<W>& u,
-                      const Lanes<W>& K, float h, bool pushes) {
+ImpulseLaw<W> drive_law(JointLanes<W, B, kRows, kLocked>& c, int i, const Lanes<W>& K, float h,
+                        bool pushes) {
   using F = Lanes<W>;
   const BoundPart& bound = c.block().bounds[i];
-  const F min_impulse = c.get(bound.min_impulse), max_impulse = c.get(bound.max_impulse);
-  const F impulse = c.get(c.block().rows[i].impulse);
   const F by_h_squared = F(h * h) * K, s0 = by_h_squared * c.get(bound.stiffness);
   // A softer spring with its damper keeps its time constant.
   const LaneMask<W> too_stiff = s0 > F(kStiffest);
@@ -284,67 +302,139 @@ Lanes<W> drive_change(JointLanes<W, B, kRows, kLocked>& c, int i, const Lanes<W>
   const F g = F(h) * damping + implicit * F(h * h) * stiffness;
   Field& stored = c.block().bias[B::kPointRows + i];
   if (pushes) c.put(stored, c.get(c.block().rows[i].residual) - c.get(bound.position));
-  const F error = c.get(stored);
-  const F target =
-      impulse - (F(h) * stiffness * error + g * u - F(h) * damping * c.get(bound.speed) + impulse) /
-                    (F(1.0f) + g * K);
-  return select(max_impulse > min_impulse, clamped(target, min_impulse, max_impulse) - impulse,
-                F(0.0f));
+  const F l = F(1.0f) / (F(1.0f) + g * K);
+  const F force = stiffness * c.get(stored) - damping * c.get(bound.speed);
+  return {g * l, F(h) * force * l, l, c.get(bound.min_impulse), c.get(bound.max_impulse)};
 }
 
-// The same for a row locked within bounds. If the bounds allow one sign only, a separation may
-// close.
+// Of a row that is locked within bounds. If the bounds allow one sign only, a separation may close.
 template <int W, class B, int kRows, int kLocked>
-Lanes<W> hold_change(const JointLanes<W, B, kRows, kLocked>& c, int i, const Lanes<W>& u,
-                     const Lanes<W>& K, float h, bool pushes) {
+ImpulseLaw<W> hold_law(const JointLanes<W, B, kRows, kLocked>& c, int i, const Lanes<W>& K, float h,
+                       bool pushes) {
   using F = Lanes<W>;
-  const F zero(0.0f);
+  const F zero(0.0f), one(1.0f);
   const BoundPart& bound = c.block().bounds[i];
   const RowPart& row = c.block().rows[i];
   const F min_impulse = c.get(bound.min_impulse), max_impulse = c.get(bound.max_impulse),
-          residual = c.get(row.residual);
-  const F impulse = c.get(row.impulse), loss = c.get(row.loss);
+          residual = c.get(row.residual), loss = c.get(row.loss);
   const LaneMask<W> open = either(both(min_impulse >= zero, residual > zero),
                                   both(max_impulse <= zero, residual < zero));
   const LaneMask<W> gives = K > zero;
-  const F mass = select(gives, F(1.0f) / select(gives, K, F(1.0f)), zero);
-  const F closes = impulse - mass * (u + residual * F(1.0f / h));
-  const F locked = pushes ? impulse - (mass * (u + c.get(row.rate) * residual) + loss * impulse) /
-                                          (F(1.0f) + loss)
-                          : impulse - c.get(row.relaxes) * mass * u;
-  const F target = select(open, closes, locked);
-  return select(gives, clamped(target, min_impulse, max_impulse) - impulse, zero);
+  const F mass = select(gives, one / select(gives, K, one), zero);
+  const F inverse = one / (one + loss);
+  const F m = pushes ? inverse * mass : c.get(row.relaxes) * mass;
+  const F bias = pushes ? c.get(row.rate) * residual : zero;
+  const ImpulseLaw<W> law{
+      select(open, mass, m), select(open, mass * (residual * F(1.0f / h)), m * bias),
+      select(open, zero, pushes ? inverse * loss : zero), min_impulse, max_impulse};
+  return select(gives, law, ImpulseLaw<W>{});
 }
 
-// The same for the limits. A positive separation may close; a violated limit gets a bias velocity.
-template <int W, class B, int kRows, int kLocked>
-Lanes<W> stop_change(const JointLanes<W, B, kRows, kLocked>& c, int i, const Lanes<W>& u,
-                     const Lanes<W>& K, float h, float max_bias_velocity, bool pushes) {
+// Of the limit that is closer, with impulses and speeds that are positive away from it. A positive
+// separation may close; a violated limit gets a bias velocity.
+template <int W>
+struct LimitLaw {
   using F = Lanes<W>;
-  const F zero(0.0f);
+  ImpulseLaw<W> law;
+  F side{0.0f};  // 1: the lower limit; -1: the upper one; 0: there is none
+  LaneMask<W> only_reduces = F(0.0f) > F(0.0f);
+
+  // Of an impulse at that limit; `stop` in the row's direction, as in BoundPart.
+  F change(const F& stop, const F& u) const {
+    const F p = side * stop, next = law.next(p, side * u);
+    return side * (select(only_reduces, smaller(next, p), next) - p);
+  }
+};
+template <int W, class B, int kRows, int kLocked>
+LimitLaw<W> limit_law(const JointLanes<W, B, kRows, kLocked>& c, int i, const Lanes<W>& K, float h,
+                      float max_bias_velocity, bool pushes) {
+  using F = Lanes<W>;
+  const F zero(0.0f), one(1.0f);
   const BoundPart& bound = c.block().bounds[i];
   const RowPart& row = c.block().rows[i];
-  const F stop = c.get(bound.stop), residual = c.get(row.residual), loss = c.get(row.loss);
+  const F residual = c.get(row.residual), loss = c.get(row.loss);
   const F below = residual - c.get(bound.lower), above = c.get(bound.upper) - residual;
   const LaneMask<W> at_lower = below <= above;
-  const F separation = select(at_lower, below, above), side = select(at_lower, F(1.0f), F(-1.0f));
-  const F p = side * stop, speed = side * u;
+  const F separation = select(at_lower, below, above);
+  const LaneMask<W> exists = separation<F(0.5f * kNoBound), open = separation> zero;
   const LaneMask<W> gives = K > zero;
-  const F mass = select(gives, F(1.0f) / select(gives, K, F(1.0f)), zero);
-  F unbiased = p - mass * (speed + separation * F(1.0f / h));
-  if (!pushes) unbiased = smaller(unbiased, p);  // the next sub-step handles an approach in it
+  const F mass = select(gives, one / select(gives, K, one), zero);
   const bool linear = !B::kAxes || c.is_along(i);
   const F bias =
       larger(c.get(row.rate) * separation, F(linear ? -max_bias_velocity : -kMaxAngularBias));
-  const F passed = pushes ? p - (mass * (speed + bias) + loss * p) / (F(1.0f) + loss)
-                          : p - c.get(row.relaxes) * mass * speed;
-  const F next = larger(select(separation > zero, unbiased, passed), zero);
-  // The other limit is the closer one, or the limit is absent.
-  const LaneMask<W> lets_go = either(p < zero, !(separation < F(0.5f * kNoBound)));
-  return select(lets_go, -stop, side * (next - p));
+  const F inverse = one / (one + loss);
+  const F m = pushes ? inverse * mass : c.get(row.relaxes) * mass;
+  LimitLaw<W> limit;
+  limit.law = {select(open, mass, m),
+               select(open, mass * (separation * F(1.0f / h)), pushes ? m * bias : zero),
+               select(open, zero, pushes ? inverse * loss : zero), zero, F(kNoBound)};
+  limit.side = select(exists, select(at_lower, one, -one), zero);
+  // The next sub-step handles an approach in it.
+  if (!pushes) limit.only_reduces = open;
+  return limit;
 }
 
 // --- iterations ----------------------------------------------------------------------------------
+
+// Finds the impulses of the bounded rows. On entry, u has their speeds while the locked rows are
+// satisfied, and `change` is zero. L: the factor of the block.
+template <int W, class B, int kRows, int kLocked, class Factor>
+void solve_bounded_rows(JointLanes<W, B, kRows, kLocked>& c, const LaneMask<W>& goes_on,
+                        const Factor& L, Lanes<W>* u, Lanes<W>* change, float h,
+                        float max_bias_velocity, bool pushes) {
+  using F = Lanes<W>;
+  B& block = c.block();
+  const F zero(0.0f);
+  const int n = c.count(), locked = c.locked();
+  struct Row {
+    ImpulseLaw<W> drive;  // or of a row locked within bounds
+    LimitLaw<W> limit;
+    F impulse, stop;
+    bool is_driven, is_limited;
+  };
+  Row rows[kJointRows];
+  LaneMask<W> moves = goes_on, moved = goes_on;
+  const auto give = [&](int i, F& of, const F& wanted) {
+    const F p = select(moves, wanted, zero);
+    moved = either(moved, abs(p) > F(kBoundedConverged) * abs(of));
+    of += p;
+    change[i] += p;
+    for (int j = locked; j < n; ++j) u[j] += (j < i ? L(i, j) : L(j, i)) * p;
+  };
+  for (int i = locked; i < n; ++i) {
+    const int k = i - B::kPointRows;
+    const BoundPart& bound = block.bounds[k];
+    const F K = L(i, i);
+    Row& row = rows[k];
+    row.impulse = c.get(block.rows[k].impulse);
+    row.stop = c.get(bound.stop);
+    const LaneMask<W> holds = c.get(bound.holds) > zero,
+                      drives = c.get(bound.max_impulse) > c.get(bound.min_impulse);
+    row.is_driven = !none(either(holds, drives));
+    if (row.is_driven) row.drive = select(drives, drive_law(c, k, K, h, pushes), ImpulseLaw<W>{});
+    if (!none(holds)) row.drive = select(holds, hold_law(c, k, K, h, pushes), row.drive);
+    row.limit = limit_law(c, k, K, h, max_bias_velocity, pushes);
+    // The impulse of a limit that is no longer the closer one.
+    const F stale = select(row.limit.side * row.stop > zero, zero, row.stop);
+    if (!none(abs(stale) > zero)) give(i, row.stop, -stale);
+    row.is_limited = !none(abs(row.limit.side) > zero);
+  }
+  const int sweeps = n > locked + 1 ? kBoundedSweeps : 1;
+  for (int sweep = 0; sweep < sweeps && !none(moves); ++sweep) {
+    moved = zero > zero;
+    for (int i = locked; i < n; ++i) {
+      Row& row = rows[i - B::kPointRows];
+      if (row.is_driven) give(i, row.impulse, row.drive.next(row.impulse, u[i]) - row.impulse);
+      if (row.is_limited) give(i, row.stop, row.limit.change(row.stop, u[i]));
+    }
+    moves = both(moves, moved);  // each lane ends by itself
+  }
+  for (int i = locked; i < n; ++i) {
+    const int k = i - B::kPointRows;
+    c.put(block.rows[k].impulse, rows[k].impulse);
+    c.put(block.bounds[k].stop, rows[k].stop);
+  }
+}
 
 // On entry, u has the speed error of each locked row and the speed of each bounded one. Returns the
 // changes of the impulses in `change`; zero in lanes outside goes_on.
@@ -352,33 +442,15 @@ template <int W, class B, int kRows, int kLocked>
 void solve_rows(JointLanes<W, B, kRows, kLocked>& c, const LaneMask<W>& goes_on, Lanes<W>* u,
                 Lanes<W>* change, float h, float max_bias_velocity, bool pushes) {
   using F = Lanes<W>;
-  B& block = c.block();
   const F zero(0.0f);
   const int n = c.count(), locked = c.locked();
-  const auto L = [&](int i, int j) { return c.get(block.factor[factor_index(i, j)]); };
+  const auto L = [&](int i, int j) { return c.get(c.block().factor[factor_index(i, j)]); };
   for (int j = 0; j < locked; ++j) {
     for (int i = j + 1; i < n; ++i) u[i] -= L(i, j) * u[j];
   }
   if constexpr (B::kOtherRows > 0) {
     for (int i = locked; i < n; ++i) change[i] = zero;
-    const int sweeps = n > locked + 1 ? kBoundedSweeps : n > locked ? 1 : 0;
-    for (int sweep = 0; sweep < sweeps; ++sweep) {
-      for (int i = locked; i < n; ++i) {
-        const int k = i - B::kPointRows;
-        const F K = L(i, i);
-        const auto give = [&](Field& of, const F& target) {
-          const F p = select(goes_on, target, zero);
-          c.put(of, c.get(of) + p);
-          change[i] += p;
-          for (int j = locked; j < n; ++j) u[j] += (j < i ? L(i, j) : L(j, i)) * p;
-        };
-        const LaneMask<W> holds = c.get(block.bounds[k].holds) > zero;
-        F by_drive = drive_change(c, k, u[i], K, h, pushes);
-        if (!none(holds)) by_drive = select(holds, hold_change(c, k, u[i], K, h, pushes), by_drive);
-        give(block.rows[k].impulse, by_drive);
-        give(block.bounds[k].stop, stop_change(c, k, u[i], K, h, max_bias_velocity, pushes));
-      }
-    }
+    if (n > locked) solve_bounded_rows(c, goes_on, L, u, change, h, max_bias_velocity, pushes);
   }
   for (int i = locked - 1; i >= 0; --i) {
     F x = -(L(i, i) * u[i]);

@@ -20,9 +20,12 @@
 
 namespace vp::solve {
 
-// Iterations over the points of one contact for the restitution impulses: a box that falls flat
-// needs more than one that falls on a corner.
-inline constexpr int kRestitutionSweeps = 8;
+// Max iterations over the points of one contact for the restitution impulses. A box that falls on a
+// corner needs one, on a face some more; points that are close to each other need many, and what
+// has not converged would be energy gained.
+inline constexpr int kRestitutionSweeps = 100;
+inline constexpr float kRestitutionConverged =
+    1e-5f;  // change of a point, as a fraction of the load
 
 template <int W, int P>
 struct Approaching {
@@ -100,8 +103,17 @@ bool apply_restitution_lanes(LanesOf<W, P>& c, float h, float threshold, BounceS
     p[i] = F(0.0f);
   }
   const Points<W, P> points(c, mass, fraction, u, p);
-  for (int sweep = 0; sweep < (P > 1 ? kRestitutionSweeps : 1); ++sweep) {
-    for (int i = 0; i < P; ++i) p[i] = larger(points.target(i, p), F(0.0f));
+  for (int i = 0; i < P; ++i) p[i] = points.shared(i, fraction);
+  auto sweeps = bounces;  // a converged lane does not change
+  for (int sweep = 0; sweep < (P > 1 ? kRestitutionSweeps : 1) && !none(sweeps); ++sweep) {
+    F moved(0.0f), sum(0.0f);
+    for (int i = 0; i < P; ++i) {
+      const F next = select(sweeps, larger(points.target(i, p), F(0.0f)), p[i]);
+      moved = larger(moved, abs(next - p[i]));
+      sum += next;
+      p[i] = next;
+    }
+    sweeps = both(sweeps, moved > F(kRestitutionConverged) * sum);
   }
   F load = p[0];
   for (int i = 1; i < P; ++i) load += p[i];

@@ -167,26 +167,25 @@ bool stop_if_out_of_range(const StepContext& s, std::uint32_t index, const SE3& 
   return true;
 }
 
-// Clearances that are kept are set again at the present poses: rotations are added as vectors, and
-// the sum of many says less and less about the orientation.
+// Contacts with points are computed again. Clearances go on, or are set again at the present poses.
 void restart_displacement(const Stores& s, std::uint32_t index, bool keeps_clearances) {
-  const auto is_speculative = [](const Contact& c) {
-    return c.slot.points == 0 && !c.sensor && !c.of_link && !c.parked;
-  };
-  s.contact_store.for_each_of(s.bodies[index], [&](std::uint32_t, const Contact& c) {
-    if (keeps_clearances && is_speculative(c) && !c.dirty)
-      s.contact_store.use_clearance(c, s.body_set);
-  });
-  std::fill_n(s.body_states[index + 1].displacement, 6, 0.0f);
+  solve::BodyState& state = s.body_states[index + 1];
+  float displacement[6];
+  std::copy_n(state.displacement, 6, displacement);
+  std::fill_n(state.displacement, 6, 0.0f);
   s.start_displacements[index] = {};
   std::fill_n(s.bodies[index].bounded_at, 6, 1e9f);
-  s.contact_store.for_each_of(s.bodies[index], [&](std::uint32_t contact, const Contact& c) {
-    const bool speculative = is_speculative(c);
-    if (speculative && c.dirty) return;
-    const double left = keeps_clearances && speculative ? s.contact_store.clearance(c) : 0.0;
-    if (left > 0.0) return s.contact_store.set_clearance(c, left, s.body_set);
-    if (speculative) s.contact_store.reset_speculative(c, s.body_set);
-    s.contact_store.mark_dirty(contact);
+  ContactStore& contacts = s.contact_store;
+  contacts.for_each_of(s.bodies[index], [&](std::uint32_t i, const Contact& c) {
+    if (c.slot.points > 0 || c.sensor || c.of_link || c.parked) return contacts.mark_dirty(i);
+    if (c.dirty) return;
+    const bool goes_on = contacts.follow_restart(c, index + 1, displacement);
+    if (keeps_clearances && goes_on) return;
+    if (keeps_clearances) contacts.use_clearance(c, s.body_set);
+    const double left = keeps_clearances ? contacts.clearance(c) : 0.0;
+    if (left > 0.0) return contacts.set_clearance(c, left, s.body_set);
+    contacts.reset_speculative(c, s.body_set);
+    contacts.mark_dirty(i);
   });
 }
 

@@ -46,6 +46,7 @@ struct alignas(64) Body {
   bool advanced = false;   // within a step: has its pose of the present sub-step (find_again.cpp)
   bool precesses = false;  // in this step: rotates freely within sub-steps (precession.h)
   bool is_top = false;     // it precesses and has its contacts renewed within the step
+  bool bounced = false;    // in this step: off something, by restitution
   bool shortened = false;  // its motion in this step ended at an impact (fast_rotation.h)
   bool allow_sleep = true;
   bool mass_from_colliders = false;   // updated as colliders are added and removed
@@ -168,7 +169,8 @@ struct Rotated {
 // With more_w: rotates at the angular velocity w + more_w, and ends with the angular momentum of w.
 Rotated rotated_freely(const Body& body, double h, const Vec3& more_w = {});
 // The angular velocity of a body that its contacts rotate to R: w, or, if that would increase the
-// energy, w constant in the body frame.
+// energy, w constant in the body frame. What bounced keeps the energy of its bounce: it has w
+// constant in the body frame in any case.
 Vec3 rate_at(const Body& body, const Mat3& R);
 // R after a small rotation, a vector in the outer frame.
 Mat3 rotated(const Mat3& R, const Vec3& rotation);

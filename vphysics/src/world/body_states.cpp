@@ -59,6 +59,9 @@ bool needs_orthonormalizing(const Mat3& R) {
   return std::fabs(dot(R.cx, R.cx) - 1.0) + std::fabs(dot(R.cy, R.cz)) > kMaxOrthonormalError;
 }
 
+// Relative to w: a smaller change in a step is lost in single precision.
+constexpr double kSmallestChange = 1e-9;
+
 // The angular acceleration that changes w over dt as torque-free rotation does in the body frame.
 // The solver applies it at the orientation at the start of the step, so the energy is conserved
 // there.
@@ -66,6 +69,8 @@ Vec3 gyroscopic_acceleration(const Body& body, double dt) {
   if (body.isotropic || hardly_rotates(body.w, dt)) return {};
   const Mat3& R = body.T.rotation();
   const Vec3 w = transposed_times(R, body.w);
+  const Vec3 change = body.inverse_central * cross(body.central * w, w);
+  if (dt * dt * dot(change, change) <= kSmallestChange * kSmallestChange * dot(w, w)) return {};
   const FreeRotation rotation = free_rotation(body.central, body.inverse_central, w, dt);
   return R * ((1.0 / dt) * (rotation.w - w));
 }
@@ -87,7 +92,7 @@ Vec3 rate_at(const Body& body, const Mat3& R) {
   const Mat3& before = body.T.rotation();
   const Vec3 was = transposed_times(before, body.w), is = transposed_times(R, body.w);
   const bool more = dot(is, body.central * is) > dot(was, body.central * was);
-  return more ? R * was : body.w;
+  return more || body.bounced ? R * was : body.w;
 }
 
 // R after a small rotation by the vector t: Rodrigues' formula with coefficients to sixth order,
@@ -97,7 +102,7 @@ Mat3 rotated(const Mat3& R, const Vec3& t) {
 }
 
 bool BodyStates::load(Body& body, std::uint32_t index) const {
-  body.untouched = body.shortened = body.precesses = body.is_top = false;
+  body.untouched = body.shortened = body.bounced = body.precesses = body.is_top = false;
   solve::BodyState& state = states[index + 1];
   const bool pushed = body.motion == Motion::dynamic;
   put(state.velocity, body.v);
@@ -147,6 +152,12 @@ bool BodyStates::load(Body& body, std::uint32_t index) const {
                        [limit](float x) { return !(std::fabs(x) <= limit); });  // true also for NaN
   };
   return beyond(0, far) || beyond(3, kMaxRotation);
+}
+
+void BodyStates::note_bounce(Body& body, std::uint32_t index) const {
+  body.bounced = true;
+  put(states[index + 1].rate + 3,
+      loads.is_torqued(body) ? loads.acceleration(body, desc.gravity).w : Vec3{});
 }
 
 void BodyStates::set_acceleration(std::uint32_t index, const Velocity& change) const {

@@ -23,6 +23,9 @@ struct BodyStates {
 
   // Before the sub-steps. True if the state's displacement is so long that it must restart at zero.
   bool load(Body& body, std::uint32_t index) const;
+  // In a sub-step in which it has bounced: the gyroscopic torque of the start of the step is not
+  // that of its new velocity.
+  void note_bounce(Body& body, std::uint32_t index) const;
   // Of a kinematic body whose velocity changes evenly over the sub-steps, by `change` in a step,
   // with the mean that it has. After load(); and when its contacts have been found, by that mean.
   void set_acceleration(std::uint32_t index, const Velocity& change) const;

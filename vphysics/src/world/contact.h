@@ -28,24 +28,23 @@ struct Contact {
   bool sensor = false;
   bool of_link = false;  // one of the two is of a link: never in a contact slot (link_contacts.cpp)
   bool touching = false;
-  bool parked = false;  // of sleeping bodies
-  bool dirty = true;    // the next step must test it, however little the two have moved
+  bool parked = false;     // of sleeping bodies
+  bool dirty = true;       // the next step must test it, however little the two have moved
+  bool has_parts = false;  // it is an aggregate contact
+  std::uint8_t count = 0;  // of its contact points
   solve::ContactSlot slot;
-  collide::PairCache cache;  // of the narrow phase
-
-  bool has_parts = false;                 // it is an aggregate contact
+  std::uint32_t speculative_index = 0;    // without points: its index in the speculative list
   std::uint32_t first_part = kNoContact;  // of its parts, in the order of the narrow phase
   // Of a part: its aggregate, the next part, and the indices of the shapes' parts.
   std::uint32_t aggregate = kNoContact, next_part = kNoContact;
   std::uint32_t sub_a = 0, sub_b = 0;
-  bool is_part() const { return aggregate != kNoContact; }
+  collide::PairCache cache;  // of the narrow phase
 
-  // Its contact points.
-  std::uint8_t count = 0;
+  // Of its contact points.
   std::uint32_t feature[collide::kMaxPoints] = {};
   Vec3 position[collide::kMaxPoints] = {};  // world frame, when the narrow phase found them
 
-  std::uint32_t speculative_index = 0;  // without points: its index in the speculative list
+  bool is_part() const { return aggregate != kNoContact; }
 };
 
 }  // namespace vp

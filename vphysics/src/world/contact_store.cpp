@@ -2,12 +2,18 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <utility>
 
 #include "solve/state_vector.h"
 
 namespace vp {
 namespace {
+
+// A clearance goes on when a state's displacement restarts, until the body has moved this many
+// times as far as to the last restart, which costs as much of single precision, or has rotated so
+// far [rad].
+constexpr float kMaxRestarts = 4.0f, kMaxRotationSum = 0.25f;
 
 // Motion of one body of a pair: displacement at the centre of the vicinity sphere, rotation, and
 // the error bound of that displacement.
@@ -190,6 +196,27 @@ double ContactStore::clearance(const Contact& c) const {
 void ContactStore::use_clearance(const Contact& c, const BodySet& on) {
   solve::SpeculativePair& pair = speculative.pair(c.speculative_index);
   pair.clearance -= static_cast<float>(max_approach(pair, on, 0.0));
+}
+
+bool ContactStore::follow_restart(const Contact& c, std::uint32_t state,
+                                  const float* displacement) {
+  solve::SpeculativePair& pair = speculative.pair(c.speculative_index);
+  const bool is_a = pair.a == state;
+  float* const x = is_a ? pair.x_a : pair.x_b;
+  float* const rotation = is_a ? pair.rotation_a : pair.rotation_b;
+  float restart = 0.0f, moved = 0.0f;
+  for (int i = 0; i < 3; ++i) {
+    x[i] -= displacement[i];
+    rotation[i] -= displacement[3 + i];
+    restart = std::max(restart, std::fabs(displacement[i]));
+    moved = std::max(moved, std::fabs(x[i]));
+  }
+  // Rotations are added as vectors. What their order makes of two is at most half of their product.
+  const auto rotated = static_cast<float>(norm(vector_of(rotation)));
+  const auto last = static_cast<float>(norm(vector_of(displacement + 3)));
+  const auto arm = static_cast<float>(norm(vector_of(is_a ? pair.arm_a : pair.arm_b)));
+  pair.clearance -= last * std::max(last, rotated) * (arm + pair.radius);
+  return moved <= kMaxRestarts * restart && rotated <= kMaxRotationSum;
 }
 
 bool ContactStore::may_touch_within(const Contact& c, double time, const BodySet& on) const {

@@ -44,6 +44,7 @@ class ContactStore {
   void for_each_of(const Body& body, const F& f) {
     for (std::uint32_t e = body.first_edge, next = kNone; e != kNone; e = next) {
       next = pool[e / 2].next[e % 2];
+      if (next != kNone) __builtin_prefetch(&pool[next / 2]);
       f(e / 2, pool[e / 2]);
     }
   }
@@ -75,6 +76,11 @@ class ContactStore {
   // Subtracts from the clearance how far the two have moved relative to each other since it was
   // set.
   void use_clearance(const Contact& contact, const BodySet& on);
+
+  // The displacement of a state has restarted at zero, from `displacement`: the pair goes on from
+  // there. False if its sums of displacements or rotations have become too long: then its clearance
+  // must be set again.
+  bool follow_restart(const Contact& contact, std::uint32_t state, const float* displacement);
 
   // Whether the two may touch within this time from now [s], at the states' present velocities.
   bool may_touch_within(const Contact& contact, double time, const BodySet& on) const;

@@ -47,7 +47,7 @@ void ManifoldWriter::add(std::uint32_t contact, const collide::Manifold& manifol
   s_.contact_store.points +=
       static_cast<std::uint32_t>(std::min<int>(manifold.count, c.slot.points)) - c.count;
   if (waiting_.size() == kContactBatch) write();
-  waiting_.push_back({contact, manifold, to_impact});
+  waiting_.push_back({contact, &manifold, &to_impact});
 }
 
 void ManifoldWriter::write() {
@@ -75,14 +75,14 @@ void ManifoldWriter::write() {
 
 // The contact takes over the points.
 solve::NewContact ManifoldWriter::take(const Waiting& waiting, std::span<const float> impulses) {
-  const collide::Manifold& m = waiting.manifold;
+  const collide::Manifold& m = *waiting.manifold;
   Contact& c = s_.contact_store[waiting.contact];
   const Collider &a = s_.colliders[c.a], &b = s_.colliders[c.b];
   solve::NewContact n{};
   n.normal = m.normal;
   // The world has no centre of its own: the other body's centre makes the arms short.
-  n.x_a = reference_point(s_.bodies[a.body]) + waiting.to_impact.a;
-  n.x_b = reference_point(s_.bodies[b.body]) + waiting.to_impact.b;
+  n.x_a = reference_point(s_.bodies[a.body]) + waiting.to_impact->a;
+  n.x_b = reference_point(s_.bodies[b.body]) + waiting.to_impact->b;
   if (end_of(s_.bodies, a.body).state == solve::kWorldState) n.x_a = n.x_b;
   if (end_of(s_.bodies, b.body).state == solve::kWorldState) n.x_b = n.x_a;
   n.count = std::min<int>(m.count, c.slot.points);

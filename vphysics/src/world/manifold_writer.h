@@ -25,7 +25,8 @@ class ManifoldWriter {
   explicit ManifoldWriter(const Stores& stores) : s_(stores) {}
 
   void reserve();
-  // Precondition: the contact has a slot, and no manifold that waits. Writes all if a batch waits.
+  // Precondition: the contact has a slot, and no manifold that waits; the references stay valid
+  // until write(). Writes all if a batch waits.
   void add(std::uint32_t contact, const collide::Manifold& manifold,
            const collide::MotionToImpact& to_impact);
   void write();
@@ -33,8 +34,8 @@ class ManifoldWriter {
  private:
   struct Waiting {
     std::uint32_t contact;
-    collide::Manifold manifold;
-    collide::MotionToImpact to_impact;
+    const collide::Manifold* manifold;
+    const collide::MotionToImpact* to_impact;
   };
   // The block of a waiting manifold's slot.
   struct At {

@@ -91,8 +91,8 @@ struct StepContext : Stores {
 
 // Wakes the body and its island.
 void wake(const Stores& stores, std::uint32_t body);
-// The displacement of the body's state becomes zero. Marks contacts with points dirty. Reduces the
-// clearance of the others by the displacement so far, or to zero unless keeps_clearances.
+// The displacement of the state of the body becomes zero. Contacts with points become dirty; the
+// others keep what is left of their clearance, or nothing unless keeps_clearances.
 void restart_displacement(const Stores& stores, std::uint32_t body, bool keeps_clearances = true);
 // Passes the bounds of colliders that may leave their enlarged ones within h to the broad phase.
 void update_bounds(const Stores& stores, std::uint32_t body, double h, bool is_solver_driven);

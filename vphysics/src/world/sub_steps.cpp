@@ -99,8 +99,15 @@ class SubSteps {
     if (bounced) shift_bounced(1.0f);
     return result;
   }
-  void forget_shifts() const {
-    std::fill(context_.bounce_shifts.begin(), context_.bounce_shifts.end(), solve::BounceShift{});
+  // Calls f(body) for each body that has bounced.
+  template <class F>
+  void forget_shifts(const F& f) const {
+    for (std::size_t i = 0; i < context_.bounce_shifts.size(); ++i) {
+      float(&shift)[8] = context_.bounce_shifts[i].displacement;
+      if (std::all_of(shift, shift + 6, [](float x) { return x == 0.0f; })) continue;
+      if (i > 0) f(static_cast<std::uint32_t>(i - 1));
+      std::fill_n(shift, 8, 0.0f);
+    }
   }
   void keep_velocities(std::size_t region) const {
     for_moving_bodies(region, [&](const std::uint32_t* some, std::size_t count) {
@@ -266,7 +273,8 @@ void World::Impl::take_sub_steps(double dt, int n) {
         runs.everywhere([&](std::size_t region) { steps.load_inertias(region); });
       warm_starts |= changed.has_old_slots;
     }
-    if (some_bounced) steps.forget_shifts();
+    if (some_bounced)
+      steps.forget_shifts([&](std::uint32_t i) { state_of_step.note_bounce(bodies[i], i); });
     if (links) link_contacts.begin_sub_step(dt / n);
     runs.everywhere([&](std::size_t region) { joint_steps.warm_start(region); });
     if (repeats) {
