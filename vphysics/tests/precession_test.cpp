@@ -278,6 +278,29 @@ TEST(Precession, OfATopOnTheFloorGoesOn) {
   }
 }
 
+// Its contact has a second point, on the rim of the base, which carries no load: friction acts at
+// the apex.
+TEST(Precession, OfAConeOnItsApexGoesOn) {
+  for (const double spin : {80.0, 150.0}) {
+    for (const double rate : kRates) {
+      World world;
+      add_ground(world, {.friction = 0.5});
+      Part part;
+      part.shape = Cone{0.1, 0.05};
+      part.pose = SE3(Exp(Vec3{kPi - 0.1, 0, 0}).matrix(), Vec3{0, 0, 0.051});
+      part.velocity = {{0, 0, spin}, {}};
+      const BodyId cone = add_dynamic(world, part);
+      double steepest = 0.0;
+      for (int i = 0; i < std::lround(10.0 * rate); ++i) {
+        must(world.step(1.0 / rate));
+        steepest = std::max(steepest, kPi - std::acos(world.pose(cone).rotation().cz.z));
+      }
+      EXPECT_LT(steepest, 0.3) << spin << " rad/s, " << rate << " Hz";
+      EXPECT_NEAR(world.velocity(cone).w.z, spin, 0.02 * spin) << rate << " Hz";
+    }
+  }
+}
+
 // On a hinge about no principal axis the joint turns the gyroscopic torque back.
 TEST(Precession, OnAHingeAboutAnyAxisKeepsMostOfTheSpin) {
   for (const double rate : kRates) {

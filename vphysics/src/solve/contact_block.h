@@ -9,8 +9,8 @@
 //   s_i = base_i + the same of the states' displacement and rotation          separation
 //   K_ij = du_i / dp_j = 1/m_a + 1/m_b + jA_i . I_a^-1 jA_j + jB_i . I_b^-1 jB_j
 //
-// with jA_i = rA_i x n, jB_i = jA_i + d x n. Friction acts at the centre of the points: along two
-// tangents t, b = n x t, and about the normal.
+// with jA_i = rA_i x n, jB_i = jA_i + d x n. Friction acts at the centre of the near points
+// (renew_pass.h): along two tangents t, b = n x t, and about the normal.
 #pragma once
 
 #include <cstddef>

@@ -421,7 +421,7 @@ void solve_bounded_rows(JointLanes<W, B, kRows, kLocked>& c, const LaneMask<W>& 
   }
   const int sweeps = n > locked + 1 ? kBoundedSweeps : 1;
   for (int sweep = 0; sweep < sweeps && !none(moves); ++sweep) {
-    moved = zero > zero;
+    moved = F(0.0f) > F(0.0f);
     for (int i = locked; i < n; ++i) {
       Row& row = rows[i - B::kPointRows];
       if (row.is_driven) give(i, row.impulse, row.drive.next(row.impulse, u[i]) - row.impulse);

@@ -8,6 +8,10 @@
 
 namespace vp::solve {
 
+// Friction acts at the centre of the points that are near: whose separation exceeds the smallest by
+// at most this many times slid_limit. The weight of others fades over so many times more.
+inline constexpr double kNearPoints = 2.0, kFadingPoints = 8.0;
+
 // N lanes from index `at` on. Only those in new_contacts.lanes are written.
 template <int N, int P>
 class RenewLanes {
@@ -121,13 +125,25 @@ class RenewLanes {
     const D zero(0.0), one(1.0), count = get(new_.count);
     const Sym3T<D> inertia_a = get(new_.a.inertia), inertia_b = get(new_.b.inertia);
     const V first = get(new_.position[0]);
+    D nearest(static_cast<double>(kFarSeparated));
+    for (int i = 0; i < P; ++i) {
+      const auto there = count > D(static_cast<double>(i));
+      const D separation = get(new_.separation[i]);
+      nearest = select(both(there, separation < nearest), separation, nearest);
+    }
+    const D fades = D(kFadingPoints) * get(new_.slid_limit);
+    D weights(0.0), weight[P];
     V sum{zero, zero, zero};
     for (int i = 0; i < P; ++i) {
       const auto there = count > D(static_cast<double>(i));
-      const V x = get(new_.position[i]) - first;
+      const D farther = get(new_.separation[i]) - nearest - D(kNearPoints) * get(new_.slid_limit);
+      const D left = select(zero < farther, one - farther / select(zero < fades, fades, one), one);
+      weight[i] = select(both(there, zero < left), left, zero);
+      const V x = weight[i] * (get(new_.position[i]) - first);
       sum += V{select(there, x.x, zero), select(there, x.y, zero), select(there, x.z, zero)};
+      weights += weight[i];
     }
-    const V centre = first + (one / count) * sum;  // the mean of the points
+    const V centre = first + (one / weights) * sum;  // the weighted mean of the points
     const V r_a = centre - get(new_.a.x), r_b = centre - get(new_.b.x), t2 = cross(n, t1);
     const V a1 = cross(r_a, t1), a2 = cross(r_a, t2), b1 = cross(r_b, t1), b2 = cross(r_b, t2);
     const D mass = get(new_.a.inverse_mass) + get(new_.b.inverse_mass);
@@ -152,13 +168,13 @@ class RenewLanes {
     D extent(0.0);
     for (int i = 0; i < P; ++i) {
       const auto there = count > D(static_cast<double>(i));
-      extent += select(there, norm(get(new_.position[i]) - centre), zero);
+      extent += select(there, weight[i] * norm(get(new_.position[i]) - centre), zero);
     }
     const Sym3T<D> inertia = inertia_a + inertia_b;
     const D about_n = dot(n, inertia * n);
     const auto twists = about_n > zero;
     put(block_.twist_mass, select(twists, one / about_n, zero));
-    put(block_.twist_arm, get(new_.friction) * extent / count + get(new_.spinning));
+    put(block_.twist_arm, get(new_.friction) * extent / weights + get(new_.spinning));
     put(block_.twist_impulse, select(twists, dot(n, moment), zero));
     const D about_tangents = dot(t1, inertia * t1) + dot(t2, inertia * t2);
     const D rolling = get(new_.rolling);

@@ -169,8 +169,9 @@ struct Rotated {
 // With more_w: rotates at the angular velocity w + more_w, and ends with the angular momentum of w.
 Rotated rotated_freely(const Body& body, double h, const Vec3& more_w = {});
 // The angular velocity of a body that its contacts rotate to R: w, or, if that would increase the
-// energy, w constant in the body frame. What bounced keeps the energy of its bounce: it has w
-// constant in the body frame in any case.
+// energy, w constant in the body frame. What bounced keeps the energy of its bounce, which the
+// solver has computed at the orientation before: by the size of w, or, if that is far off, by w
+// constant in the body frame.
 Vec3 rate_at(const Body& body, const Mat3& R);
 // R after a small rotation, a vector in the outer frame.
 Mat3 rotated(const Mat3& R, const Vec3& rotation);

@@ -88,11 +88,17 @@ Rotated rotated_freely(const Body& body, double h, const Vec3& more_w) {
   return {next, next * (body.inverse_central * transposed_times(next, L))};
 }
 
+// Relative: the energies of a body that bounced, by w at both orientations, up to which w is scaled
+// to that of the bounce. At larger differences that would feed energy from one bounce to the next.
+constexpr double kSameEnergy = 0.03;
+
 Vec3 rate_at(const Body& body, const Mat3& R) {
   const Mat3& before = body.T.rotation();
   const Vec3 was = transposed_times(before, body.w), is = transposed_times(R, body.w);
-  const bool more = dot(is, body.central * is) > dot(was, body.central * was);
-  return more || body.bounced ? R * was : body.w;
+  const double energy_was = dot(was, body.central * was), energy = dot(is, body.central * is);
+  if (body.bounced && energy > 0.0 && std::fabs(energy_was - energy) <= kSameEnergy * energy)
+    return std::sqrt(energy_was / energy) * body.w;
+  return body.bounced || energy > energy_was ? R * was : body.w;
 }
 
 // R after a small rotation by the vector t: Rodrigues' formula with coefficients to sixth order,
