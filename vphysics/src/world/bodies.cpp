@@ -179,11 +179,12 @@ void restart_displacement(const Stores& s, std::uint32_t index, bool keeps_clear
   contacts.for_each_of(s.bodies[index], [&](std::uint32_t i, const Contact& c) {
     if (c.slot.points > 0 || c.sensor || c.of_link || c.parked) return contacts.mark_dirty(i);
     if (c.dirty) return;
-    const bool goes_on = contacts.follow_restart(c, index + 1, displacement);
-    if (keeps_clearances && goes_on) return;
-    if (keeps_clearances) contacts.use_clearance(c, s.body_set);
-    const double left = keeps_clearances ? contacts.clearance(c) : 0.0;
-    if (left > 0.0) return contacts.set_clearance(c, left, s.body_set);
+    if (keeps_clearances) {
+      if (contacts.follow_restart(c, index + 1, displacement)) return;
+      contacts.use_clearance(c, s.body_set);
+      const double left = contacts.clearance(c);
+      if (left > 0.0) return contacts.set_clearance(c, left, s.body_set);
+    }
     contacts.reset_speculative(c, s.body_set);
     contacts.mark_dirty(i);
   });

@@ -78,8 +78,8 @@ class ContactStore {
   void use_clearance(const Contact& contact, const BodySet& on);
 
   // The displacement of a state has restarted at zero, from `displacement`: the pair goes on from
-  // there. False if its sums of displacements or rotations have become too long: then its clearance
-  // must be set again.
+  // there, and its clearance may be used up. False if its sums of displacements or rotations have
+  // become too long: then its clearance must be set again.
   bool follow_restart(const Contact& contact, std::uint32_t state, const float* displacement);
 
   // Whether the two may touch within this time from now [s], at the states' present velocities.

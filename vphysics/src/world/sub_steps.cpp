@@ -99,9 +99,9 @@ class SubSteps {
     if (bounced) shift_bounced(1.0f);
     return result;
   }
-  // Calls f(body) for each body that has bounced.
+  // Calls f(body) for each body that a bounce has shifted, and forgets the shifts.
   template <class F>
-  void forget_shifts(const F& f) const {
+  void take_bounced(const F& f) const {
     for (std::size_t i = 0; i < context_.bounce_shifts.size(); ++i) {
       float(&shift)[8] = context_.bounce_shifts[i].displacement;
       if (std::all_of(shift, shift + 6, [](float x) { return x == 0.0f; })) continue;
@@ -274,7 +274,7 @@ void World::Impl::take_sub_steps(double dt, int n) {
       warm_starts |= changed.has_old_slots;
     }
     if (some_bounced)
-      steps.forget_shifts([&](std::uint32_t i) { state_of_step.note_bounce(bodies[i], i); });
+      steps.take_bounced([&](std::uint32_t i) { state_of_step.note_bounce(bodies[i], i); });
     if (links) link_contacts.begin_sub_step(dt / n);
     runs.everywhere([&](std::size_t region) { joint_steps.warm_start(region); });
     if (repeats) {
