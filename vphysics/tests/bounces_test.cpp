@@ -76,14 +76,7 @@ TEST(Bounces, OffEachOtherKeepTheEnergy) {
     for (const double rate : kRates) {
       World world({.gravity = {}});
       Random random(2102);
-      for (int axis = 0; axis < 3; ++axis) {
-        for (const double side : {-1.0, 1.0}) {
-          Vec3 half{kHalf + 0.4, kHalf + 0.4, kHalf + 0.4}, at;
-          half[axis] = 0.2;
-          at[axis] = side * (kHalf + 0.2);
-          add_fixed(world, Box{half}, kBouncy, SE3(at));
-        }
-      }
+      add_walls(world, kHalf, 0.2, kBouncy);
       std::vector<BodyId> bodies;
       double start = 0.0;
       for (int i = 0; i < kSide * kSide * kSide; ++i) {

@@ -113,14 +113,7 @@ struct Gas {
   explicit Gas(int per_side) {
     Random random(1202);
     constexpr double kHalf = 0.2;
-    for (int axis = 0; axis < 3; ++axis) {
-      for (const double side : {-1.0, 1.0}) {
-        Vec3 half{kHalf + 0.2, kHalf + 0.2, kHalf + 0.2}, at;
-        half[axis] = 0.1;
-        at[axis] = side * (kHalf + 0.1);
-        add_fixed(world, Box{half}, kElastic, SE3(at));
-      }
-    }
+    add_walls(world, kHalf, 0.1, kElastic);
     const double pitch = 2.0 * kHalf / per_side;
     for (int i = 0; i < per_side * per_side * per_side; ++i) {
       const auto along = [&](int k) { return pitch * (k % per_side + 0.5) - kHalf; };

@@ -57,6 +57,18 @@ inline BodyId add_ground(World& world, const Material& material, const Vec3& nor
 }
 
 // A kinematic body with a velocity in the body frame.
+// Six walls around a cube of the half extent `half`.
+inline void add_walls(World& world, double half, double half_thickness, const Material& material) {
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double side : {-1.0, 1.0}) {
+      const double wide = half + 2.0 * half_thickness;
+      Vec3 extent{wide, wide, wide}, at;
+      extent[axis] = half_thickness;
+      at[axis] = side * (half + half_thickness);
+      add_fixed(world, Box{extent}, material, SE3(at));
+    }
+  }
+}
 inline BodyId add_kinematic(World& world, const Shape& shape, const se3& velocity,
                             const Material& material = {}, const SE3& pose = {}) {
   BodyDesc desc;

@@ -356,7 +356,8 @@ LimitLaw<W> limit_law(const JointLanes<W, B, kRows, kLocked>& c, int i, const La
   const F below = residual - c.get(bound.lower), above = c.get(bound.upper) - residual;
   const LaneMask<W> at_lower = below <= above;
   const F separation = select(at_lower, below, above);
-  const LaneMask<W> exists = separation<F(0.5f * kNoBound), open = separation> zero;
+  const LaneMask<W> exists = separation < F(0.5f * kNoBound);
+  const LaneMask<W> open = separation > zero;
   const LaneMask<W> gives = K > zero;
   const F mass = select(gives, one / select(gives, K, one), zero);
   const bool linear = !B::kAxes || c.is_along(i);
