@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <vector>
 
 #include "random.h"
 #include "rig.h"
+#include "vphysics/compound.h"
 #include "world/free_rotation.h"
 
 namespace vp::test {
@@ -183,7 +185,9 @@ TEST(FreeBody, ThatIsATopOnABallJointKeepsItsVerticalMomentum) {
 
 TEST(FreeBody, NearAnotherKeepsMomentumAndEnergy) {
   World world({.gravity = {}});
-  add_fixed(world, Box{{1, 1, 0.1}}, {}, SE3(Vec3{0, 0, -0.28}));
+  // Near one part of a compound it has contact points that it does not touch.
+  const std::vector<CompoundPart> floor{{Box{{1, 1, 0.1}}, SE3(Vec3{0, 0, -0.28})}};
+  add_fixed(world, must(Compound::of(floor)), {});
   const BodyId box =
       add_dynamic(world, {.shape = Box{{0.1, 0.12, 0.06}}, .velocity = {{9, 5, 0}, {}}});
   const Spin start = spin_of(world, box);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "random.h"
 #include "rig.h"
 
 namespace vp::test {
@@ -121,6 +122,81 @@ TEST(SearchMargin, TwoThatTravelFarTogetherMeetInTheEnd) {
       EXPECT_GT(world.pose(behind).position().x, 0.9 * travel * time);
     }
   }
+}
+
+// A body flies along the face of a wall, past its axis. The wall turns towards it.
+TEST(SearchMargin, AWallThatTurnsMeetsWhatFliesAlongIt) {
+  for (const bool kinematic : {false, true}) {
+    for (const double rate : {0.1, 0.3, 1.0}) {
+      for (const double speed : {1.0, 4.0}) {
+        for (const double half : {0.02, 0.1}) {
+          World world({.gravity = {}});
+          const Box wall{{3.0, 1.0, 0.1}};
+          BodyDesc desc;
+          desc.motion = kinematic ? Motion::kinematic : Motion::dynamic;
+          desc.inertia = solid_inertia(wall, 1e6);
+          const BodyId board = must(world.create_body(desc));
+          ColliderDesc collider;
+          collider.shape = wall;
+          must(world.add_collider(board, collider));
+          must(world.set_velocity_world(board, {{}, {0, -rate, 0}}));
+          const BodyId flyer = add_dynamic(world, {.shape = Box{{half, half, half}},
+                                                   .pose = SE3(Vec3{-1.0, 0, 0.11 + half}),
+                                                   .velocity = {{}, {speed, 0, 0}}});
+          double deepest = 0.0;
+          for (double time = 0.0; time < std::min(3.5 / speed, 1.2 / rate); time += kFrame) {
+            must(world.step(kFrame));
+            const Vec3 at = inverse_times(world.pose(board), world.pose(flyer).position());
+            if (std::fabs(at.x) < 3.0) deepest = std::max(deepest, 0.1 + half - at.z);
+          }
+          EXPECT_LT(deepest, 0.2 * half)
+              << kinematic << ", " << rate << " rad/s, " << speed << " m/s, half extent " << half;
+        }
+      }
+    }
+  }
+}
+
+// Two that tumble fly past each other closely. A contact would deflect them.
+TEST(SearchMargin, WhatFliesPastHasNoContact) {
+  struct Flyer {
+    Shape shape;
+    double radius;  // that it reaches as it tumbles [m]
+  };
+  const Flyer flyers[] = {{Sphere{0.2}, 0.2},
+                          {Capsule{0.1, 0.2}, 0.3},
+                          {Box{{0.1, 0.15, 0.2}}, 0.27},
+                          {Cylinder{0.1, 0.2}, 0.224},
+                          {Cone{0.15, 0.2}, 0.4}};
+  Random random(2104);
+  int manifolds = 0, steps = 0;
+  for (const Flyer& a : flyers) {
+    for (const Flyer& b : flyers) {
+      for (const double speed : {1.0, 10.0, 50.0}) {
+        World world({.gravity = {}});
+        BodyId bodies[2];
+        Vec3 before[2];
+        for (const int k : {0, 1}) {
+          const double side = k == 0 ? -1.0 : 1.0;
+          const Vec3 turning = random.in_cube(5.0);
+          const Mat3 R = random.rotation();
+          bodies[k] = add_dynamic(
+              world, {.shape = k == 0 ? a.shape : b.shape,
+                      .pose = SE3(R, {-side, 0.5 * (a.radius + b.radius + 0.02) * side, 0})});
+          must(world.set_velocity_world(bodies[k], {{0.5 * side * speed, 0, 0}, turning}));
+          before[k] = world.velocity_world(bodies[k]).linear;
+        }
+        for (double time = 0.0; time < 4.0 / speed; time += kFrame, ++steps) {
+          must(world.step(kFrame));
+          manifolds += static_cast<int>(world.counters().manifolds);
+        }
+        for (const int k : {0, 1})
+          EXPECT_LT(norm(world.velocity_world(bodies[k]).linear - before[k]), 1e-6)
+              << speed << " m/s";
+      }
+    }
+  }
+  EXPECT_LT(manifolds, 0.01 * steps);
 }
 
 // A body that leaves the range of positions stops where the step began. What comes near it

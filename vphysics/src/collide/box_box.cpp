@@ -54,24 +54,6 @@ int axis_from_face(int face) {
   return kBoxFaceAxis[static_cast<std::size_t>(face)];
 }
 
-// The separation along the cached separating axis: a lower bound of the distance. 0 if there is no
-// such axis.
-double separation_along_last(const Boxes& boxes, const CorePair& pair, const PairCache& cache) {
-  switch (cache.feature) {
-    case PairCache::face_of_a:
-      return cache.i < 6 ? boxes.separation_of_a(axis_from_face(cache.i)) : 0.0;
-    case PairCache::face_of_b:
-      return cache.i < 6 ? boxes.separation_of_b(axis_from_face(cache.i)) : 0.0;
-    case PairCache::edges: {
-      if (cache.i >= 3 || cache.j >= 3) return 0.0;
-      const double sine2 = boxes.squared_sine(cache.i, cache.j);
-      return sine2 > kParallel ? boxes.edge_separation(cache.i, cache.j) / std::sqrt(sine2) : 0.0;
-    }
-    default:
-      return separation_along(pair, first_direction(pair, cache));
-  }
-}
-
 Vec3 face_normal(const CorePair& pair, const Boxes& boxes, bool of_a, int axis) {
   if (of_a) {
     Vec3 n;
@@ -80,6 +62,51 @@ Vec3 face_normal(const CorePair& pair, const Boxes& boxes, bool of_a, int axis) 
   }
   const Vec3 n = axis_of(pair.T_a_b.rotation(), axis);
   return boxes.towards_b(axis) < 0.0 ? -n : n;
+}
+
+Vec3 edge_normal(const CorePair& pair, const Boxes& boxes, int i, int j) {
+  Vec3 edge;
+  edge[i] = 1.0;
+  const Vec3 n = cross(edge, axis_of(pair.T_a_b.rotation(), j));
+  return ((dot(n, boxes.t) < 0.0 ? -1.0 : 1.0) / norm(n)) * n;
+}
+
+// Whether they may touch by the cached separating axis. If not, the manifold has that axis.
+bool may_touch_by_last(const ContactQuery& query, const PairMargin& margin, const Boxes& boxes,
+                       const PairCache& cache, Manifold& m) {
+  const auto are_apart = [&](double separation, const auto& normal) {
+    if (separation <= margin.slack()) return false;
+    const Vec3 n = normal();
+    if (may_touch(query, margin, separation, n)) return false;
+    m.normal = n;
+    m.min_separation = separation;
+    return true;
+  };
+  const CorePair& pair = query.pair;
+  switch (cache.feature) {
+    case PairCache::face_of_a: {
+      if (cache.i >= 6) return true;
+      const int i = axis_from_face(cache.i);
+      return !are_apart(boxes.separation_of_a(i),
+                        [&] { return face_normal(pair, boxes, true, i); });
+    }
+    case PairCache::face_of_b: {
+      if (cache.i >= 6) return true;
+      const int j = axis_from_face(cache.i);
+      return !are_apart(boxes.separation_of_b(j),
+                        [&] { return face_normal(pair, boxes, false, j); });
+    }
+    case PairCache::edges: {
+      const int i = cache.i, j = cache.j;
+      const double sine2 = i < 3 && j < 3 ? boxes.squared_sine(i, j) : 0.0;
+      return !(sine2 > kParallel) || !are_apart(boxes.edge_separation(i, j) / std::sqrt(sine2),
+                                                [&] { return edge_normal(pair, boxes, i, j); });
+    }
+    default: {
+      const Vec3 n = first_direction(pair, cache);
+      return !are_apart(separation_along(pair, n), [&] { return n; });
+    }
+  }
 }
 
 // The face whose outward normal points towards the other box.
@@ -136,8 +163,7 @@ bool place_edges(const CorePair& pair, const Boxes& boxes, EdgeAxis& edge) {
   Vec3 da;
   da[edge.i] = 1.0;
   const Vec3 db = axis_of(T.rotation(), edge.j);
-  Vec3 n = cross(da, db);
-  n = ((dot(n, boxes.t) < 0.0 ? -1.0 : 1.0) / norm(n)) * n;
+  const Vec3 n = edge_normal(pair, boxes, edge.i, edge.j);
   const Vec3 nb = T.unrotate(n);
   Vec3 pa, pb;  // the centres of the edges
   for (int k = 0; k < 3; ++k) {
@@ -157,23 +183,23 @@ bool place_edges(const CorePair& pair, const Boxes& boxes, EdgeAxis& edge) {
 
 }  // namespace
 
-void collide_boxes(const CorePair& pair, double margin, PairCache& cache, Manifold& m) {
+void collide_boxes(const CorePair& pair, const PairMargin& margin, PairCache& cache, Manifold& m) {
   const Boxes boxes(pair);
-  m.min_separation = separation_along_last(boxes, pair, cache);
-  if (m.min_separation > margin) return;
-  const ContactQuery query(pair, margin);
+  const ContactQuery query(pair, margin.largest());
+  if (!may_touch_by_last(query, margin, boxes, cache, m)) return;
   FaceAxis face;
   const bool is_within_margin = find_best_face(query, boxes, face);
   face.normal = face_normal(pair, boxes, face.of_a, face.face);
   face.face = facing(boxes, face.of_a, face.face);
   EdgeAxis edge;
-  if (face.separation <= 0.0) find_better_edges(boxes, margin, face, edge);
+  if (face.separation <= 0.0) find_better_edges(boxes, query.margin, face, edge);
   const bool by_edges = edge.better && !query.face_suffices(face.separation, edge.axis.separation);
   if (!by_edges) {
     remember(cache, face.normal, face.of_a ? PairCache::face_of_a : PairCache::face_of_b,
              face.face);
+    m.normal = face.normal;
     m.min_separation = face.separation;
-    if (!is_within_margin) return;
+    if (!is_within_margin || !may_touch(query, margin, face.separation, face.normal)) return;
     Feature feature;
     face_feature(face.of_a ? pair.a : pair.b, face.of_a ? SE3{} : pair.T_a_b, face.face, feature);
     // A point of the patch proves the separation.
@@ -182,15 +208,18 @@ void collide_boxes(const CorePair& pair, double margin, PairCache& cache, Manifo
   }
   if (edge.better) {
     const bool within = place_edges(pair, boxes, edge);
-    if (edge.axis.separation > margin || edge.axis.separation <= 0.0 || within) {
+    if (edge.axis.separation > query.margin || edge.axis.separation <= 0.0 || within) {
       remember(cache, edge.axis.normal, PairCache::edges, edge.i, edge.j);
+      m.normal = edge.axis.normal;
       m.min_separation = edge.axis.separation;
+      if (!may_touch(query, margin, edge.axis.separation, edge.axis.normal)) return;
       return add_contact_along(query, edge.axis, m);
     }
   }
   // Separated, but neither along a face normal nor between two edges.
-  const GjkResult found = gjk(pair, face.normal, margin);
-  if (found.state != GjkResult::State::overlaps) return collide_separated(query, found, cache, m);
+  const GjkResult found = gjk(pair, face.normal, query.margin);
+  if (found.state != GjkResult::State::overlaps)
+    return collide_separated(query, margin, found, cache, m);
   add_contact_along(query, axis_of_face(pair, face), m);  // separated by rounding error only
 }
 

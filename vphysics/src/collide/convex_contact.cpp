@@ -164,26 +164,33 @@ void remember(PairCache& cache, const Vec3& normal, PairCache::Feature feature, 
   cache.j = static_cast<std::uint16_t>(j);
 }
 
-void collide_separated(const ContactQuery& q, const GjkResult& found, PairCache& cache,
-                       Manifold& m) {
+void collide_separated(const ContactQuery& q, const PairMargin& margin, const GjkResult& found,
+                       PairCache& cache, Manifold& m) {
   remember(cache, found.normal);
+  m.normal = found.normal;
   m.min_separation = found.distance - q.radii;
   if (found.state == GjkResult::State::beyond) return;
-  if (found.distance - q.radii > q.margin) return;
+  if (!may_touch(q, margin, found.distance, found.normal)) return;
   add_contact(q, {found.distance, found.normal, found.on_a, found.on_b}, m);
 }
 
-void collide_convex(const CorePair& pair, double margin, PairCache& cache, Manifold& m) {
-  const ContactQuery q(pair, margin);
+void collide_convex(const CorePair& pair, const PairMargin& margin, PairCache& cache, Manifold& m) {
+  const ContactQuery q(pair, margin.largest());
   const Vec3 last = first_direction(pair, cache);
   const CorePoint first = support_of(pair, last);
-  if (is_polytope(pair.a) && is_polytope(pair.b) && dot(last, first.w) >= 0.0 &&
+  const double separation = -dot(last, first.w);
+  if (!may_touch(q, margin, separation, last)) {
+    m.normal = last;
+    m.min_separation = separation - q.radii;
+    return;
+  }
+  if (is_polytope(pair.a) && is_polytope(pair.b) && separation <= 0.0 &&
       one_has_corner_of_other(pair, first)) {
     return collide_polytopes(q, cache, m);
   }
-  const GjkResult found = gjk(pair, last, first, margin + q.radii);
+  const GjkResult found = gjk(pair, last, first, q.margin + q.radii);
   if (found.state != GjkResult::State::overlaps) {
-    collide_separated(q, found, cache, m);
+    collide_separated(q, margin, found, cache, m);
   } else if (is_polytope(pair.a) && is_polytope(pair.b)) {
     collide_polytopes(q, cache, m);
   } else {

@@ -14,8 +14,8 @@ inline constexpr double kFaceAbsolute = 1e-5;  // of the smaller shape's size
 
 struct ContactQuery {
   const CorePair& pair;
-  double margin;
-  double radii;  // sum of both cores' radii
+  double margin;  // the largest search distance
+  double radii;   // sum of both cores' radii
 
   ContactQuery(const CorePair& p, double m)
       : pair(p), margin(m), radii(core_radius(p.a) + core_radius(p.b)) {}
@@ -69,12 +69,20 @@ BestAxis axis_of_face(const CorePair& pair, const FaceAxis& face);
 void add_contact_along(const ContactQuery& query, const BestAxis& axis, Manifold& manifold);
 
 // As find_manifold. Precondition: neither is a half-space.
-void collide_convex(const CorePair& pair, double margin, PairCache& cache, Manifold& manifold);
-// Adds the contact of cores that GJK has found separated.
-void collide_separated(const ContactQuery& query, const GjkResult& found, PairCache& cache,
-                       Manifold& manifold);
+void collide_convex(const CorePair& pair, const PairMargin& margin, PairCache& cache,
+                    Manifold& manifold);
+// Adds the contact of cores that GJK has found separated, if they may touch.
+void collide_separated(const ContactQuery& query, const PairMargin& margin, const GjkResult& found,
+                       PairCache& cache, Manifold& manifold);
+// Whether the cores may touch, though n separates them by so much.
+inline bool may_touch(const ContactQuery& q, const PairMargin& margin, double separation,
+                      const Vec3& n) {
+  const SE3 T_a;
+  return margin.may_touch(separation - q.radii, n, {q.pair.a, T_a}, {q.pair.b, q.pair.T_a_b});
+}
 // Two boxes (box_box.cpp).
-void collide_boxes(const CorePair& pair, double margin, PairCache& cache, Manifold& manifold);
+void collide_boxes(const CorePair& pair, const PairMargin& margin, PairCache& cache,
+                   Manifold& manifold);
 
 // The initial search direction from a to b: the cached one, or between the centres.
 Vec3 first_direction(const CorePair& pair, const PairCache& cache);

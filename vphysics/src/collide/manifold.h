@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
-#include "collide/geometry.h"
 #include "collide/pair_cache.h"
+#include "collide/pair_margin.h"
 
 namespace vp::collide {
 
@@ -20,7 +20,8 @@ struct Manifold {
   Vec3 normal;  // unit, world frame, from a to b
   int count = 0;
   bool rough = false;  // its depth is less accurate than required: CorePair::rough
-  // Without points: a lower bound of the distance, as far as it was computed [m].
+  // Without points: the normal separates them by so much, a lower bound of their distance [m]. The
+  // normal is zero if no such direction is known.
   double min_separation = 0.0;
   ManifoldPoint points[kMaxPoints];
 
@@ -29,15 +30,16 @@ struct Manifold {
   }
 };
 
-// Finds the contact points with a separation of at most margin. Precondition: not two half-spaces.
+// Finds the contact points of two shapes that may touch within the margin. Precondition: not two
+// half-spaces.
 //
 // The normal is the direction of minimum penetration, or of minimum distance if they are separated.
 // If a face does nearly as well (within 5% and 1e-5 of the smaller shape's size), its normal and
 // the patch over it are used: face manifolds have several points and are stable.
 void find_manifold(const Geometry& a, const SE3& T_a, const Geometry& b, const SE3& T_b,
-                   double margin, PairCache& cache, Manifold& manifold);
+                   const PairMargin& margin, PairCache& cache, Manifold& manifold);
 // Without a cache, for a single query.
 void find_manifold(const Geometry& a, const SE3& T_a, const Geometry& b, const SE3& T_b,
-                   double margin, Manifold& manifold);
+                   const PairMargin& margin, Manifold& manifold);
 
 }  // namespace vp::collide

@@ -204,7 +204,7 @@ template <int W>
 std::uint32_t find_closer_pairs(const SpeculativePair* pairs, BodyState* states, float dt) {
   using F = Lanes<W>;
   using V = Vec3T<F>;
-  F of_pair[24];
+  F of_pair[24];  // the fields of SpeculativePair in their order
   for (int c = 0; c < 24; c += 8) {
     lanes::gather8<W>([&](int i) { return reinterpret_cast<const float*>(&pairs[i]) + c; },
                       of_pair + c);
@@ -224,18 +224,21 @@ std::uint32_t find_closer_pairs(const SpeculativePair* pairs, BodyState* states,
   gather(&SpeculativePair::a, x_a, rotation_a);
   gather(&SpeculativePair::b, x_b, rotation_b);
   rotation_a -= get3(3);
-  rotation_b -= get3(9);
-  const V arm_a = get3(12), arm_b = get3(15);
-  const V by_a = x_a - get3(0) + cross(rotation_a, arm_a);
-  const V by_b = x_b - get3(6) + cross(rotation_b, arm_b);
+  rotation_b -= get3(6);
+  const V arm_a = get3(9), arm_b = get3(12), normal = get3(15);
+  const V moved = x_b - x_a - get3(0) + cross(rotation_b, arm_b) - cross(rotation_a, arm_a);
   const auto size = [](const V& v) { return sqrt(dot(v, v)); };
   // A rotating arm leaves its tangent by half of the squared angle.
   const auto arc_error = [&](const V& rotation, const V& arm) {
     return F(0.5f) * dot(rotation, rotation) * size(arm);
   };
-  const F moved = size(by_b - by_a) + of_pair[18] * size(rotation_b - rotation_a) +
-                  arc_error(rotation_a, arm_a) + arc_error(rotation_b, arm_b);
-  const auto stays = moved <= of_pair[19];
+  const F turned =
+      (of_pair[20] * size(rotation_a) + (F(1.0f) - of_pair[20]) * size(rotation_b)) * size(moved);
+  const auto is_directed = F(0.0f) < dot(normal, normal);
+  const F approach = select(is_directed, turned - dot(normal, moved), size(moved)) +
+                     of_pair[18] * size(rotation_b - rotation_a) + arc_error(rotation_a, arm_a) +
+                     arc_error(rotation_b, arm_b);
+  const auto stays = approach <= of_pair[19];
   return lanes::bits_of(!stays);
 }
 

@@ -1,5 +1,5 @@
 // Speculative pairs: close pairs without contact points, in blocks of sixteen. Each has a
-// clearance, the relative displacement after which the narrow phase must process the pair again.
+// clearance, the approach after which the narrow phase must process the pair again.
 #pragma once
 
 #include <cstddef>
@@ -15,19 +15,22 @@ namespace vphysics_solver {
 
 // Read as three rows of eight floats. 96 bytes.
 struct alignas(32) SpeculativePair {
-  // State at the last narrow phase: the rows' displacements and rotations [m], [rad].
-  float x_a[3], rotation_a[3], x_b[3], rotation_b[3];
-  // Arms from the bodies' centres to the centre of the sphere in which the two can touch, and its
-  // radius, the lever arm of relative rotation [m]. The clearance is the permitted relative
-  // displacement [m].
+  // State at the last narrow phase: the displacement of b less that of a, and the rotations [m],
+  // [rad].
+  float x[3], rotation_a[3], rotation_b[3];
+  // Arms from the bodies' centres to the centre of the sphere in which the two can touch [m].
   float arm_a[3], arm_b[3];
-  float radius;
+  // A direction from a to b that separated them, or zero. It rotates with the larger of the two.
+  float normal[3];
+  float radius;  // of that sphere: the lever arm of relative rotation [m]
+  // How far they may approach each other along the normal; without one, the permitted relative
+  // displacement [m].
   float clearance;
+  float a_is_larger;      // 1 or 0
   std::uint32_t a, b;     // indices of the bodies' states; kWorldState in an empty slot
   std::uint32_t contact;  // kNoContact in an empty slot
-  std::uint32_t unused;
 };
-inline constexpr std::size_t kSpeculativeFloats = 20;
+inline constexpr std::size_t kSpeculativeFloats = 21;
 static_assert(sizeof(SpeculativePair) == 96 &&
               offsetof(SpeculativePair, a) == kSpeculativeFloats * sizeof(float));
 struct SpeculativeBlock {

@@ -22,6 +22,9 @@ struct Approach {
   // touch. The second: relative velocity of the bounding spheres' centres, and the motion of each
   // shape within its sphere by rotation.
   double of(const Collider& a, const Collider& b) const;
+  // The search distance of two convex colliders: `largest`, the one at rest and their approach.
+  collide::PairMargin margin(const Collider& a, const Collider& b, double largest,
+                             double at_rest) const;
   // Their motion at the present velocities.
   collide::PairMotion motion(const Collider& a, const Collider& b, double tolerance) const;
 };

@@ -181,9 +181,7 @@ void restart_displacement(const Stores& s, std::uint32_t index, bool keeps_clear
     if (c.dirty) return;
     if (keeps_clearances) {
       if (contacts.follow_restart(c, index + 1, displacement)) return;
-      contacts.use_clearance(c, s.body_set);
-      const double left = contacts.clearance(c);
-      if (left > 0.0) return contacts.set_clearance(c, left, s.body_set);
+      if (contacts.use_clearance(c, s.body_set)) return;
     }
     contacts.reset_speculative(c, s.body_set);
     contacts.mark_dirty(i);
@@ -285,7 +283,7 @@ void World::Impl::forget_contacts(std::uint32_t body) {
       contact_store.forget_part(index, body_set);
     } else if (c.slot.points > 0) {
       contact_store.release_slot(index, body_set);
-      contact_store.set_speculative(index, 0.0, body_set);
+      contact_store.set_speculative(index, 0.0, {}, body_set);
     } else if (!c.parked) {
       contact_store.reset_speculative(c, body_set);
     }

@@ -103,7 +103,7 @@ Vicinity vicinity_of(const Bodies& bodies, const Collider& a, const Collider& b)
   const Collider& smaller = a.radius <= b.radius ? a : b;
   const bool turns =
       smaller.geometry.kind != collide::Kind::sphere && smaller.radius < kUnboundedRadius;
-  return {bodies[smaller.body].T * smaller.centre, turns ? smaller.radius : 0.0};
+  return {bodies[smaller.body].T * smaller.centre, turns ? smaller.radius : 0.0, &smaller == &b};
 }
 
 double smaller_size(const Collider& a, const Collider& b) {

@@ -192,7 +192,7 @@ void ContactState::read_speculative(Reader& in, solve::SpeculativeList& speculat
     for (std::size_t f = 0; f < solve::kSpeculativeFloats; f += 2) {
       const Reader::TwoFloats both = in.two_floats();
       solve::set_near_float(pair, f, both.high);
-      solve::set_near_float(pair, f + 1, both.low);
+      if (f + 1 < solve::kSpeculativeFloats) solve::set_near_float(pair, f + 1, both.low);
     }
   }
 }

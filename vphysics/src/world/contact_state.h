@@ -145,8 +145,10 @@ void write_contacts(Sink& sink, const ContactData& world) {
     for (std::uint32_t i = 0; i < list->size(); ++i) {
       const solve::SpeculativePair& pair = list->pair(i);
       sink.u64(pair.contact);
-      for (std::size_t f = 0; f < solve::kSpeculativeFloats; f += 2)
-        put_two(sink, solve::near_float(pair, f), solve::near_float(pair, f + 1));
+      for (std::size_t f = 0; f < solve::kSpeculativeFloats; f += 2) {
+        const bool is_last = f + 1 == solve::kSpeculativeFloats;
+        put_two(sink, solve::near_float(pair, f), is_last ? 0.0f : solve::near_float(pair, f + 1));
+      }
     }
   }
   sink.u64(world.regions.count);

@@ -25,10 +25,9 @@ struct PairMotion {
 // How much nearer the two of a pair may have come since its clearance was set, and will have come
 // after a further `time` [s] at the states' present velocities. The same bound as find_closer.
 double max_approach(const solve::SpeculativePair& pair, const BodySet& on, double time) {
-  const auto motion = [&](std::uint32_t state, const float* x, const float* rotation,
-                          const float* arm) {
+  const auto motion = [&](std::uint32_t state, const float* rotation, const float* arm) {
     const solve::BodyState& now = on.states[state];
-    Vec3 moved = vector_of(now.displacement) - vector_of(x);
+    Vec3 moved = vector_of(now.displacement);
     Vec3 by = vector_of(now.displacement + 3) - vector_of(rotation);
     if (time > 0.0) {
       moved += time * vector_of(now.velocity);
@@ -37,10 +36,14 @@ double max_approach(const solve::SpeculativePair& pair, const BodySet& on, doubl
     const Vec3 r = vector_of(arm);
     return PairMotion{moved + cross(by, r), by, 0.5 * dot(by, by) * norm(r)};
   };
-  const PairMotion a = motion(pair.a, pair.x_a, pair.rotation_a, pair.arm_a);
-  const PairMotion b = motion(pair.b, pair.x_b, pair.rotation_b, pair.arm_b);
+  const PairMotion a = motion(pair.a, pair.rotation_a, pair.arm_a);
+  const PairMotion b = motion(pair.b, pair.rotation_b, pair.arm_b);
+  const Vec3 moved = b.displacement - a.displacement - vector_of(pair.x),
+             normal = vector_of(pair.normal);
   const double rotated = static_cast<double>(pair.radius) * norm(b.rotation - a.rotation);
-  return norm(b.displacement - a.displacement) + rotated + a.arc_error + b.arc_error;
+  const double turned = norm(pair.a_is_larger > 0.0f ? a.rotation : b.rotation) * norm(moved);
+  const double approached = normal == Vec3{} ? norm(moved) : turned - dot(normal, moved);
+  return approached + rotated + a.arc_error + b.arc_error;
 }
 
 }  // namespace
@@ -152,35 +155,38 @@ void ContactStore::follow_region(const Body& body, const BodySet& on) {
   });
 }
 
-void ContactStore::set_speculative(std::uint32_t index, double clearance, const BodySet& on) {
+void ContactStore::set_speculative(std::uint32_t index, double clearance, const Vec3& normal,
+                                   const BodySet& on) {
   Contact& c = pool[index];
   const std::uint32_t a = on.colliders[c.a].body, b = on.colliders[c.b].body;
   c.speculative_index =
       speculative.add(index, end_of(on.bodies, a).state, end_of(on.bodies, b).state);
-  set_clearance(c, clearance, on);
+  set_clearance(c, clearance, normal, on);
 }
 
-void ContactStore::set_clearance(const Contact& c, double clearance, const BodySet& on) {
+void ContactStore::set_clearance(const Contact& c, double clearance, const Vec3& normal,
+                                 const BodySet& on) {
   solve::SpeculativePair& pair = speculative.pair(c.speculative_index);
   const Collider &a = on.colliders[c.a], &b = on.colliders[c.b];
   const Vicinity at = vicinity_of(on.bodies, a, b);
-  const auto put_end = [&](std::uint32_t state, const Body& body, float* x, float* rotation,
-                           float* arm) {
-    const float* displacement = on.states[state].displacement;
-    std::copy_n(displacement, 3, x);
-    std::copy_n(displacement + 3, 3, rotation);
+  const float *x_a = on.states[pair.a].displacement, *x_b = on.states[pair.b].displacement;
+  for (int i = 0; i < 3; ++i) pair.x[i] = x_b[i] - x_a[i];
+  const auto put_end = [&](std::uint32_t state, const Body& body, float* rotation, float* arm) {
+    std::copy_n(on.states[state].displacement + 3, 3, rotation);
     // Without a clearance any motion uses it up, so that the poses need not be those of one time.
     const bool has_arm = state != solve::kWorldState && clearance > 0.0;
     put(arm, has_arm ? at.centre - reference_point(body) : Vec3{});
   };
-  put_end(pair.a, on.bodies[a.body], pair.x_a, pair.rotation_a, pair.arm_a);
-  put_end(pair.b, on.bodies[b.body], pair.x_b, pair.rotation_b, pair.arm_b);
+  put_end(pair.a, on.bodies[a.body], pair.rotation_a, pair.arm_a);
+  put_end(pair.b, on.bodies[b.body], pair.rotation_b, pair.arm_b);
+  put(pair.normal, normal);
   pair.clearance = static_cast<float>(clearance);
   pair.radius = static_cast<float>(at.radius);
+  pair.a_is_larger = at.is_of_b ? 1.0f : 0.0f;
 }
 
 void ContactStore::reset_speculative(const Contact& c, const BodySet& on) {
-  set_clearance(c, c.of_link ? kNeverTouches : 0.0, on);
+  set_clearance(c, c.of_link ? kNeverTouches : 0.0, {}, on);
 }
 
 void ContactStore::unset_speculative(std::uint32_t index) {
@@ -189,27 +195,25 @@ void ContactStore::unset_speculative(std::uint32_t index) {
   if (moved != solve::kNoContact) pool[moved].speculative_index = slot;
 }
 
-double ContactStore::clearance(const Contact& c) const {
-  return static_cast<double>(speculative.pair(c.speculative_index).clearance);
-}
-
-void ContactStore::use_clearance(const Contact& c, const BodySet& on) {
-  solve::SpeculativePair& pair = speculative.pair(c.speculative_index);
-  pair.clearance -= static_cast<float>(max_approach(pair, on, 0.0));
+bool ContactStore::use_clearance(const Contact& c, const BodySet& on) {
+  const solve::SpeculativePair& pair = speculative.pair(c.speculative_index);
+  const double left = static_cast<double>(pair.clearance) - max_approach(pair, on, 0.0);
+  if (!(left > 0.0)) return false;
+  set_clearance(c, left, {}, on);  // the normal has rotated
+  return true;
 }
 
 bool ContactStore::follow_restart(const Contact& c, std::uint32_t state,
                                   const float* displacement) {
   solve::SpeculativePair& pair = speculative.pair(c.speculative_index);
   const bool is_a = pair.a == state;
-  float* const x = is_a ? pair.x_a : pair.x_b;
   float* const rotation = is_a ? pair.rotation_a : pair.rotation_b;
   float restart = 0.0f, moved = 0.0f;
   for (int i = 0; i < 3; ++i) {
-    x[i] -= displacement[i];
+    pair.x[i] += is_a ? displacement[i] : -displacement[i];
     rotation[i] -= displacement[3 + i];
     restart = std::max(restart, std::fabs(displacement[i]));
-    moved = std::max(moved, std::fabs(x[i]));
+    moved = std::max(moved, std::fabs(pair.x[i]));
   }
   // Rotations are added as vectors. What their order makes of two is at most half of their product.
   const auto rotated = static_cast<float>(norm(vector_of(rotation)));

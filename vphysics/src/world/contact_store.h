@@ -66,16 +66,18 @@ class ContactStore {
   void follow_region(const Body& body, const BodySet& on);
 
   // --- speculative lists
-  // The pair cannot touch before its bodies have moved by clearance [m] relative to each other.
-  void set_speculative(std::uint32_t contact, double clearance, const BodySet& on);
-  void set_clearance(const Contact& contact, double clearance, const BodySet& on);
-  double clearance(const Contact& contact) const;
+  // The pair cannot touch before its bodies have approached each other by clearance [m] along the
+  // normal, a unit vector from a to b; if that is zero, moved so far relative to each other.
+  void set_speculative(std::uint32_t contact, double clearance, const Vec3& normal,
+                       const BodySet& on);
+  void set_clearance(const Contact& contact, double clearance, const Vec3& normal,
+                     const BodySet& on);
   // Sets the clearance to zero, so that it is tested; of links, which are tested elsewhere, to
   // never.
   void reset_speculative(const Contact& contact, const BodySet& on);
-  // Subtracts from the clearance how far the two have moved relative to each other since it was
-  // set.
-  void use_clearance(const Contact& contact, const BodySet& on);
+  // Sets the clearance to what is left of it at the present displacements, in all directions. False
+  // if nothing is.
+  bool use_clearance(const Contact& contact, const BodySet& on);
 
   // The displacement of a state has restarted at zero, from `displacement`: the pair goes on from
   // there, and its clearance may be used up. False if its sums of displacements or rotations have

@@ -111,7 +111,8 @@ void ContactSearch::list_contacts_of_precessing(std::span<const std::uint32_t> p
     if (!is_in_range(s_.body_states[i + 1])) continue;
     s_.contact_store.for_each_of(s_.bodies[i], [&](std::uint32_t index, const Contact& c) {
       if (c.dirty || c.of_link || c.sensor || c.parked || c.is_part()) return;
-      if (c.slot.points > 0 || c.first_part != kNone) s_.contact_store.mark_dirty(index);
+      if (c.touching && (c.slot.points > 0 || c.first_part != kNone))
+        s_.contact_store.mark_dirty(index);
     });
   }
 }

@@ -98,7 +98,7 @@ void ContactSearch::add_contact_pair(std::uint32_t i, std::uint32_t j) {
   c.has_parts = has_parts(a.geometry, b.geometry);
   const std::uint32_t index = s_.contact_store.add(c, s_.body_set);
   if (!c.of_link) s_.contact_store.mark_dirty(index);
-  s_.contact_store.set_speculative(index, 0.0, s_.body_set);
+  s_.contact_store.set_speculative(index, 0.0, {}, s_.body_set);
   s_.contact_store.reset_speculative(s_.contact_store[index], s_.body_set);
 }
 
@@ -216,6 +216,7 @@ void ContactSearch::find_manifold_of(Contact& c, NarrowPhaseResult& found, const
   found.margin = c.sensor ? 0.0 : found.margin_at_rest + approach.of(a, b);
   found.clearance = found.margin - slop;
   found.manifold.count = 0;
+  found.manifold.normal = {};
   found.manifold.rough = false;
   found.to_impact = {};
   found.count = 0;
@@ -224,13 +225,14 @@ void ContactSearch::find_manifold_of(Contact& c, NarrowPhaseResult& found, const
   } else if (c.has_parts) {
     find_parts(c, found, approach, search);
   } else {
-    find_manifold(a.geometry, a.T, b.geometry, b.T, found.margin, c.cache, found.manifold);
+    find_manifold(a.geometry, a.T, b.geometry, b.T,
+                  approach.margin(a, b, found.margin, found.margin_at_rest), c.cache,
+                  found.manifold);
     if (found.manifold.count > 0 && !c.sensor)
       found.to_impact =
           move_to_impact(a.geometry, a.T, b.geometry, b.T,
                          approach.motion(a, b, found.margin_at_rest), found.margin, found.manifold);
-    if (found.manifold.count == 0)
-      found.clearance = std::max(found.clearance, found.manifold.min_separation - slop);
+    found.clearance = found.manifold.min_separation - slop;
   }
 }
 
@@ -261,9 +263,9 @@ void ContactSearch::take_over(const NarrowPhaseResult& found, bool within_step) 
     if (c.touching) s_.events.touch(s_.colliders, c, false);
     if (c.slot.points > 0) {
       s_.contact_store.release_slot(index, s_.body_set);
-      s_.contact_store.set_speculative(index, found.clearance, s_.body_set);
+      s_.contact_store.set_speculative(index, found.clearance, found.manifold.normal, s_.body_set);
     } else {
-      s_.contact_store.set_clearance(c, found.clearance, s_.body_set);
+      s_.contact_store.set_clearance(c, found.clearance, found.manifold.normal, s_.body_set);
     }
   }
   s_.contact_store.park(index,

@@ -137,7 +137,7 @@ void ContactSearch::take_over_parts(const NarrowPhaseResult& result, bool within
   old_parts_.clear();
   for (std::uint32_t p = first; p != kNone; p = s_.contact_store[p].next_part)
     old_parts_.push_back(p);
-  s_.contact_store.set_clearance(s_.contact_store[index], result.clearance, s_.body_set);
+  s_.contact_store.set_clearance(s_.contact_store[index], result.clearance, {}, s_.body_set);
   const std::span<collide::SubManifold> parts = parts_of(result);
   claimed_parts_.clear();
   for (const collide::SubManifold& found : parts)

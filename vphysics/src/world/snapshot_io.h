@@ -13,7 +13,7 @@
 namespace vp {
 
 inline constexpr std::uint64_t kSnapshotMagic = 0x31534359'48505650u;  // "PVPHYCS1"
-inline constexpr std::uint64_t kSnapshotFormat = 14;
+inline constexpr std::uint64_t kSnapshotFormat = 15;
 
 template <class Sink>
 void put(Sink& sink, double x) {
