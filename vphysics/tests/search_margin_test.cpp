@@ -124,6 +124,64 @@ TEST(SearchMargin, TwoThatTravelFarTogetherMeetInTheEnd) {
   }
 }
 
+// A board tilts in circles, as a labyrinth game does. Its wall keeps its distance from a ball that
+// waits, then comes slowly. The sum of the board's rotation vectors drifts.
+TEST(SearchMargin, ABoardThatTiltsInCirclesMeetsWhatComesLate) {
+  for (const double radius : {0.02, 0.06, 0.1}) {  // [rad]
+    for (const double turning : {-12.0, 12.0}) {   // [rad/s]
+      for (const double wait : {3.0, 10.0}) {      // [s]
+        World world({.gravity = {}});
+        const auto tilt = [&](double time) {
+          const double angle = turning * time;
+          return Exp(Vec3{radius * std::cos(angle), radius * std::sin(angle), 0}).matrix();
+        };
+        BodyDesc desc;
+        desc.motion = Motion::kinematic;
+        desc.T_world_body = SE3(tilt(0.0), {});
+        const BodyId board = must(world.create_body(desc));
+        ColliderDesc wall;
+        wall.shape = Box{{0.02, 0.5, 1.0}};
+        wall.T_body_shape = SE3(Vec3{0, 2, 0});
+        must(world.add_collider(board, wall));
+        const BodyId ball = add_dynamic(
+            world, {.shape = Sphere{0.05}, .pose = SE3(Vec3{-0.12 - 1.1 * radius, 2, 0})});
+        double deepest = 0.0;
+        bool comes = false;
+        for (double time = 0.0; time < wait + 4.0; time += kFrame) {
+          const Mat3 step = transposed_times(tilt(time), tilt(time + kFrame));
+          must(world.set_velocity(board, {(1.0 / kFrame) * Log(SO3(step)), {}}));
+          if (!comes && time > wait) {
+            must(world.set_velocity_world(ball, {{0.05, 0, 0}, {}}));
+            comes = true;
+          }
+          must(world.step(kFrame));
+          const Vec3 at =
+              inverse_times(world.pose(board) * wall.T_body_shape, world.pose(ball).position());
+          deepest = std::max(deepest, 0.07 + at.x);
+        }
+        EXPECT_LT(deepest, 5e-3) << radius << " rad, " << turning << " rad/s, " << wait << " s";
+      }
+    }
+  }
+}
+
+// What flies apart is forgotten as soon as its bounds have parted.
+TEST(SearchMargin, WhatFliesApartIsNoPairAnyMore) {
+  World world({.gravity = {}});
+  constexpr int kRow = 6;
+  for (int k = 0; k < kRow * kRow * kRow; ++k) {
+    const Vec3 at{k % kRow - 2.5, k / kRow % kRow - 2.5, k / kRow / kRow - 2.5};
+    add_dynamic(world, {.shape = Sphere{0.1}, .pose = SE3(0.25 * at), .velocity = {{}, 3.0 * at}});
+  }
+  std::uint32_t most = 0;
+  for (int i = 0; i < 120; ++i) {
+    must(world.step(kFrame));
+    most = std::max(most, world.counters().pairs);
+  }
+  EXPECT_GT(most, 100u);
+  EXPECT_LT(world.counters().pairs, most / 20);
+}
+
 // A body flies along the face of a wall, past its axis. The wall turns towards it.
 TEST(SearchMargin, AWallThatTurnsMeetsWhatFliesAlongIt) {
   for (const bool kinematic : {false, true}) {

@@ -199,7 +199,8 @@ std::uint32_t find_changed_slots(const LanesOf<W, P>& c, int at, float keeps_loa
   return bits;
 }
 
-// Bits of speculative pairs that may use up their clearance by the end of a step of dt.
+// Bits of speculative pairs that may use up their clearance by the end of a step of dt, or have
+// parted by as much: they may have left each other's bounds.
 template <int W>
 std::uint32_t find_closer_pairs(const SpeculativePair* pairs, BodyState* states, float dt) {
   using F = Lanes<W>;
@@ -238,7 +239,7 @@ std::uint32_t find_closer_pairs(const SpeculativePair* pairs, BodyState* states,
   const F approach = select(is_directed, turned - dot(normal, moved), size(moved)) +
                      of_pair[18] * size(rotation_b - rotation_a) + arc_error(rotation_a, arm_a) +
                      arc_error(rotation_b, arm_b);
-  const auto stays = approach <= of_pair[19];
+  const auto stays = abs(approach) <= of_pair[19];
   return lanes::bits_of(!stays);
 }
 

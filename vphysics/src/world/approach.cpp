@@ -31,11 +31,13 @@ Velocity Approach::pull_of(const Body& body) const {
 
 namespace {
 
-// How far the impulses of its contacts may move a body within a step, beside its motion at its
-// velocity [m]. A push that moves it by much more has its contacts searched for again.
+// How far the impulses of contacts and joints may move a body within a step, beside its motion at
+// its velocity [m]. A push that moves it by much more has its contacts searched for again.
 double pushed_by_others(const Body& body) {
   constexpr double kPushed = 0.04;  // of its smallest half extent
-  return body.motion == Motion::dynamic && body.contact_slots > 0 ? kPushed * body.min_size : 0.0;
+  const bool pushed =
+      body.motion == Motion::dynamic && (body.contact_slots > 0 || body.first_joint != kNone);
+  return pushed ? kPushed * body.min_size : 0.0;
 }
 
 // One of the two bodies, for this step.
@@ -82,9 +84,10 @@ double Approach::of(const Collider& a, const Collider& b) const {
 collide::PairMargin Approach::margin(const Collider& a, const Collider& b, double largest,
                                      double at_rest) const {
   const Body &body_a = bodies[a.body], &body_b = bodies[b.body];
-  if (!(pull_of(body_a) == Velocity{} && pull_of(body_b) == Velocity{})) return largest;
+  if (!(pull_of(body_a) == Velocity{} && pull_of(body_b) == Velocity{}))
+    return collide::PairMargin(largest);
   const double slack = at_rest + pushed_by_others(body_a) + pushed_by_others(body_b);
-  if (slack >= largest) return largest;
+  if (slack >= largest) return collide::PairMargin(largest);
   return {largest, slack, motion(a, b, 0.0), {a.geometry, a.T}, {b.geometry, b.T}};
 }
 

@@ -189,7 +189,7 @@ void restart_displacement(const Stores& s, std::uint32_t index, bool keeps_clear
 }
 
 void World::Impl::load_states(double dt) {
-  constexpr std::uint8_t kFar = 1, kLeaves = 2, kPulled = 4, kAccelerates = 8;
+  constexpr std::uint8_t kFar = 1, kLeaves = 2, kPulled = 4, kAccelerates = 8, kWobbles = 16;
   sub_step.awake_body_changed.resize(lists.awake_bodies.size());
   const BodyStates step = context.states_in(dt);
   const Approach approach = context.approach_in(dt);
@@ -207,8 +207,8 @@ void World::Impl::load_states(double dt) {
                              stays_within_bounds(body, body_states[i + 1], static_cast<float>(dt));
           const bool pulled = !(approach.pull_of(body) == Velocity{});
           sub_step.awake_body_changed[k] = static_cast<std::uint8_t>(
-              (far ? kFar : 0) | (pulled ? kPulled : 0) | (far || !stays ? kLeaves : 0) |
-              (accelerates ? kAccelerates : 0));
+              (far ? kFar : 0) | (step.wobbles(body, i) ? kWobbles : 0) | (pulled ? kPulled : 0) |
+              (far || !stays ? kLeaves : 0) | (accelerates ? kAccelerates : 0));
         }
       });
   const auto changed_at = [&](std::size_t k) {
@@ -220,7 +220,8 @@ void World::Impl::load_states(double dt) {
     if (i == kNone) continue;
     if ((sub_step.awake_body_changed[k] & kAccelerates) != 0) sub_step.accelerating.push_back(i);
     if (sub_step.awake_body_changed[k] == kAccelerates) continue;
-    if ((sub_step.awake_body_changed[k] & kFar) != 0) restart_displacement(context, i);
+    if ((sub_step.awake_body_changed[k] & (kFar | kWobbles)) != 0)
+      restart_displacement(context, i, (sub_step.awake_body_changed[k] & kWobbles) == 0);
     if ((sub_step.awake_body_changed[k] & kPulled) != 0)
       contact_store.mark_contacts_dirty(bodies[i]);
     if (bodies[i].first_collider != kNone)

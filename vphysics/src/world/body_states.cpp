@@ -160,6 +160,14 @@ bool BodyStates::load(Body& body, std::uint32_t index) const {
   return beyond(0, far) || beyond(3, kMaxRotation);
 }
 
+bool BodyStates::wobbles(const Body& body, std::uint32_t index) const {
+  constexpr double kMinSum = 0.005, kMinRate = 1e-3, kMaxAngle = 1.0;  // [rad], [rad/s], [rad]
+  const Vec3 sum = vector_of(states[index + 1].displacement + 3);
+  const double size = norm(sum), rate = norm(body.w);
+  return size > kMinSum && rate > kMinRate &&
+         dot(sum, body.w) < (1.0 - 0.5 * kMaxAngle * kMaxAngle) * size * rate;
+}
+
 void BodyStates::note_bounce(Body& body, std::uint32_t index) const {
   body.bounced = true;
   put(states[index + 1].rate + 3,

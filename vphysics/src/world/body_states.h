@@ -23,6 +23,10 @@ struct BodyStates {
 
   // Before the sub-steps. True if the state's displacement is so long that it must restart at zero.
   bool load(Body& body, std::uint32_t index) const;
+  // Whether the body rotates across what its state's rotation has become, or back: it wobbles or
+  // swings. The sum of rotation vectors of a wobble is not its rotation, which it leaves by half of
+  // the area that it encloses. Then clearances do not go on.
+  bool wobbles(const Body& body, std::uint32_t index) const;
   // In a sub-step in which it has bounced: the gyroscopic torque of the start of the step is not
   // that of its new velocity.
   void note_bounce(Body& body, std::uint32_t index) const;
