@@ -1,6 +1,6 @@
 // The search distance of two convex shapes at constant velocities, by the argument of
-// search_margin.h: a plane that separates them at both ends of the motion separates them in between.
-// So they need no contact, however fast they move.
+// search_margin.h: a plane that separates them at both ends of the motion separates them in
+// between. So they need no contact, however fast they move.
 #pragma once
 
 #include "collide/sweep.h"
