@@ -25,16 +25,16 @@ TEST(GoldenScenes, TowersOf1120Boxes) {
   EXPECT_EQ(hash_after(towers(8, 14, 10), 30, 60.0), 18081440511936509811u);
 }
 TEST(GoldenScenes, APileOfBoxesSpheresAndCapsules) {
-  EXPECT_EQ(hash_after(pile(120, Pour::mixed), 420, 240.0), 7583488630433053926u);
+  EXPECT_EQ(hash_after(pile(120, Pour::mixed), 420, 240.0), 13746848358304814768u);
 }
 // In 16 regions; bodies move from region to region.
 TEST(GoldenScenes, APileInRegions) {
   vp::WorldDesc settings;
   settings.region_bodies = 8;
-  EXPECT_EQ(hash_after(pile(120, Pour::mixed), 420, 240.0, settings), 16188829991528405651u);
+  EXPECT_EQ(hash_after(pile(120, Pour::mixed), 420, 240.0, settings), 2976948336568052867u);
 }
 TEST(GoldenScenes, AWallThatIsHit) {
-  EXPECT_EQ(hash_after(wall(10), 1500, 1000.0), 15065591984564769399u);
+  EXPECT_EQ(hash_after(wall(10), 1500, 1000.0), 13511921703175005801u);
 }
 TEST(GoldenScenes, AHouseOfCards) {
   EXPECT_EQ(hash_after(card_house(3), 240, 240.0), 6312524249056319229u);
@@ -43,13 +43,13 @@ TEST(GoldenScenes, Dominoes) {
   EXPECT_EQ(hash_after(dominoes(60), 480, 240.0), 8173811389129401892u);
 }
 TEST(GoldenScenes, Ragdolls) {
-  EXPECT_EQ(hash_after(ragdolls(2, 2, 1), 360, 240.0), 11839913355387015706u);
+  EXPECT_EQ(hash_after(ragdolls(2, 2, 1), 360, 240.0), 8637108142960116656u);
 }
 TEST(GoldenScenes, AChainUnderLoad) {
-  EXPECT_EQ(hash_after(chain(50, 0.5), 500, 1000.0), 10966448393598947910u);
+  EXPECT_EQ(hash_after(chain(50, 0.5), 500, 1000.0), 8575419538962223096u);
 }
 TEST(GoldenScenes, ABridgeUnderCrates) {
-  EXPECT_EQ(hash_after(bridge(30, 6), 480, 240.0), 2156006111868744555u);
+  EXPECT_EQ(hash_after(bridge(30, 6), 480, 240.0), 16119396747108233152u);
 }
 
 }  // namespace

@@ -161,7 +161,7 @@ bool BodyStates::load(Body& body, std::uint32_t index) const {
 }
 
 bool BodyStates::wobbles(const Body& body, std::uint32_t index) const {
-  constexpr double kMinSum = 0.005, kMinRate = 1e-3, kMaxAngle = 1.0;  // [rad], [rad/s], [rad]
+  constexpr double kMinSum = 0.02, kMinRate = 1e-3, kMaxAngle = 1.0;  // [rad], [rad/s], [rad]
   const Vec3 sum = vector_of(states[index + 1].displacement + 3);
   const double size = norm(sum), rate = norm(body.w);
   return size > kMinSum && rate > kMinRate &&
