@@ -56,7 +56,6 @@ inline BodyId add_ground(World& world, const Material& material, const Vec3& nor
   return add_fixed(world, HalfSpace{}, material, SE3(R, {}));
 }
 
-// A kinematic body with a velocity in the body frame.
 // Six walls around a cube of the half extent `half`.
 inline void add_walls(World& world, double half, double half_thickness, const Material& material) {
   for (int axis = 0; axis < 3; ++axis) {
@@ -69,6 +68,8 @@ inline void add_walls(World& world, double half, double half_thickness, const Ma
     }
   }
 }
+
+// A kinematic body with a velocity in the body frame.
 inline BodyId add_kinematic(World& world, const Shape& shape, const se3& velocity,
                             const Material& material = {}, const SE3& pose = {}) {
   BodyDesc desc;

@@ -75,7 +75,7 @@ bool should_collide(const Collider& a, const Collider& b);
 struct Vicinity {
   Vec3 centre;
   double radius;  // 0 if the smaller is a sphere: contact is along the line through its centre
-  bool is_of_b;
+  bool is_of_b;   // the smaller is b
 };
 
 Vicinity vicinity_of(const Bodies& bodies, const Collider& a, const Collider& b);
