@@ -27,9 +27,9 @@ std::vector<Tumbler> tumblers() {
       {0.15, 0, -0.1}, {-0.1, 0.12, -0.08}, {-0.1, -0.12, -0.08}, {0, 0, 0.2}};
   const std::vector<CompoundPart> balls{{Sphere{0.08}, SE3(Vec3{0, 0, 0.15})},
                                         {Sphere{0.08}, SE3(Vec3{0, 0, -0.15})}};
-  return {{"capsule", Capsule{0.1, 0.15}, 0.992, 0.2},
+  return {{"capsule", Capsule{0.1, 0.15}},
           {"box", Box{{0.1, 0.1, 0.15}}},
-          {"plank", Box{{0.02, 0.1, 0.3}}, 0.955, 0.8, 0.8},
+          {"plank", Box{{0.02, 0.1, 0.3}}, 0.955, 0.8, 0.73},
           {"cylinder", Cylinder{0.1, 0.15}},
           {"cone", Cone{0.12, 0.15}},
           {"hull", must(ConvexHull::of(corners))},

@@ -93,6 +93,7 @@ PairMargin PairMargin::reversed() const {
 }
 
 PairMargin PairMargin::in_frame(const SE3& T) const {
+  if (slack_ >= largest_) return *this;  // the motion does not matter
   const auto local = [&](const Quaternion& q) {
     const Vec3 u = T.unrotate(vector_part(q));
     return Quaternion{u.x, u.y, u.z, q.w};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "world/free_rotation.h"
 #include "world/solver_limits.h"
 
 namespace vp {
@@ -38,6 +39,15 @@ double pushed_by_others(const Body& body) {
   const bool pushed =
       body.motion == Motion::dynamic && (body.contact_slots > 0 || body.first_joint != kNone);
   return pushed ? kPushed * body.min_size : 0.0;
+}
+
+// How far the change of its angular velocity in free rotation may move a body's points within a
+// step, beside its motion at its velocity [m].
+double moved_by_tumbling(const Body& body, double dt) {
+  if (!body.tumbles() || hardly_rotates(body.w, dt)) return 0.0;
+  const Vec3 w = transposed_times(body.T.rotation(), body.w);
+  const Vec3 acceleration = body.inverse_central * cross(body.central * w, w);
+  return 0.5 * dt * dt * norm(acceleration) * body.bounding_radius;
 }
 
 // One of the two bodies, for this step.
@@ -86,7 +96,8 @@ collide::PairMargin Approach::margin(const Collider& a, const Collider& b, doubl
   const Body &body_a = bodies[a.body], &body_b = bodies[b.body];
   if (!(pull_of(body_a) == Velocity{} && pull_of(body_b) == Velocity{}))
     return collide::PairMargin(largest);
-  const double slack = at_rest + pushed_by_others(body_a) + pushed_by_others(body_b);
+  const double slack = at_rest + pushed_by_others(body_a) + pushed_by_others(body_b) +
+                       moved_by_tumbling(body_a, dt) + moved_by_tumbling(body_b, dt);
   if (slack >= largest) return collide::PairMargin(largest);
   return {largest, slack, motion(a, b, 0.0), {a.geometry, a.T}, {b.geometry, b.T}};
 }
