@@ -8,7 +8,6 @@
 
 #include "random.h"
 #include "rig.h"
-#include "vphysics/compound.h"
 #include "world/free_rotation.h"
 
 namespace vp::test {
@@ -184,12 +183,27 @@ TEST(FreeBody, ThatIsATopOnABallJointKeepsItsVerticalMomentum) {
 }
 
 TEST(FreeBody, NearAnotherKeepsMomentumAndEnergy) {
-  World world({.gravity = {}});
-  // Near one part of a compound it has contact points that it does not touch.
-  const std::vector<CompoundPart> floor{{Box{{1, 1, 0.1}}, SE3(Vec3{0, 0, -0.28})}};
-  add_fixed(world, must(Compound::of(floor)), {});
-  const BodyId box =
-      add_dynamic(world, {.shape = Box{{0.1, 0.12, 0.06}}, .velocity = {{9, 5, 0}, {}}});
+  World world;
+  // Near a plate that a strong force pulls it has contact points that it does not touch.
+  BodyDesc desc, fixed;
+  fixed.motion = Motion::fixed;
+  desc.gravity_scale = 10.0;
+  desc.T_world_body = SE3(Vec3{0, 0, -0.28});
+  const BodyId plate = must(world.create_body(desc));
+  ColliderDesc collider;
+  collider.shape = Box{{1, 1, 0.1}};
+  must(world.add_collider(plate, collider));
+  const BodyId ground = must(world.create_body(fixed));
+  JointDesc weld;
+  weld.kind = Weld{};
+  weld.T_a_joint = desc.T_world_body;
+  must(world.create_joint(ground, plate, weld));
+  desc.gravity_scale = 0.0;
+  desc.T_world_body = {};
+  const BodyId box = must(world.create_body(desc));
+  collider.shape = Box{{0.1, 0.12, 0.06}};
+  must(world.add_collider(box, collider));
+  must(world.set_velocity(box, {{9, 5, 0}, {}}));
   const Spin start = spin_of(world, box);
   std::uint32_t held = 0;
   for (int i = 0; i < 1200; ++i) {

@@ -7,6 +7,7 @@
 
 #include "random.h"
 #include "rig.h"
+#include "vphysics/compound.h"
 
 namespace vp::test {
 namespace {
@@ -221,7 +222,13 @@ TEST(SearchMargin, WhatFliesPastHasNoContact) {
     Shape shape;
     double radius;  // that it reaches as it tumbles [m]
   };
+  const std::vector<CompoundPart> balls{{Sphere{0.1}, SE3(Vec3{0, 0, 0.15})},
+                                        {Sphere{0.1}, SE3(Vec3{0, 0, -0.15})}};
+  const std::vector<CompoundPart> boxes{{Box{{0.05, 0.1, 0.05}}, SE3(Vec3{0, 0.12, 0})},
+                                        {Box{{0.05, 0.1, 0.05}}, SE3(Vec3{0, -0.12, 0})}};
   const Flyer flyers[] = {{Sphere{0.2}, 0.2},
+                          {must(Compound::of(balls)), 0.25},
+                          {must(Compound::of(boxes)), 0.231},
                           {Capsule{0.1, 0.2}, 0.3},
                           {Box{{0.1, 0.15, 0.2}}, 0.27},
                           {Cylinder{0.1, 0.2}, 0.224},

@@ -57,7 +57,7 @@ TEST(SurfaceMotion, FindsWhatAShapeEnters) {
         for (int i = 1; i <= 20; ++i)
           deepest = std::min(deepest, find(waves, SE3{}, shape, pose(0.05 * i), 0.0).deepest());
         const double largest = kSlack + norm(motion.v) + 0.6 * angle;
-        const Found found = find(waves, SE3{}, shape, T, {largest, kSlack, pair});
+        const Found found = find(waves, SE3{}, shape, T, {largest, kSlack, 0.0, pair});
         points += points_of(found);
         points_everywhere += points_of(find(waves, SE3{}, shape, T, largest));
         if (deepest > -1e-4) continue;

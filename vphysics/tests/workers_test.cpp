@@ -192,6 +192,34 @@ TEST_F(Workers, MayTakeTheTurnsOfRegions) {
   EXPECT_EQ(hashes_of_lift(std::make_shared<Backwards>()), alone);
   EXPECT_EQ(hashes_of_lift(std::make_shared<Threads>(2)), alone);
 }
+// Bodies that fly, so that the displacements of many restart in the same step.
+std::vector<std::uint64_t> hashes_of_swarm(const std::shared_ptr<TaskScheduler>& jobs) {
+  World world;
+  add_ground(world, {.restitution = 0.4});
+  const std::vector<CompoundPart> parts{{Sphere{0.06}, SE3(Vec3{0.06, 0, 0})},
+                                        {Box{{0.06, 0.05, 0.04}}, SE3(Vec3{-0.06, 0, 0})}};
+  const Compound dumbbell = Compound::of(parts).value();
+  for (int i = 0; i < 400; ++i) {
+    Part part{.shape = Box{{0.06, 0.08, 0.1}},
+              .pose = SE3(Vec3{0.3 * (i % 8), 0.3 * (i / 8 % 8), 0.3 + 0.3 * (i / 64)}),
+              .velocity = {{0.1 * (i % 7), 0.2 * (i % 5), 0}, {6.0, 0, 0.3 * (i % 3)}}};
+    if (i % 3 == 0) part.shape = dumbbell;
+    add_dynamic(world, part);
+  }
+  world.set_task_scheduler(jobs);
+  std::vector<std::uint64_t> hashes;
+  for (int i = 0; i < 60; ++i) {
+    must(world.step(1.0 / 60));
+    if (i % 10 == 9) hashes.push_back(world.state_hash());
+  }
+  EXPECT_GT(world.counters().pairs, 400u);
+  return hashes;
+}
+TEST_F(Workers, MayRestartDisplacements) {
+  const auto alone = hashes_of_swarm(nullptr);
+  EXPECT_EQ(hashes_of_swarm(std::make_shared<Backwards>()), alone);
+  EXPECT_EQ(hashes_of_swarm(std::make_shared<Threads>(2)), alone);
+}
 // Also with regions.
 TEST_F(Workers, MayTakeRegions) {
   constexpr int kRegionBodies = 100;

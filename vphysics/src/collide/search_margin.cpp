@@ -35,8 +35,9 @@ SE3 SweptMargin::part_of_displacement(double fraction, const Vec3& centre) const
   return {R, centre + fraction * (displacement * centre - centre) - R * centre};
 }
 
-SearchMargin::SearchMargin(double largest, double at_rest, const PairMotion& motion)
+SearchMargin::SearchMargin(double largest, double at_rest, double pushed, const PairMotion& motion)
     : all_{largest, at_rest, at_rest},
+      pushed_(pushed),
       motion_(motion),
       displacement_of_b_(relative_pose(displacement_after(motion.a, motion.dt),
                                        displacement_after(motion.b, motion.dt))) {}
@@ -63,6 +64,13 @@ ApproachBounds SearchMargin::approach_of(const Geometry& shape, const SE3& T, bo
   const bool rotates_far = rotated > kFarRotation * min_half_extent(shape);
   const double slack = rotates_far ? largest : all_.slack + bend + own_bend;
   return {largest, std::min(largest, slack), std::min(largest, all_.touching + bend), rotates_far};
+}
+
+PairMargin SearchMargin::of_convex(const ApproachBounds& bounds, const Posed& a,
+                                   const Posed& b) const {
+  const double slack = all_.slack + pushed_;
+  if (!motion_ || slack >= bounds.largest) return PairMargin(bounds.largest);
+  return {bounds.largest, slack, *motion_, a, b};
 }
 
 SweptMargin SearchMargin::swept(const ApproachBounds& bounds, bool moves_b, const SE3& T) const {

@@ -8,6 +8,7 @@
 
 #include <optional>
 
+#include "collide/pair_margin.h"
 #include "collide/sweep.h"
 
 namespace vp::collide {
@@ -49,18 +50,22 @@ class SearchMargin {
  public:
   // The same everywhere.
   SearchMargin(double everywhere) : all_{everywhere, everywhere, everywhere} {}
-  // motion: of both until the next search. at_rest: the margin without it.
-  SearchMargin(double largest, double at_rest, const PairMotion& motion);
+  // motion: of both until the next search. at_rest: the margin without it. pushed: how far others
+  // may move them beside that motion.
+  SearchMargin(double largest, double at_rest, double pushed, const PairMotion& motion);
 
   const ApproachBounds& all() const { return all_; }
   const PairMotion* motion() const { return motion_ ? &*motion_ : nullptr; }  // null: none
   // Of a convex shape in this pose, b or a part of it, or else of a.
   ApproachBounds approach_of(const Geometry& shape, const SE3& T, bool is_b) const;
+  // Of two convex shapes of this pair, or parts of them. bounds: of one of the two.
+  PairMargin of_convex(const ApproachBounds& bounds, const Posed& a, const Posed& b) const;
   // In the frame of the other shape, which has the pose T.
   SweptMargin swept(const ApproachBounds& bounds, bool moves_b, const SE3& T) const;
 
  private:
   ApproachBounds all_;
+  double pushed_ = 0.0;
   std::optional<PairMotion> motion_;
   SE3 displacement_of_b_;  // relative to a, until the next search
 };

@@ -96,10 +96,15 @@ collide::PairMargin Approach::margin(const Collider& a, const Collider& b, doubl
   const Body &body_a = bodies[a.body], &body_b = bodies[b.body];
   if (!(pull_of(body_a) == Velocity{} && pull_of(body_b) == Velocity{}))
     return collide::PairMargin(largest);
-  const double slack = at_rest + pushed_by_others(body_a) + pushed_by_others(body_b) +
-                       moved_by_tumbling(body_a, dt) + moved_by_tumbling(body_b, dt);
+  const double slack = at_rest + pushed(a, b);
   if (slack >= largest) return collide::PairMargin(largest);
   return {largest, slack, motion(a, b, 0.0), {a.geometry, a.T}, {b.geometry, b.T}};
+}
+
+double Approach::pushed(const Collider& a, const Collider& b) const {
+  const Body &body_a = bodies[a.body], &body_b = bodies[b.body];
+  return pushed_by_others(body_a) + pushed_by_others(body_b) + moved_by_tumbling(body_a, dt) +
+         moved_by_tumbling(body_b, dt);
 }
 
 collide::PairMotion Approach::motion(const Collider& a, const Collider& b, double tolerance) const {

@@ -25,6 +25,8 @@ struct Approach {
   // The search distance of two convex colliders: `largest`, the one at rest and their approach.
   collide::PairMargin margin(const Collider& a, const Collider& b, double largest,
                              double at_rest) const;
+  // How far the two may move within the step beside their motion at their velocities [m].
+  double pushed(const Collider& a, const Collider& b) const;
   // Their motion at the present velocities.
   collide::PairMotion motion(const Collider& a, const Collider& b, double tolerance) const;
 };

@@ -6,6 +6,7 @@
 #include "solve/state_vector.h"
 #include "world/impl.h"
 #include "world/prefetch.h"
+#include "world/restarts.h"
 #include "world/validate.h"
 
 namespace vp {
@@ -167,27 +168,6 @@ bool stop_if_out_of_range(const StepContext& s, std::uint32_t index, const SE3& 
   return true;
 }
 
-// Contacts with points are computed again. Clearances go on, or are set again at the present poses.
-void restart_displacement(const Stores& s, std::uint32_t index, bool keeps_clearances) {
-  solve::BodyState& state = s.body_states[index + 1];
-  float displacement[6];
-  std::copy_n(state.displacement, 6, displacement);
-  std::fill_n(state.displacement, 6, 0.0f);
-  s.start_displacements[index] = {};
-  std::fill_n(s.bodies[index].bounded_at, 6, 1e9f);
-  ContactStore& contacts = s.contact_store;
-  contacts.for_each_of(s.bodies[index], [&](std::uint32_t i, const Contact& c) {
-    if (c.slot.points > 0 || c.sensor || c.of_link || c.parked) return contacts.mark_dirty(i);
-    if (c.dirty) return;
-    if (keeps_clearances) {
-      if (contacts.follow_restart(c, index + 1, displacement)) return;
-      if (contacts.use_clearance(c, s.body_set)) return;
-    }
-    contacts.reset_speculative(c, s.body_set);
-    contacts.mark_dirty(i);
-  });
-}
-
 void World::Impl::load_states(double dt) {
   constexpr std::uint8_t kFar = 1, kLeaves = 2, kPulled = 4, kAccelerates = 8, kWobbles = 16;
   sub_step.awake_body_changed.resize(lists.awake_bodies.size());
@@ -205,6 +185,7 @@ void World::Impl::load_states(double dt) {
           if (accelerates) step.set_acceleration(i, change);
           const bool stays = joins_sub_steps(body) &&
                              stays_within_bounds(body, body_states[i + 1], static_cast<float>(dt));
+          if (far || !stays) pose_colliders(body, colliders);
           const bool pulled = !(approach.pull_of(body) == Velocity{});
           sub_step.awake_body_changed[k] = static_cast<std::uint8_t>(
               (far ? kFar : 0) | (step.wobbles(body, i) ? kWobbles : 0) | (pulled ? kPulled : 0) |
@@ -214,14 +195,19 @@ void World::Impl::load_states(double dt) {
   const auto changed_at = [&](std::size_t k) {
     return sub_step.awake_body_changed[k] == 0 ? kNone : lists.awake_bodies[k];
   };
+  sub_step.restarts.reserve(bodies.size());
+  for (std::size_t k = 0; k < lists.awake_bodies.size(); ++k) {
+    const std::uint8_t changed = sub_step.awake_body_changed[k];
+    if ((changed & (kFar | kWobbles)) != 0)
+      sub_step.restarts.add(lists.awake_bodies[k], (changed & kWobbles) == 0);
+  }
+  sub_step.restarts.run(context);
   for (std::size_t k = 0; k < lists.awake_bodies.size(); ++k) {
     prefetch_bodies(context, changed_at, k, lists.awake_bodies.size());
     const std::uint32_t i = changed_at(k);
     if (i == kNone) continue;
     if ((sub_step.awake_body_changed[k] & kAccelerates) != 0) sub_step.accelerating.push_back(i);
     if (sub_step.awake_body_changed[k] == kAccelerates) continue;
-    if ((sub_step.awake_body_changed[k] & (kFar | kWobbles)) != 0)
-      restart_displacement(context, i, (sub_step.awake_body_changed[k] & kWobbles) == 0);
     if ((sub_step.awake_body_changed[k] & kPulled) != 0)
       contact_store.mark_contacts_dirty(bodies[i]);
     if (bodies[i].first_collider != kNone)

@@ -39,10 +39,10 @@ struct alignas(64) Body {
   // posed and bounded are updated from the pose on demand. A link's T, w and v are refreshed only
   // if is_followed(); otherwise its articulation has them.
   bool asleep = false;
-  bool pose_pending = false;  // its colliders' poses are queued for computation
-  bool posed = false;         // the colliders' poses and bounds match T
-  bool bounded = false;       // `bounds` matches T
-  bool untouched = false;     // nothing changed its rotation in this step: it has rotated freely
+  bool is_being_posed = false;  // by one of several workers
+  bool posed = false;           // the colliders' poses and bounds match T
+  bool bounded = false;         // `bounds` matches T
+  bool untouched = false;       // nothing changed its rotation in this step: it has rotated freely
   bool advanced = false;   // within a step: has its pose of the present sub-step (find_again.cpp)
   bool precesses = false;  // in this step: rotates freely within sub-steps (precession.h)
   bool is_top = false;     // it precesses and has its contacts renewed within the step

@@ -43,12 +43,16 @@ const collide::Bounds& bounds_at_pose(Body& body, Colliders& colliders) {
 }
 
 void pose_colliders(Body& body, Colliders& colliders) {
-  body.pose_pending = false;
   if (body.posed) return;
   body.posed = true;
   for (std::uint32_t c = body.first_collider; c != kNone; c = colliders[c].next) {
     pose_collider(body, colliders[c]);
   }
+}
+void pose_colliders_once(Body& body, Colliders& colliders) {
+  if (__atomic_exchange_n(&body.is_being_posed, true, __ATOMIC_ACQUIRE)) return;
+  pose_colliders(body, colliders);
+  __atomic_store_n(&body.is_being_posed, false, __ATOMIC_RELEASE);
 }
 void pose_collider(const Body& body, Collider& collider) {
   if (collider.posed_for == body.pose_number) return;

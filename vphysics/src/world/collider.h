@@ -51,6 +51,8 @@ using Colliders = Slots<Collider, ColliderId>;
 // Computes the poses and bounds of a body's colliders at its pose.
 void pose_collider(const Body& body, Collider& collider);
 void pose_colliders(Body& body, Colliders& colliders);
+// The same where other workers may do so too: one of them does, and all see it when the loop ends.
+void pose_colliders_once(Body& body, Colliders& colliders);
 const collide::Bounds& bounds_at_pose(Body& body, Colliders& colliders);
 // Adds a collider to the body's summary of its colliders. line: the line that a link only slides
 // along and rotates about; otherwise zero.

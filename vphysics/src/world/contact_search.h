@@ -28,6 +28,7 @@ struct NarrowPhaseResult {
   // Search distances, with motion and at rest, and the distance that is free of contact [m].
   double margin, margin_at_rest, clearance;
   collide::MotionToImpact to_impact;
+  bool taken_over = false;  // the contact had no points and gets none: its clearance is set
   // Of a contact with parts: `count` manifolds of a PartSearch from `first` on.
   std::uint32_t search = 0, first = 0, count = 0;
 };
@@ -74,6 +75,9 @@ class ContactSearch {
     Vec3 w, v;
   };
 
+  // What becomes of a dirty contact.
+  enum class Verdict : std::uint8_t { skip, separated, test };
+
   // find_contacts.cpp
   void find_new_contacts();
   void drop_separated_link_contacts();
@@ -81,10 +85,12 @@ class ContactSearch {
   void add_contact_pair(std::uint32_t collider_i, std::uint32_t collider_j);
   void find_dirty_contacts(double dt, const ContactRuns& runs);
   void list_dirty_contacts(const ContactRuns& runs);
+  Verdict judge(const Contact& contact) const;
   void find_manifolds_of(std::span<const std::uint32_t> contacts, double dt);
   void find_manifold_of(Contact& contact, NarrowPhaseResult& found, const Approach& approach,
                         PartSearch& search) const;
   // within_step: contact slots that have impulses in this step are kept.
+  bool stays_without_points(const Contact& contact, const NarrowPhaseResult& found) const;
   void take_over(const NarrowPhaseResult& found, bool within_step);
   void assign_slot(std::uint32_t contact, const collide::Manifold& manifold,
                    const collide::MotionToImpact& to_impact);
@@ -111,8 +117,8 @@ class ContactSearch {
 
   // --- scratch; keeps its capacity between steps
   std::vector<collide::ProxyPair> new_pairs_;
-  std::vector<std::uint32_t> dirty_;    // contacts of this iteration
-  std::vector<std::uint32_t> to_pose_;  // bodies
+  std::vector<std::uint32_t> dirty_;  // contacts of this iteration
+  std::vector<Verdict> verdicts_;     // of each of them
   std::vector<NarrowPhaseResult> results_;
   std::vector<PartSearch> part_searches_;
   std::vector<std::uint32_t> old_parts_, claimed_parts_;  // of a contact with parts

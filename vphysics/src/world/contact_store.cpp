@@ -145,6 +145,25 @@ void ContactStore::release_slot(std::uint32_t index, const BodySet& on) {
   --on.bodies[b].contact_slots;
 }
 
+void ContactStore::let_be_renewed(const Contact& c) {
+  constexpr float kFarRotation = 1e9f;
+  const auto lane = static_cast<std::size_t>(solve::ContactGraph::lane(c.slot));
+  (c.slot.points == 1 ? graph.block<1>(c.slot).rotated_a : graph.block<4>(c.slot).rotated_a)
+      .x.lane[lane] = kFarRotation;
+}
+
+ContactStore::States ContactStore::states_of(const Contact& c) const {
+  const auto of_slot = [&](const auto& block) {
+    const auto lane = static_cast<std::size_t>(solve::ContactGraph::lane(c.slot));
+    return States{block.a.lane[lane], block.b.lane[lane]};
+  };
+  if (c.slot.points == 1) return of_slot(graph.block<1>(c.slot));
+  if (c.slot.points > 0) return of_slot(graph.block<4>(c.slot));
+  const solve::SpeculativePair& pair =
+      (c.parked ? parked_speculative : speculative).pair(c.speculative_index);
+  return {pair.a, pair.b};
+}
+
 void ContactStore::follow_region(const Body& body, const BodySet& on) {
   for_each_of(body, [&](std::uint32_t, Contact& c) {
     if (c.slot.points == 0 || c.parked) return;

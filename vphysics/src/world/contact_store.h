@@ -48,6 +48,16 @@ class ContactStore {
       f(e / 2, pool[e / 2]);
     }
   }
+  // Before each speculative pair of a body is accessed: requests them all at once.
+  void prefetch_speculative(const Body& body) const {
+    for (std::uint32_t e = body.first_edge; e != kNone; e = pool[e / 2].next[e % 2]) {
+      const Contact& c = pool[e / 2];
+      if (c.slot.points > 0 || c.parked) continue;
+      const auto* pair = reinterpret_cast<const char*>(&speculative.pair(c.speculative_index));
+      __builtin_prefetch(pair);
+      __builtin_prefetch(pair + sizeof(solve::SpeculativePair) - 1);
+    }
+  }
   bool touches_in_parts(const Contact& aggregate) const;
 
   // A new contact, in no slot and no speculative list.
@@ -58,10 +68,18 @@ class ContactStore {
   // Removes one of several parts and marks the aggregate dirty.
   void forget_part(std::uint32_t part, const BodySet& on);
 
+  // The states of its two bodies.
+  struct States {
+    std::uint32_t a, b;
+  };
+  States states_of(const Contact& contact) const;
+
   // --- contact slots
   // Assigns a slot for up to max_points points; the contact leaves its speculative list.
   void assign_slot(std::uint32_t contact, int max_points, const BodySet& on);
   void release_slot(std::uint32_t contact, const BodySet& on);
+  // The pass that looks for moved slots finds this one, however little it has moved.
+  void let_be_renewed(const Contact& contact);
   // Moves the body's contacts to the regions that they are in now.
   void follow_region(const Body& body, const BodySet& on);
 

@@ -11,7 +11,7 @@ namespace {
 // A contact is computed again when the two have rotated by more [rad]. The separation of a point at
 // an arm r then has an error of r angle^2 / 2: a thirtieth of a millimetre for a box of a metre.
 constexpr double kRevolution = 0.01;
-constexpr std::size_t kNarrowPhaseGrain = 16;  // contacts: some microseconds
+constexpr std::size_t kNarrowPhaseGrain = 16, kListGrain = 256;  // contacts: some microseconds
 static_assert(kContactBatch % kNarrowPhaseGrain == 0);
 
 // A sphere touches a convex shape at one point.
@@ -32,14 +32,14 @@ bool ContactSearch::is_needed() const {
 void ContactSearch::begin_step(std::size_t contacts) {
   renewed_ = 0;
   for (auto* list : {&dirty_, &dirty_next_step_}) list->reserve(s_.contact_store.dirty.capacity());
+  verdicts_.reserve(dirty_.capacity());
   results_.reserve(std::min(contacts, kContactBatch));
   part_searches_.resize(kContactBatch / kNarrowPhaseGrain);
   if (s_.workers.scheduler) reserve_part_searches();
   writer_.reserve();
   new_pairs_.reserve(contacts);
   const std::size_t n = s_.bodies.size();
-  if (n <= to_pose_.capacity()) return;
-  to_pose_.reserve(n);
+  if (n <= deviating_.capacity()) return;
   deviating_.reserve(n);
   deviates_.reserve(n);
   advanced_.reserve(64 + n / 8);  // grows in a step in which more bodies deviate
@@ -148,43 +148,37 @@ void ContactSearch::update(double dt, const ContactRuns& runs) {
   s_.contact_store.dirty.swap(dirty_next_step_);
 }
 
-// Lists the contacts to test. Removes those whose enlarged bounds have separated.
+// Lists the contacts to test, and poses their colliders. Removes those whose enlarged bounds have
+// separated.
 void ContactSearch::list_dirty_contacts(const ContactRuns& runs) {
   s_.contact_store.take_dirty(dirty_, [&](const auto& visit) {
     runs.for_runs([&](const auto&, const auto&, const auto& blocks) {
       for (const auto& block : blocks) visit(block.contact);
     });
   });
-  std::vector<std::uint32_t>& to_pose = to_pose_;
-  to_pose.clear();
-  std::size_t count = 0;
-  for (std::size_t k = 0; k < dirty_.size(); ++k) {
-    prefetch_contacts(
-        s_, [&](std::size_t i) { return dirty_[i]; }, k, dirty_.size());
-    const std::uint32_t index = dirty_[k];
-    const Contact& c = s_.contact_store[index];
-    if (!c.alive || !c.dirty || c.parked) continue;
-    if (c.of_link) continue;  // tested in link_contacts.cpp
-    if (has_separated(c)) {
-      drop(index);
-      continue;
-    }
-    dirty_[count++] = index;
-    for (const std::uint32_t collider : {c.a, c.b}) {
-      Body& body = s_.bodies[s_.colliders[collider].body];
-      if (body.posed || body.pose_pending) continue;
-      body.pose_pending = true;
-      to_pose.push_back(s_.colliders[collider].body);
-    }
-  }
-  dirty_.resize(count);
-  s_.workers.in_parallel(to_pose.size(), kBodyGrain, [&](std::size_t begin, std::size_t end) {
+  verdicts_.resize(dirty_.size());
+  s_.workers.in_parallel(dirty_.size(), kListGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      prefetch_bodies(
-          s_, [&](std::size_t i) { return to_pose[i]; }, k, end);
-      pose_colliders(s_.bodies[to_pose[k]], s_.colliders);
+      prefetch_contacts(
+          s_, [&](std::size_t i) { return dirty_[i]; }, k, end);
+      verdicts_[k] = judge(s_.contact_store[dirty_[k]]);
     }
   });
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < dirty_.size(); ++k) {
+    if (verdicts_[k] == Verdict::separated) drop(dirty_[k]);
+    if (verdicts_[k] == Verdict::test) dirty_[count++] = dirty_[k];
+  }
+  dirty_.resize(count);
+}
+
+ContactSearch::Verdict ContactSearch::judge(const Contact& c) const {
+  if (!c.alive || !c.dirty || c.parked) return Verdict::skip;
+  if (c.of_link) return Verdict::skip;  // tested in link_contacts.cpp
+  if (has_separated(c)) return Verdict::separated;
+  for (const std::uint32_t collider : {c.a, c.b})
+    pose_colliders_once(s_.bodies[s_.colliders[collider].body], s_.colliders);
+  return Verdict::test;
 }
 
 // Precondition: at most kContactBatch.
@@ -197,8 +191,9 @@ void ContactSearch::find_manifolds_of(std::span<const std::uint32_t> contacts, d
                          [&](std::size_t begin, std::size_t end) {
                            const std::size_t search = begin / kNarrowPhaseGrain;
                            for (std::size_t k = begin; k < end; ++k) {
-                             prefetch_contacts(
-                                 s_, [&](std::size_t i) { return contacts[i]; }, k, end);
+                             const auto contact_at = [&](std::size_t i) { return contacts[i]; };
+                             prefetch_contacts(s_, contact_at, k, end);
+                             prefetch_clearances(s_, contact_at, k, end);
                              results[k].contact = contacts[k];
                              results[k].search = static_cast<std::uint32_t>(search);
                              find_manifold_of(s_.contact_store[contacts[k]], results[k], approach,
@@ -234,14 +229,30 @@ void ContactSearch::find_manifold_of(Contact& c, NarrowPhaseResult& found, const
                          approach.motion(a, b, found.margin_at_rest), found.margin, found.manifold);
     found.clearance = found.manifold.min_separation - slop;
   }
+  found.taken_over = stays_without_points(c, found);
+  if (!found.taken_over) return;
+  s_.contact_store.set_clearance(c, found.clearance, found.manifold.normal, s_.body_set);
+  c.dirty = false;
+}
+
+// Then nothing but its own clearance changes: no slot, no event, and no contact is parked.
+bool ContactSearch::stays_without_points(const Contact& c, const NarrowPhaseResult& found) const {
+  const auto is_still_body = [&](std::uint32_t collider) {
+    return is_still(s_.bodies[s_.colliders[collider].body]);
+  };
+  const bool without_points =
+      c.slot.points == 0 && c.first_part == kNone && found.manifold.count == 0 && found.count == 0;
+  return without_points && !c.sensor && !c.touching && !c.parked &&
+         !(is_still_body(c.a) && is_still_body(c.b));
 }
 
 void ContactSearch::take_over(const NarrowPhaseResult& found, bool within_step) {
   const std::uint32_t index = found.contact;
   const bool separated = found.clearance >= kNeverTouches;
-  s_.contact_store[index].dirty = false;
   if (!separated) ++s_.counters.narrow_phase_pairs;
   s_.status.distance_limit |= found.manifold.rough;
+  if (found.taken_over) return;
+  s_.contact_store[index].dirty = false;
   if (s_.contact_store[index].sensor) {
     const bool collides = found.manifold.count > 0 || found.count > 0;
     if (collides != s_.contact_store[index].touching)

@@ -14,6 +14,7 @@
 #include "world/joint_runs.h"
 #include "world/parallel.h"
 #include "world/precession.h"
+#include "world/restarts.h"
 #include "world/runs.h"
 
 namespace vp {
@@ -48,6 +49,7 @@ struct SubStepScratch {
   solve::LargeVector<solve::SearchedMotion> searched;  // of each body
   FastRotationScratch fast_rotation;
   Precession precession;
+  Restarts restarts;
   // Of each awake body; 1: its state alone does not advance it.
   std::vector<std::uint8_t> awake_body_changed;
   std::vector<std::uint32_t> accelerating;  // kinematic bodies whose velocity changes evenly

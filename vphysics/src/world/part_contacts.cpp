@@ -70,9 +70,9 @@ void ContactSearch::find_parts(const Contact& c, NarrowPhaseResult& found, const
   const bool is_pulled = !(approach.pull_of(s_.bodies[a.body]) == Velocity{} &&
                            approach.pull_of(s_.bodies[b.body]) == Velocity{});
   const double at_rest = is_pulled ? found.margin : found.margin_at_rest;
-  const collide::SearchMargin margin = c.sensor
-                                           ? collide::SearchMargin(found.margin)
-                                           : collide::SearchMargin(found.margin, at_rest, motion);
+  const collide::SearchMargin margin =
+      c.sensor ? collide::SearchMargin(found.margin)
+               : collide::SearchMargin(found.margin, at_rest, approach.pushed(a, b), motion);
   found.first = static_cast<std::uint32_t>(search.manifolds.size());
   collide::PairCache no_cache;  // each part has its own
   find_manifolds(a.geometry, a.T, b.geometry, b.T, margin, no_cache, search.known, search.scratch,

@@ -45,6 +45,22 @@ template <class ContactAt>
   }
 }
 
+// In the same loop, if it sets the clearances of contacts without points: what that reads and
+// writes, apart from the above.
+template <class ContactAt>
+[[gnu::always_inline]] inline void prefetch_clearances(const Stores& s, const ContactAt& contact_at,
+                                                       std::size_t k, std::size_t end) {
+  constexpr std::size_t kStage = 3;  // contacts
+  if (k + kStage >= end) return;
+  const Contact& c = s.contact_store[contact_at(k + kStage)];
+  if (c.slot.points > 0 || c.parked) return;
+  prefetch(s.contact_store.speculative.pair(c.speculative_index), 2);
+  for (const std::uint32_t collider : {c.a, c.b}) {
+    const std::uint32_t body = s.colliders[collider].body;
+    if (body + 1u < s.body_states.size()) prefetch(s.body_states[body + 1u], 1);
+  }
+}
+
 // The same in a loop over bodies that poses their colliders. body_at(k) is kNone if the loop skips
 // k.
 template <class BodyAt>

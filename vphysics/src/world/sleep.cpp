@@ -6,6 +6,7 @@
 #include "world/impl.h"
 #include "world/invalid.h"
 #include "world/recorded_call.h"
+#include "world/restarts.h"
 
 namespace vp {
 namespace {

@@ -91,9 +91,6 @@ struct StepContext : Stores {
 
 // Wakes the body and its island.
 void wake(const Stores& stores, std::uint32_t body);
-// The displacement of the state of the body becomes zero. Contacts with points become dirty; the
-// others keep what is left of their clearance, or nothing unless keeps_clearances.
-void restart_displacement(const Stores& stores, std::uint32_t body, bool keeps_clearances = true);
 // Passes the bounds of colliders that may leave their enlarged ones within h to the broad phase.
 void update_bounds(const Stores& stores, std::uint32_t body, double h, bool is_solver_driven);
 // Moves the body for h. freely: as a tumbling body without contact at the mean angular velocity
