@@ -23,6 +23,8 @@ LAYERS = {
     'vphysics/include/vphysics/assert.h': 'lie',
     'vphysics/src/assert.cpp': 'lie',
     'vphysics/src/cpu_level.h': 'lie',
+    'vphysics/src/parallel.h': 'lie',
+    'vphysics/include/vphysics/task_scheduler.h': 'lie',
     'vphysics/include/vphysics/error.h': 'lie',
     'vphysics/include/vphysics/ids.h': 'lie',
     'vphysics/include/vphysics/lie.h': 'lie',

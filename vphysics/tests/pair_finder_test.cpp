@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <map>
+#include <memory>
 #include <set>
 
 #include "random.h"
+#include "task_schedulers.h"
 
 namespace vp::test {
 namespace {
@@ -180,6 +182,41 @@ TEST(PairFinder, FindsTheNewPairsOfBruteForceThroughTenThousandOperations) {
     if (random.word() % 2) rig.remove_parted();
   }
   EXPECT_GT(found, 2500u);  // measured 3028
+}
+
+// Also where one tree has a single node, or none.
+TEST(PairFinder, FindsTheSamePairsByParts) {
+  Random random(12);
+  const auto schedule = std::make_shared<Backwards>();
+  for (const int moving : {1, 7, 60, 3000}) {
+    for (const int fixed : {0, 5, 500}) {
+      PairFinder alone, shared;
+      std::vector<ProxyPair> by_one, by_parts;
+      const auto random_box = [&] {
+        return box_at(random.in_cube(10.0), random.uniform(0.1, 1.0));
+      };
+      for (int i = 0; i < moving + fixed; ++i) {
+        const ProxyDesc proxy{.bounds = random_box(),
+                              .mobility = i < moving ? Mobility::moving : Mobility::fixed};
+        alone.add(proxy);
+        shared.add(proxy);
+      }
+      for (int round = 0; round < 3; ++round) {
+        alone.update(by_one);
+        shared.update(by_parts, {schedule});
+        ASSERT_EQ(by_parts, by_one) << moving << " moving, " << fixed << " fixed";
+        for (int i = 0; i < moving; ++i) {
+          const Bounds moved = random_box();
+          alone.set_bounds(static_cast<std::uint32_t>(i), moved);
+          shared.set_bounds(static_cast<std::uint32_t>(i), moved);
+        }
+      }
+      if (moving == 3000) {
+        EXPECT_GT(by_one.size(), 3000u);
+      }
+    }
+  }
+  EXPECT_GT(schedule->parts, 500);
 }
 
 TEST(PairFinder, DoesNothingWhileBoundsStayInsideTheEnlargedOnes) {

@@ -9,7 +9,7 @@
 
 #include "joints_rig.h"
 #include "surfaces.h"
-#include "vphysics/task_scheduler.h"
+#include "task_schedulers.h"
 // The thread sanitizer does not see how Debian's oneTBB, built without it, hands tasks over.
 #if defined(VP_TEST_TBB) && defined(__has_feature)
 #if __has_feature(thread_sanitizer)
@@ -22,19 +22,6 @@
 
 namespace vp::test {
 namespace {
-
-// Runs the grains one after the other, in reverse order.
-class Backwards final : public TaskScheduler {
- public:
-  int parts = 0;
-
-  void run(std::size_t count, std::size_t grain, const Task& task) override {
-    for (std::size_t i = (count + grain - 1) / grain; i-- > 0;) {
-      task(i * grain, std::min(count, (i + 1) * grain));
-      ++parts;
-    }
-  }
-};
 
 // Runs a given number of threads; each takes the next free grain.
 class Threads final : public TaskScheduler {

@@ -232,4 +232,23 @@ float distance_between(const Bounds& box, const FloatBounds& other, const Vec3& 
   return std::max(0.0f, rounded_down(std::sqrt(square)));
 }
 
+void BoundingTree::divide_overlapping_pairs(const BoundingTree& other, std::size_t parts,
+                                            std::vector<std::uint64_t>& divided) const {
+  divided.clear();
+  if (size_ == 0 || other.size_ == 0) return;
+  divided.push_back(0);
+  for (std::size_t k = 0; k < divided.size() && divided.size() < parts;) {
+    const std::uint64_t pair = divided[k];
+    if (((pair >> 32 | pair) & kLeaf) != 0) {
+      ++k;
+      continue;
+    }
+    std::uint64_t children[64];
+    const std::size_t count = children_of(pair, other, children);
+    divided[k] = divided.back();
+    divided.pop_back();
+    divided.insert(divided.end(), children, children + count);
+  }
+}
+
 }  // namespace vp::collide

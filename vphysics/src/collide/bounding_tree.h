@@ -102,6 +102,15 @@ class BoundingTree {
   // Calls found(item of this, item of the other).
   template <class F>
   void overlapping_pairs(const BoundingTree& other, const F& found) const;
+  // Divides either of the two, with this tree itself as the other, into at least `parts` of
+  // different sizes, if it has so many nodes. Their order depends on the trees alone.
+  void divide_overlapping_pairs(const BoundingTree& other, std::size_t parts,
+                                std::vector<std::uint64_t>& divided) const;
+  // Of one part. Several workers may do it at a time.
+  template <class F>
+  void overlapping_pairs_of(std::uint64_t part, const BoundingTree& other, const F& found) const {
+    overlapping_pairs_below(other, part, found);
+  }
 
   // Calls hit(item, entry), in order of entry, then of items, for all items whose bounds the moving
   // box touches at a fraction of at most `limit`; entry is that fraction, up to float rounding. hit
@@ -150,6 +159,7 @@ class BoundingTree {
   template <class F>
   void overlapping_pairs_below(const BoundingTree& other, std::uint64_t first,
                                const F& found) const;
+  std::size_t children_of(std::uint64_t pair, const BoundingTree& other, std::uint64_t* out) const;
   template <class F>
   void overlapping_below(std::uint32_t node, const SpreadBounds& box, const F& found) const;
 
@@ -220,12 +230,18 @@ void BoundingTree::overlapping_pairs_below(const BoundingTree& other, std::uint6
     } else if (j & kLeaf) {
       overlapping_below(i, SpreadBounds(other.bounds_of(j & ~kLeaf)),
                         [&](std::uint32_t item) { found(item, j & ~kLeaf); });
-    } else if (i == j && this == &other) {
-      depth += pairs_within(nodes_[i], stack + depth);
     } else {
-      depth += pairs_between(nodes_[i], other, j, stack + depth);
+      depth += children_of(pair, other, stack + depth);
     }
   }
+}
+
+// Precondition: a pair of nodes.
+inline std::size_t BoundingTree::children_of(std::uint64_t pair, const BoundingTree& other,
+                                             std::uint64_t* out) const {
+  const auto i = static_cast<std::uint32_t>(pair >> 32), j = static_cast<std::uint32_t>(pair);
+  return i == j && this == &other ? pairs_within(nodes_[i], out)
+                                  : pairs_between(nodes_[i], other, j, out);
 }
 
 inline std::size_t BoundingTree::pairs_between(const Node& a, const BoundingTree& other,

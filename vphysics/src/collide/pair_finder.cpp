@@ -10,6 +10,8 @@ namespace {
 // If more than one proxy in this many has moved, a query per moved proxy costs more than a join of
 // the trees.
 constexpr std::size_t kRebuildFraction = 6;
+// Of a join of trees by several workers: many more than workers, since their sizes differ.
+constexpr std::size_t kJoinParts = 128;
 
 [[maybe_unused]] bool is_ordered(const Bounds& b) {  // false for NaN
   return b.lower.x <= b.upper.x && b.lower.y <= b.upper.y && b.lower.z <= b.upper.z;
@@ -45,6 +47,7 @@ void PairFinder::resize(std::size_t proxies) {
   // So that the first busy step need not allocate.
   const std::size_t capacity = 64 + 2 * bounds_.capacity();
   for (auto* list : {&candidates_, &new_keys_, &key_scratch_}) list->reserve(capacity);
+  join_parts_.reserve(kJoinParts + 64);
   for (auto* list : {&moved_list_, &pending_list_}) list->reserve(capacity);
 }
 
@@ -166,8 +169,9 @@ void PairFinder::refresh() {
   }
 }
 
-void PairFinder::consider(std::uint32_t i, std::uint32_t j) {
-  if (agree(filters_[i], filters_[j])) candidates_.push_back(ProxyPair::ordered(i, j).key());
+void PairFinder::consider(std::uint32_t i, std::uint32_t j,
+                          std::vector<std::uint64_t>& candidates) const {
+  if (agree(filters_[i], filters_[j])) candidates.push_back(ProxyPair::ordered(i, j).key());
 }
 
 // The set is far larger than the inner caches: prefetches the following entries.
@@ -185,7 +189,7 @@ void PairFinder::take_candidates() {
 void PairFinder::find_by_queries() {
   for (const std::uint32_t i : moved_list_) {
     const auto found = [&](std::uint32_t j) {
-      if (i != j) consider(i, j);
+      if (i != j) consider(i, j, candidates_);
     };
     const FloatBounds& b = bounds_[i];
     if (places_[i] == TreeKind::moving) tree(TreeKind::fixed).overlapping(b, found);
@@ -195,19 +199,46 @@ void PairFinder::find_by_queries() {
   }
 }
 
-void PairFinder::find_by_join() {
-  const auto found = [&](std::uint32_t i, std::uint32_t j) {
-    if (moved_.test(i) || moved_.test(j)) consider(i, j);
-  };
-  tree(TreeKind::moving).overlapping_pairs(found);
-  tree(TreeKind::moving).overlapping_pairs(tree(TreeKind::fixed), found);
+void PairFinder::find_by_join(const Workers& workers) {
+  join_moving_with(tree(TreeKind::moving), workers);
+  join_moving_with(tree(TreeKind::fixed), workers);
+}
+
+// As much memory for each part as the largest has needed: which pairs one finds varies.
+void PairFinder::reserve_join_parts() {
+  if (candidates_of_parts_.size() < join_parts_.size())
+    candidates_of_parts_.resize(std::max(join_parts_.size(), kJoinParts + 64));
+  std::size_t most = 64 + bounds_.capacity() / 8;
+  for (const auto& candidates : candidates_of_parts_) most = std::max(most, candidates.capacity());
+  for (auto& candidates : candidates_of_parts_) candidates.reserve(most);
+}
+
+// The order of the candidates does not matter.
+void PairFinder::join_moving_with(const BoundingTree& other, const Workers& workers) {
+  const BoundingTree& moving = tree(TreeKind::moving);
+  if (!workers.scheduler) {
+    const auto found = moved_pairs(candidates_);
+    return &moving == &other ? moving.overlapping_pairs(found)
+                             : moving.overlapping_pairs(other, found);
+  }
+  moving.divide_overlapping_pairs(other, kJoinParts, join_parts_);
+  reserve_join_parts();
+  workers.in_parallel(join_parts_.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      candidates_of_parts_[k].clear();
+      moving.overlapping_pairs_of(join_parts_[k], other, moved_pairs(candidates_of_parts_[k]));
+    }
+  });
+  for (std::size_t k = 0; k < join_parts_.size(); ++k)
+    candidates_.insert(candidates_.end(), candidates_of_parts_[k].begin(),
+                       candidates_of_parts_[k].end());
 }
 
 void PairFinder::find_unbounded() {
   for (const std::uint32_t u : unbounded_) {
     const auto found = [&](std::uint32_t i) {
       const bool moves = is_moving(places_[i]) || is_moving(places_[u]);
-      if (i != u && moves && enlarged_overlap(i, u)) consider(i, u);
+      if (i != u && moves && enlarged_overlap(i, u)) consider(i, u, candidates_);
     };
     if (!moved_.test(u)) {
       for (const std::uint32_t i : moved_list_) found(i);
@@ -219,7 +250,7 @@ void PairFinder::find_unbounded() {
   }
 }
 
-void PairFinder::update(std::vector<ProxyPair>& found) {
+void PairFinder::update(std::vector<ProxyPair>& found, const Workers& workers) {
   refresh();
   moved_list_.clear();
   moved_.append_to(moved_list_);
@@ -227,7 +258,7 @@ void PairFinder::update(std::vector<ProxyPair>& found) {
   candidates_.clear();
   new_keys_.clear();
   if (kRebuildFraction * moved_list_.size() > tree(TreeKind::moving).size()) {
-    find_by_join();
+    find_by_join(workers);
   } else {
     find_by_queries();
   }

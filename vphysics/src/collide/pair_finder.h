@@ -16,6 +16,7 @@
 
 #include "collide/bounding_tree.h"
 #include "collide/pair_set.h"
+#include "parallel.h"
 
 namespace vp::collide {
 
@@ -59,7 +60,7 @@ class PairFinder {
   // Whether update() has work to do.
   bool has_moved() const { return !moved_.empty(); }
   // Appends the new pairs, in ascending order, and inserts them into the set.
-  void update(std::vector<ProxyPair>& found);
+  void update(std::vector<ProxyPair>& found, const Workers& workers = {});
   // The proxies whose enlarged bounds or filter changed before the last update(), ascending.
   std::span<const std::uint32_t> moved() const { return moved_list_; }
 
@@ -145,10 +146,18 @@ class PairFinder {
   BoundingTree& tree(TreeKind tree_kind) { return trees_[static_cast<std::size_t>(tree_kind)]; }
   void rebuild(TreeKind tree_kind);
   void refresh(TreeKind tree_kind, std::size_t pending);
-  void consider(std::uint32_t i, std::uint32_t j);
+  void consider(std::uint32_t i, std::uint32_t j, std::vector<std::uint64_t>& candidates) const;
+  // What a join of trees adds.
+  auto moved_pairs(std::vector<std::uint64_t>& candidates) const {
+    return [this, &candidates](std::uint32_t i, std::uint32_t j) {
+      if (moved_.test(i) || moved_.test(j)) consider(i, j, candidates);
+    };
+  }
   void take_candidates();
   void find_by_queries();
-  void find_by_join();
+  void find_by_join(const Workers& workers);
+  void reserve_join_parts();
+  void join_moving_with(const BoundingTree& other, const Workers& workers);
   void find_unbounded();
   void count_pair(std::uint64_t key, std::uint32_t change);
   template <class Reader>
@@ -171,6 +180,8 @@ class PairFinder {
   std::vector<std::uint32_t> moved_list_, pending_list_;
   std::vector<TreeItem> items_;
   std::vector<std::uint64_t> candidates_, new_keys_;
+  std::vector<std::uint64_t> join_parts_;
+  std::vector<std::vector<std::uint64_t>> candidates_of_parts_;
   mutable std::vector<std::uint64_t> key_scratch_, written_keys_;
   State incoming_;
   IndexSet seen_;

@@ -297,6 +297,8 @@ void ContactStore::mark_contacts_dirty(const Body& body) {
 }
 
 void ContactStore::mark_dirty_slots(const solve::IndexField& contacts, std::uint32_t bits) {
+  for (std::uint32_t b = bits; b != 0; b &= b - 1)
+    prefetch_contact(contacts.lane[std::countr_zero(b)]);
   for (; bits != 0; bits &= bits - 1) {
     const std::uint32_t contact = contacts.lane[std::countr_zero(bits)];
     if (contact != solve::kNoContact) mark_dirty(contact);
@@ -304,6 +306,8 @@ void ContactStore::mark_dirty_slots(const solve::IndexField& contacts, std::uint
 }
 
 void ContactStore::mark_dirty_pairs(const solve::SpeculativeBlock& block, std::uint32_t bits) {
+  for (std::uint32_t b = bits; b != 0; b &= b - 1)
+    prefetch_contact(block.pairs[std::countr_zero(b)].contact);
   for (; bits != 0; bits &= bits - 1) {
     const std::uint32_t contact = block.pairs[std::countr_zero(bits)].contact;
     if (contact != solve::kNoContact) mark_dirty(contact);

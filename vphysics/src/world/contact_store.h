@@ -138,6 +138,9 @@ class ContactStore {
   }
 
  private:
+  void prefetch_contact(std::uint32_t contact) const {
+    if (contact < pool.size()) __builtin_prefetch(&pool[contact], 1);
+  }
   bool is_dirty_bit_set(std::uint32_t i) const {
     return (dirty_bits_[i / 64] >> (i % 64) & 1u) != 0;
   }

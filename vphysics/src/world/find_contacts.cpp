@@ -52,7 +52,7 @@ void ContactSearch::find_pairs() {
 
 void ContactSearch::find_new_contacts() {
   new_pairs_.clear();
-  s_.finder.update(new_pairs_);
+  s_.finder.update(new_pairs_, s_.workers);
   for (const collide::ProxyPair& pair : new_pairs_) {
     add_contact_pair(s_.finder.user(pair.a), s_.finder.user(pair.b));
   }

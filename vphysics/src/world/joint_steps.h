@@ -12,7 +12,7 @@
 #include "world/fast_rotation.h"
 #include "world/joint.h"
 #include "world/joint_runs.h"
-#include "world/parallel.h"
+#include "parallel.h"
 #include "world/precession.h"
 #include "world/restarts.h"
 #include "world/runs.h"

@@ -18,7 +18,7 @@ namespace vp {
 
 // Contacts that are tested, and whose slots are written, in one batch: with their colliders and
 // bodies they fit into the second-level cache.
-inline constexpr std::size_t kContactBatch = 256;
+inline constexpr std::size_t kContactBatch = 512;
 
 class ManifoldWriter {
  public:

@@ -9,7 +9,7 @@
 
 #include "solve/contact_graph.h"
 #include "solve/passes.h"
-#include "world/parallel.h"
+#include "parallel.h"
 
 namespace vp {
 

@@ -16,7 +16,7 @@
 #include "world/contact_store.h"
 #include "world/events.h"
 #include "world/observed_stage.h"
-#include "world/parallel.h"
+#include "parallel.h"
 #include "world/sleep_islands.h"
 #include "world/solver_limits.h"
 
