@@ -77,6 +77,14 @@ def robots(rows):
     return [*lines, *verdicts(rows)]
 
 
+def threads(rows):
+    """The mean step by scene and number of threads, and what was reached beside its goal."""
+    value = {(r['subject'], r['metric']): r['value'] for r in rows}
+    counts = in_order(m.group(1) for r in rows if (m := re.fullmatch(r'step_mean_(\d+)_us', r['metric'])))
+    return [*grid('mean step by number of threads [us]', in_order(r['subject'] for r in rows), counts,
+                  lambda subject, count: value.get((subject, f'step_mean_{count}_us'))), *verdicts(rows)]
+
+
 def operations(rows):
     value = {(r['subject'], r['engine'], r['metric']): r['value'] for r in rows}
 
@@ -91,7 +99,7 @@ PICTURES = {'rigid': ('rigid-step-times.png', 'Time of a step by scene and engin
             'scaling': ('rigid-scaling.png', 'Time of a step by number of bodies')}
 # Of ./bench's comparisons.
 LAYOUTS = {'loop': flat, 'multibody': multibody, 'robots': robots, 'operations': operations, 'rigid': rigid_tables.rigid,
-           'scaling': rigid_tables.scaling}
+           'scaling': rigid_tables.scaling, 'threads': threads}
 
 
 def picture(name, files, root):
