@@ -64,7 +64,7 @@ int run(const std::string& name, std::FILE* csv) {
     const double mean = 1e6 * runner.seconds / static_cast<double>(steps);
     std::printf("%-12s %3d threads %10.1f us a step, %.2f times as fast\n", name.c_str(),
                 runner.threads, mean, alone / runner.seconds);
-    std::fprintf(csv, "%s@60,Virtual Physics,step_mean_%d_us,%.4g,us\n", name.c_str(),
+    std::fprintf(csv, "%s@60,Virtual Physics,step_mean_%d_us,%.1f,us\n", name.c_str(),
                  runner.threads, mean);
     if (runner.threads == 1) continue;
     std::fprintf(csv, "%s@60,Virtual Physics,time_of_%d_threads,%.3g,of one\n", name.c_str(),
