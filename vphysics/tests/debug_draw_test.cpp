@@ -261,6 +261,41 @@ TEST(DebugDraw, ContactPointsGoWithBodiesThatTravelTogether) {
   EXPECT_LT(farthest, 1e-3);  // measured 1e-6; 0.063 if points stayed where they were found
 }
 
+// Draws the contacts at the end of each stage.
+struct ContactWatcher : StageObserver {
+  const World* world = nullptr;
+  double highest = 0.0;  // of all contact points [m]
+  int points = 0;
+
+  void begin(Stage) override {}
+  void end(Stage) override {
+    DebugDrawOptions options;
+    options.contacts = true;
+    for (const Vec3& p : drawn(*world, options).points_of(DebugCategory::contact)) {
+      highest = std::max(highest, std::fabs(p.z));
+      ++points;
+    }
+  }
+};
+
+// As the box slides, its displacement restarts now and then.
+TEST(DebugDraw, AnObserverSeesContactsWhereTheyAre) {
+  World world;
+  test::Part box;
+  box.shape = Box{{0.3, 0.2, 0.1}};
+  box.pose = SE3(Vec3{0, 0, 0.1});
+  box.velocity = {{}, {6, 0, 0}};
+  box.material.friction = 0.0;
+  add_dynamic(world, box);
+  add_fixed(world, Box{{50, 50, 0.5}}, {}, SE3(Vec3{0, 0, -0.5}));
+  const auto watcher = std::make_shared<ContactWatcher>();
+  watcher->world = &world;
+  world.observe_stages(watcher);
+  for (int i = 0; i < 60; ++i) must(world.step(1.0 / 60));
+  EXPECT_GT(watcher->points, 200);
+  EXPECT_LT(watcher->highest, 1e-3);
+}
+
 TEST(DebugDraw, FrictionLeansAgainstTheSlope) {
   World world;
   const double slope = 0.3;

@@ -102,8 +102,9 @@ class BoundingTree {
   // Calls found(item of this, item of the other).
   template <class F>
   void overlapping_pairs(const BoundingTree& other, const F& found) const;
-  // Divides either of the two, with this tree itself as the other, into at least `parts` of
-  // different sizes, if it has so many nodes. Their order depends on the trees alone.
+  // Divides overlapping_pairs(found), if `other` is this tree itself, or overlapping_pairs(other,
+  // found) into at least `parts`, of different sizes, if the trees have so many nodes. The parts
+  // depend on the trees alone.
   void divide_overlapping_pairs(const BoundingTree& other, std::size_t parts,
                                 std::vector<std::uint64_t>& divided) const;
   // Of one part. Several workers may do it at a time.

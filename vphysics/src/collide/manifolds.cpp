@@ -43,7 +43,7 @@ class Finder {
     SubManifold found;
     found.sub_a = sub_a_;
     found.sub_b = sub_b_;
-    find_manifold(a, T_a, b, T_b, search_.of_convex(bounds_, {a, T_a}, {b, T_b}), cache,
+    find_manifold(a, T_a, b, T_b, search_.of_convex(bounds_.largest, {a, T_a}, {b, T_b}), cache,
                   found.manifold);
     found.cache = cache;
     if (found.manifold.count == 0) return;

@@ -11,7 +11,7 @@ namespace {
 // the trees.
 constexpr std::size_t kRebuildFraction = 6;
 // Of a join of trees by several workers: many more than workers, since their sizes differ.
-constexpr std::size_t kJoinParts = 128;
+constexpr std::size_t kJoinParts = 64;
 
 [[maybe_unused]] bool is_ordered(const Bounds& b) {  // false for NaN
   return b.lower.x <= b.upper.x && b.lower.y <= b.upper.y && b.lower.z <= b.upper.z;

@@ -147,7 +147,7 @@ class PairFinder {
   void rebuild(TreeKind tree_kind);
   void refresh(TreeKind tree_kind, std::size_t pending);
   void consider(std::uint32_t i, std::uint32_t j, std::vector<std::uint64_t>& candidates) const;
-  // What a join of trees adds.
+  // Returns a function (item, item) that adds the pair to the candidates if one of the two moved.
   auto moved_pairs(std::vector<std::uint64_t>& candidates) const {
     return [this, &candidates](std::uint32_t i, std::uint32_t j) {
       if (moved_.test(i) || moved_.test(j)) consider(i, j, candidates);

@@ -66,11 +66,10 @@ ApproachBounds SearchMargin::approach_of(const Geometry& shape, const SE3& T, bo
   return {largest, std::min(largest, slack), std::min(largest, all_.touching + bend), rotates_far};
 }
 
-PairMargin SearchMargin::of_convex(const ApproachBounds& bounds, const Posed& a,
-                                   const Posed& b) const {
+PairMargin SearchMargin::of_convex(double largest, const Posed& a, const Posed& b) const {
   const double slack = all_.slack + pushed_;
-  if (!motion_ || slack >= bounds.largest) return PairMargin(bounds.largest);
-  return {bounds.largest, slack, *motion_, a, b};
+  if (!motion_ || slack >= largest) return PairMargin(largest);
+  return {largest, slack, *motion_, a, b};
 }
 
 SweptMargin SearchMargin::swept(const ApproachBounds& bounds, bool moves_b, const SE3& T) const {

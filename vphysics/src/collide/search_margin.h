@@ -58,8 +58,9 @@ class SearchMargin {
   const PairMotion* motion() const { return motion_ ? &*motion_ : nullptr; }  // null: none
   // Of a convex shape in this pose, b or a part of it, or else of a.
   ApproachBounds approach_of(const Geometry& shape, const SE3& T, bool is_b) const;
-  // Of two convex shapes of this pair, or parts of them. bounds: of one of the two.
-  PairMargin of_convex(const ApproachBounds& bounds, const Posed& a, const Posed& b) const;
+  // Of two convex shapes of this pair, or parts of them. largest: the smallest of the bounds of the
+  // shapes that they are, or are parts of. What pushes them counts in the slack alone.
+  PairMargin of_convex(double largest, const Posed& a, const Posed& b) const;
   // In the frame of the other shape, which has the pose T.
   SweptMargin swept(const ApproachBounds& bounds, bool moves_b, const SE3& T) const;
 

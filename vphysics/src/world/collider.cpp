@@ -44,12 +44,13 @@ const collide::Bounds& bounds_at_pose(Body& body, Colliders& colliders) {
 
 void pose_colliders(Body& body, Colliders& colliders) {
   if (body.posed) return;
-  body.posed = true;
   for (std::uint32_t c = body.first_collider; c != kNone; c = colliders[c].next) {
     pose_collider(body, colliders[c]);
   }
+  __atomic_store_n(&body.posed, true, __ATOMIC_RELEASE);
 }
 void pose_colliders_once(Body& body, Colliders& colliders) {
+  if (__atomic_load_n(&body.posed, __ATOMIC_ACQUIRE)) return;
   if (__atomic_exchange_n(&body.is_being_posed, true, __ATOMIC_ACQUIRE)) return;
   pose_colliders(body, colliders);
   __atomic_store_n(&body.is_being_posed, false, __ATOMIC_RELEASE);

@@ -89,8 +89,8 @@ class ContactSearch {
   void find_manifolds_of(std::span<const std::uint32_t> contacts, double dt);
   void find_manifold_of(Contact& contact, NarrowPhaseResult& found, const Approach& approach,
                         PartSearch& search) const;
-  // within_step: contact slots that have impulses in this step are kept.
   bool stays_without_points(const Contact& contact, const NarrowPhaseResult& found) const;
+  // within_step: contact slots that have impulses in this step are kept.
   void take_over(const NarrowPhaseResult& found, bool within_step);
   void assign_slot(std::uint32_t contact, const collide::Manifold& manifold,
                    const collide::MotionToImpact& to_impact);

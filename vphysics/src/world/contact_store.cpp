@@ -145,11 +145,11 @@ void ContactStore::release_slot(std::uint32_t index, const BodySet& on) {
   --on.bodies[b].contact_slots;
 }
 
-void ContactStore::let_be_renewed(const Contact& c) {
-  constexpr float kFarRotation = 1e9f;
+void ContactStore::mark_moved(const Contact& c) {
+  constexpr float kFar = 1e9f;
   const auto lane = static_cast<std::size_t>(solve::ContactGraph::lane(c.slot));
-  (c.slot.points == 1 ? graph.block<1>(c.slot).rotated_a : graph.block<4>(c.slot).rotated_a)
-      .x.lane[lane] = kFarRotation;
+  (c.slot.points == 1 ? graph.block<1>(c.slot).slid : graph.block<4>(c.slot).slid).x.lane[lane] =
+      kFar;
 }
 
 ContactStore::States ContactStore::states_of(const Contact& c) const {

@@ -79,7 +79,7 @@ class ContactStore {
   void assign_slot(std::uint32_t contact, int max_points, const BodySet& on);
   void release_slot(std::uint32_t contact, const BodySet& on);
   // The pass that looks for moved slots finds this one, however little it has moved.
-  void let_be_renewed(const Contact& contact);
+  void mark_moved(const Contact& contact);
   // Moves the body's contacts to the regions that they are in now.
   void follow_region(const Body& body, const BodySet& on);
 

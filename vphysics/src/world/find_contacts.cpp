@@ -11,7 +11,8 @@ namespace {
 // A contact is computed again when the two have rotated by more [rad]. The separation of a point at
 // an arm r then has an error of r angle^2 / 2: a thirtieth of a millimetre for a box of a metre.
 constexpr double kRevolution = 0.01;
-constexpr std::size_t kNarrowPhaseGrain = 16, kListGrain = 256;  // contacts: some microseconds
+// Contacts whose test takes some microseconds, and whose listing does.
+constexpr std::size_t kNarrowPhaseGrain = 16, kListGrain = 128;
 static_assert(kContactBatch % kNarrowPhaseGrain == 0);
 
 // A sphere touches a convex shape at one point.

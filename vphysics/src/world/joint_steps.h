@@ -6,13 +6,13 @@
 #include <span>
 #include <vector>
 
+#include "parallel.h"
 #include "solve/body_state.h"
 #include "solve/large_pages.h"
 #include "world/body.h"
 #include "world/fast_rotation.h"
 #include "world/joint.h"
 #include "world/joint_runs.h"
-#include "parallel.h"
 #include "world/precession.h"
 #include "world/restarts.h"
 #include "world/runs.h"

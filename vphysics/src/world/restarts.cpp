@@ -91,12 +91,12 @@ void Restarts::restart_contacts_of(const Stores& s, std::uint32_t body) const {
     const auto forgets = [&](std::uint32_t state) {
       return state != solve::kWorldState && kinds_[state - 1] == Kind::forgets_them;
     };
-    const std::uint32_t other = states.a == body + 1 ? states.b : states.a;
-    if (other <= body && displacement_of(other)) return;
+    const std::uint32_t own = body + 1, other = states.a == own ? states.b : states.a;
+    if (other < own && displacement_of(other)) return;
     if (c.sensor || c.of_link || c.parked) {
-      c.dirty = true;
+      (c.is_part() ? contacts[c.aggregate] : c).dirty = true;
     } else if (c.slot.points > 0) {
-      contacts.let_be_renewed(c);
+      contacts.mark_moved(c);
     } else if (!c.dirty && !clearance_goes_on(s, c,
                                               {displacement_of(states.a), displacement_of(states.b),
                                                !forgets(states.a) && !forgets(states.b)})) {

@@ -19,7 +19,6 @@ void restart_displacement(const Stores& stores, std::uint32_t body, bool keeps_c
 class Restarts {
  public:
   void reserve(std::size_t bodies);
-  // Precondition: bodies are added in ascending order.
   void add(std::uint32_t body, bool keeps_clearances);
   // Restarts what was added.
   void run(const Stores& stores);

@@ -7,9 +7,9 @@
 #include <type_traits>
 #include <vector>
 
+#include "parallel.h"
 #include "solve/contact_graph.h"
 #include "solve/passes.h"
-#include "parallel.h"
 
 namespace vp {
 

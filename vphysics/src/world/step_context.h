@@ -9,6 +9,7 @@
 #include "collide/pair_finder.h"
 #include "collide/shape_query.h"
 #include "collide/sweep.h"
+#include "parallel.h"
 #include "solve/passes.h"
 #include "world/approach.h"
 #include "world/articulation.h"
@@ -16,7 +17,6 @@
 #include "world/contact_store.h"
 #include "world/events.h"
 #include "world/observed_stage.h"
-#include "parallel.h"
 #include "world/sleep_islands.h"
 #include "world/solver_limits.h"
 
