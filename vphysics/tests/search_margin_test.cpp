@@ -171,7 +171,8 @@ TEST(SearchMargin, WhatFliesApartIsNoPairAnyMore) {
   World world({.gravity = {}});
   constexpr int kRow = 6;
   for (int k = 0; k < kRow * kRow * kRow; ++k) {
-    const Vec3 at{k % kRow - 2.5, k / kRow % kRow - 2.5, k / kRow / kRow - 2.5};
+    const int row = k / kRow, layer = row / kRow;
+    const Vec3 at{k % kRow - 2.5, row % kRow - 2.5, layer - 2.5};
     add_dynamic(world, {.shape = Sphere{0.1}, .pose = SE3(0.25 * at), .velocity = {{}, 3.0 * at}});
   }
   std::uint32_t most = 0;

@@ -73,9 +73,11 @@ void add_waves(World& world, const Vec3& at) {
   const std::vector<CompoundPart> parts{{Sphere{0.08}, SE3(Vec3{0.1, 0, 0})},
                                         {Box{{0.08, 0.06, 0.05}}, SE3(Vec3{-0.1, 0, 0})}};
   const Compound dumbbell = Compound::of(parts).value();
-  for (int i = 0; i < 100; ++i)
+  for (int i = 0; i < 100; ++i) {
+    const int row = i / 10;
     add_dynamic(world, {.shape = dumbbell,
-                        .pose = SE3(at + Vec3{0.5 * (i % 10 - 5), 0.5 * (i / 10 - 5), 0.22})});
+                        .pose = SE3(at + Vec3{0.5 * (i % 10 - 5), 0.5 * (row - 5), 0.22})});
+  }
 }
 
 // Enough objects that each loop is shared: boxes and balls that fall on one another and on a belt,
@@ -160,8 +162,8 @@ std::vector<std::uint64_t> hashes_of_lift(const std::shared_ptr<TaskScheduler>& 
   for (int i = 0; i < 120; ++i) {
     Part part{.shape = Box{{0.1, 0.1, 0.1}}, .material = {.restitution = i % 7 == 0 ? 0.5 : 0.0}};
     if (i % 5 == 0) part.shape = Sphere{0.1};
-    part.pose =
-        SE3(Vec3{0.21 * (i % 5) + 0.01 * (i % 3), 0.21 * (i / 5 % 5), 0.2 + 0.22 * (i / 25)});
+    const int row = i / 5, layer = i / 25;
+    part.pose = SE3(Vec3{0.21 * (i % 5) + 0.01 * (i % 3), 0.21 * (row % 5), 0.2 + 0.22 * layer});
     add_dynamic(world, part);
   }
   world.set_task_scheduler(jobs);
@@ -187,8 +189,9 @@ std::vector<std::uint64_t> hashes_of_swarm(const std::shared_ptr<TaskScheduler>&
                                         {Box{{0.06, 0.05, 0.04}}, SE3(Vec3{-0.06, 0, 0})}};
   const Compound dumbbell = Compound::of(parts).value();
   for (int i = 0; i < 400; ++i) {
+    const int row = i / 8, layer = i / 64;
     Part part{.shape = Box{{0.06, 0.08, 0.1}},
-              .pose = SE3(Vec3{0.3 * (i % 8), 0.3 * (i / 8 % 8), 0.3 + 0.3 * (i / 64)}),
+              .pose = SE3(Vec3{0.3 * (i % 8), 0.3 * (row % 8), 0.3 + 0.3 * layer}),
               .velocity = {{0.1 * (i % 7), 0.2 * (i % 5), 0}, {6.0, 0, 0.3 * (i % 3)}}};
     if (i % 3 == 0) part.shape = dumbbell;
     add_dynamic(world, part);
