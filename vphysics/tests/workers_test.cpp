@@ -108,16 +108,20 @@ World busy_world(int region_bodies) {
 }
 
 // The hashes of every tenth step.
+std::vector<std::uint64_t> hashes_of(World& world, int steps, double rate) {
+  std::vector<std::uint64_t> hashes;
+  for (int i = 0; i < steps; ++i) {
+    must(world.step(1.0 / rate));
+    if (i % 10 == 9) hashes.push_back(world.state_hash());
+  }
+  return hashes;
+}
+
 std::vector<std::uint64_t> hashes_with(std::shared_ptr<TaskScheduler> jobs, int steps = 30,
                                        int region_bodies = 2048) {
   World world = busy_world(region_bodies);
   world.set_task_scheduler(std::move(jobs));
-  std::vector<std::uint64_t> hashes;
-  for (int i = 0; i < steps; ++i) {
-    must(world.step(1.0 / 240));
-    if (i % 10 == 9) hashes.push_back(world.state_hash());
-  }
-  return hashes;
+  return hashes_of(world, steps, 240.0);
 }
 
 class Workers : public testing::Test {
@@ -167,19 +171,20 @@ std::vector<std::uint64_t> hashes_of_lift(const std::shared_ptr<TaskScheduler>& 
     add_dynamic(world, part);
   }
   world.set_task_scheduler(jobs);
-  std::vector<std::uint64_t> hashes;
-  for (int i = 0; i < 150; ++i) {
-    must(world.step(1.0 / 240));
-    if (i % 10 == 9) hashes.push_back(world.state_hash());
-  }
+  const std::vector<std::uint64_t> hashes = hashes_of(world, 150, 240.0);
   EXPECT_EQ(world.counters().regions, 16u);
   EXPECT_GT(world.counters().manifolds, 120u);
   return hashes;
 }
+// hashes_by(task scheduler) does not depend on it.
+template <class F>
+void expect_same_hashes(const F& hashes_by) {
+  const auto alone = hashes_by(nullptr);
+  EXPECT_EQ(hashes_by(std::make_shared<Backwards>()), alone);
+  EXPECT_EQ(hashes_by(std::make_shared<Threads>(2)), alone);
+}
 TEST_F(Workers, MayTakeTheTurnsOfRegions) {
-  const auto alone = hashes_of_lift(nullptr);
-  EXPECT_EQ(hashes_of_lift(std::make_shared<Backwards>()), alone);
-  EXPECT_EQ(hashes_of_lift(std::make_shared<Threads>(2)), alone);
+  expect_same_hashes(hashes_of_lift);
 }
 // Bodies that fly, so that the displacements of many restart in the same step.
 std::vector<std::uint64_t> hashes_of_swarm(const std::shared_ptr<TaskScheduler>& jobs) {
@@ -197,18 +202,12 @@ std::vector<std::uint64_t> hashes_of_swarm(const std::shared_ptr<TaskScheduler>&
     add_dynamic(world, part);
   }
   world.set_task_scheduler(jobs);
-  std::vector<std::uint64_t> hashes;
-  for (int i = 0; i < 60; ++i) {
-    must(world.step(1.0 / 60));
-    if (i % 10 == 9) hashes.push_back(world.state_hash());
-  }
+  const std::vector<std::uint64_t> hashes = hashes_of(world, 60, 60.0);
   EXPECT_GT(world.counters().pairs, 400u);
   return hashes;
 }
 TEST_F(Workers, MayRestartDisplacements) {
-  const auto alone = hashes_of_swarm(nullptr);
-  EXPECT_EQ(hashes_of_swarm(std::make_shared<Backwards>()), alone);
-  EXPECT_EQ(hashes_of_swarm(std::make_shared<Threads>(2)), alone);
+  expect_same_hashes(hashes_of_swarm);
 }
 // Also with regions.
 TEST_F(Workers, MayTakeRegions) {

@@ -16,8 +16,8 @@
 
 namespace vp {
 
-// Contacts that are tested, and whose slots are written, in one batch: with their colliders and
-// bodies they fit into the second-level cache.
+// Contacts that are tested, and whose slots are written, in one batch: few enough that most of what
+// they read stays in the second-level cache, enough that several workers seldom wait for the last.
 inline constexpr std::size_t kContactBatch = 512;
 
 class ManifoldWriter {
