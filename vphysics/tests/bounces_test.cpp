@@ -69,33 +69,43 @@ TEST(Bounces, OffAPlaneKeepTheEnergy) {
   }
 }
 
-TEST(Bounces, OffEachOtherKeepTheEnergy) {
+// The fraction of the energy of 27 that bounce off each other and off walls which is left after 5
+// s.
+double left_after_bounces(const Tumbler& tumbler, double rate, std::uint64_t seed) {
   constexpr int kSide = 3;
   constexpr double kHalf = 2.0, kPitch = 2.0 * kHalf / kSide;
+  World world({.gravity = {}});
+  Random random(seed);
+  add_walls(world, kHalf, 0.2, kBouncy);
+  std::vector<BodyId> bodies;
+  double start = 0.0, end = 0.0;
+  for (int i = 0; i < kSide * kSide * kSide; ++i) {
+    const auto along = [&](int k) { return kPitch * (k % kSide + 0.5) - kHalf; };
+    Part part;
+    part.shape = tumbler.shape;
+    part.material = kBouncy;
+    part.pose = SE3(Vec3{along(i), along(i / kSide), along(i / kSide / kSide)});
+    const Vec3 turning = random.in_cube(10.0), moving = random.in_cube(5.0);
+    part.velocity = {turning, moving};
+    bodies.push_back(add_dynamic(world, part));
+    start += energy_of(world, bodies.back());
+  }
+  for (int i = 0; i < static_cast<int>(5.0 * rate); ++i) must(world.step(1.0 / rate));
+  for (const BodyId body : bodies) end += energy_of(world, body);
+  return end / start;
+}
+
+// Rare bounces change the energy by some percent: the mean over several starts, in long steps.
+TEST(Bounces, OffEachOtherKeepTheEnergy) {
   for (const Tumbler& tumbler : tumblers()) {
     for (const double rate : kRates) {
-      World world({.gravity = {}});
-      Random random(2102);
-      add_walls(world, kHalf, 0.2, kBouncy);
-      std::vector<BodyId> bodies;
-      double start = 0.0;
-      for (int i = 0; i < kSide * kSide * kSide; ++i) {
-        const auto along = [&](int k) { return kPitch * (k % kSide + 0.5) - kHalf; };
-        Part part;
-        part.shape = tumbler.shape;
-        part.material = kBouncy;
-        part.pose = SE3(Vec3{along(i), along(i / kSide), along(i / kSide / kSide)});
-        const Vec3 turning = random.in_cube(10.0), moving = random.in_cube(5.0);
-        part.velocity = {turning, moving};
-        bodies.push_back(add_dynamic(world, part));
-        start += energy_of(world, bodies.back());
-      }
-      for (int i = 0; i < static_cast<int>(5.0 * rate); ++i) must(world.step(1.0 / rate));
-      double end = 0.0;
-      for (const BodyId body : bodies) end += energy_of(world, body);
+      const int starts = rate < 100.0 ? 8 : 1;
+      double left = 0.0;
+      for (int k = 0; k < starts; ++k)
+        left += left_after_bounces(tumbler, rate, 2102 + static_cast<std::uint64_t>(k)) / starts;
       const double least = rate < 100.0 ? tumbler.left : rate < 300.0 ? 0.98 : 0.998;
-      EXPECT_GT(end / start, least) << tumbler.name << ", " << rate << " Hz";
-      EXPECT_LT(end / start, 1.001) << tumbler.name << ", " << rate << " Hz";
+      EXPECT_GT(left, least) << tumbler.name << ", " << rate << " Hz";
+      EXPECT_LT(left, 1.001) << tumbler.name << ", " << rate << " Hz";
     }
   }
 }

@@ -257,6 +257,15 @@ TEST(PairFinder, ShrinksBoundsThatHaveBecomeMuchTooLarge) {
   EXPECT_NEAR(finder.enlarged_bounds(i).upper.x, 2.6, 1e-6);
 }
 
+TEST(PairFinder, HoldsWhatIsWithinTheEnlargedBounds) {
+  PairFinder finder;
+  const std::uint32_t i = finder.add({.bounds = box_at({}, 1.0), .margin = 0.1});
+  EXPECT_TRUE(finder.holds(i, box_at({0.099, 0, -0.099}, 1.0)));
+  EXPECT_TRUE(finder.holds(i, box_at({0.5, 0, 0}, 0.1)));
+  EXPECT_FALSE(finder.holds(i, box_at({0.101, 0, 0}, 1.0)));
+  EXPECT_FALSE(finder.holds(i, box_at({0, 0, -0.101}, 1.0)));
+}
+
 TEST(PairFinder, WhatRestsFarFromTheOriginDoesNotMove) {
   PairFinder finder;
   for (const double x : {1e3, 1e6, 1e8}) {

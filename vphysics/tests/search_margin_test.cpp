@@ -265,6 +265,96 @@ TEST(SearchMargin, WhatFliesPastHasNoContact) {
   EXPECT_LT(manifolds, 0.01 * steps);
 }
 
+// Two boxes fly side by side and tumble. Their bounding spheres, which do not rotate, stay apart,
+// so that there is nothing to test.
+TEST(SearchMargin, WhatFliesSideBySideIsSeldomTested) {
+  for (const double speed : {0.0, 1.0, 20.0}) {
+    for (const double drift : {0.0, 0.05}) {
+      World world({.gravity = {}});
+      const Box box{{0.1, 0.15, 0.2}};
+      const double gap = 0.03, side = norm(box.half_extents) + 0.5 * gap;
+      for (const double y : {-side, side}) {
+        const BodyId body = add_dynamic(world, {.shape = box, .pose = SE3(Vec3{0, y, 0})});
+        const Vec3 turning = y < 0 ? Vec3{8, 5, -3} : Vec3{-2, 6, 7};
+        must(world.set_velocity_world(body, {{speed + (y < 0 ? drift : 0.0), 0, 0}, turning}));
+      }
+      std::uint32_t tests = 0, together = 0;
+      for (int i = 0; i < 120; ++i) {
+        must(world.step(kFrame));
+        tests += world.counters().narrow_phase_pairs;
+        together += world.counters().pairs;
+      }
+      EXPECT_GT(together, 60u) << speed << " m/s, " << drift;
+      EXPECT_LT(tests, 12u) << speed << " m/s, " << drift;
+    }
+  }
+}
+
+// Two rows fly past each other, straight and without contact: no clearance is used up.
+TEST(SearchMargin, WhatHasFlownPastIsNoPairAnyMore) {
+  World world({.gravity = {}});
+  for (int k = 0; k < 40; ++k) {
+    const double side = k % 2 == 0 ? 1.0 : -1.0;
+    const int at = k / 2;
+    const BodyId body = add_dynamic(world, {.shape = Box{{0.1, 0.1, 0.1}},
+                                            .pose = SE3(Vec3{side * (at + 0.5), 0.18 * side, 0})});
+    must(world.set_velocity_world(body, {{-6.0 * side, 0, 0}, {0, 0, 12}}));
+  }
+  std::uint32_t most = 0;
+  for (int i = 0; i < 120; ++i) {
+    must(world.step(kFrame));
+    most = std::max(most, world.counters().pairs);
+  }
+  EXPECT_GT(most, 20u);
+  EXPECT_LE(world.counters().pairs, 2u);
+}
+
+// Balls that are off their bodies' centres of mass swing around them, past each other or into each
+// other. Meanwhile some get another velocity.
+TEST(SearchMargin, BallsThatSwingOffTheirCentresMeet) {
+  constexpr double kRadius = 0.1;
+  Random random(2105);
+  int met = 0;
+  double deepest = 0.0;
+  for (int i = 0; i < 400; ++i) {
+    World world({.gravity = {}});
+    BodyId bodies[2];
+    Vec3 arms[2];
+    for (const int k : {0, 1}) {
+      BodyDesc desc;
+      const Vec3 at = random.in_cube(0.8);
+      const Mat3 R = random.rotation();
+      arms[k] = random.uniform(0.0, 0.4) * random.direction();
+      const double side = k == 0 ? -1.0 : 1.0;
+      desc.T_world_body = SE3(R, at + Vec3{1.5 * side, 0, 0});
+      desc.inertia = solid_inertia(Sphere{0.5}, 10.0);
+      bodies[k] = must(world.create_body(desc));
+      ColliderDesc collider;
+      collider.shape = Sphere{kRadius};
+      collider.T_body_shape = SE3(arms[k]);
+      must(world.add_collider(bodies[k], collider));
+      const Vec3 linear = Vec3{-3.0 * side, 0, 0} + random.in_cube(1.0);
+      const Vec3 angular = random.in_cube(10.0);
+      must(world.set_velocity_world(bodies[k], {linear, angular}));
+    }
+    const int turns = static_cast<int>(random.uniform(10.0, 50.0));
+    bool touched = false;
+    for (int step = 0; step < 90; ++step) {
+      if (step == turns) {  // back to the other
+        const Vec3 between = world.pose(bodies[1]).position() - world.pose(bodies[0]).position();
+        must(world.set_velocity_world(bodies[0], {4.0 * between, random.in_cube(10.0)}));
+      }
+      must(world.step(kFrame));
+      touched = touched || world.counters().manifolds > 0;
+      const Vec3 between = world.pose(bodies[1]) * arms[1] - world.pose(bodies[0]) * arms[0];
+      deepest = std::max(deepest, 2.0 * kRadius - norm(between));
+    }
+    met += touched ? 1 : 0;
+  }
+  EXPECT_GT(met, 50);
+  EXPECT_LT(deepest, 0.02);
+}
+
 // A body that leaves the range of positions stops where the step began. What comes near it
 // afterwards touches it there.
 TEST(SearchMargin, ABodyThatWasStoppedIsWhereItStopped) {

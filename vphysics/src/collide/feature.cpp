@@ -18,10 +18,12 @@ constexpr double kRimSin[kRim] = {0, kS1,  kR,  kC1,  1,  kC1,  kR,  kS1,
 // Name ranges: corners and edges of the upper rim, of the lower one, and of the side.
 constexpr int kUpper = 0, kLower = 32, kSide = 64;
 
-void add(Feature& f, const SE3& T, const Vec3& p, int name, int edge) {
-  const Vec3 q = T * p;
-  f.corners[f.count++] = {q.x, q.y, q.z, static_cast<std::uint16_t>(name),
+void add(Feature& f, const Vec3& p, int name, int edge) {
+  f.corners[f.count++] = {p.x, p.y, p.z, static_cast<std::uint16_t>(name),
                           static_cast<std::uint16_t>(edge)};
+}
+void add(Feature& f, const SE3& T, const Vec3& p, int name, int edge) {
+  add(f, T * p, name, edge);
 }
 
 void set_normal(Feature& f, const SE3& T, const Vec3& n) {
@@ -117,20 +119,36 @@ int aligned_hull_face(const HullData& hull, const Vec3& d) {
   return best;
 }
 
+// Corners of a box differ along one axis: that of the bit in which their numbers differ.
+Vec3 between_corners(const Vec3& half, const Mat3& R, int from, int to) {
+  const int bit = from ^ to;
+  const int axis = bit == 4 ? 0 : bit == 2 ? 1 : 2;
+  const double length = 2.0 * half[axis];
+  return ((to & bit) != 0 ? length : -length) * (axis == 0 ? R.cx : axis == 1 ? R.cy : R.cz);
+}
+
+void box_face_feature(const Vec3& half, const SE3& T, std::size_t face, Feature& f) {
+  const auto& corners = kBoxCorners[face];
+  const auto& edges = kBoxCornerEdges[face];
+  f.count = 0;
+  Vec3 n;
+  n[kBoxFaceAxis[face]] = kBoxFaceSide[face];
+  set_normal(f, T, n);
+  const Vec3 first = T * box_corner(half, corners[0]);
+  const Vec3 second = between_corners(half, T.rotation(), corners[0], corners[1]);
+  const Vec3 last = between_corners(half, T.rotation(), corners[0], corners[3]);
+  add(f, first, corners[0], edges[0]);
+  add(f, first + second, corners[1], edges[1]);
+  add(f, first + second + last, corners[2], edges[2]);
+  add(f, first + last, corners[3], edges[3]);
+}
+
 }  // namespace
 
 void face_feature(const Geometry& g, const SE3& T, int face, Feature& f) {
-  f.count = 0;
   const auto k = static_cast<std::size_t>(face);
-  if (g.kind == Kind::box) {
-    Vec3 n;
-    n[kBoxFaceAxis[k]] = kBoxFaceSide[k];
-    set_normal(f, T, n);
-    for (int i = 0; i < 4; ++i) {
-      add(f, T, box_corner(g.half, kBoxCorners[k][i]), kBoxCorners[k][i], kBoxCornerEdges[k][i]);
-    }
-    return;
-  }
+  if (g.kind == Kind::box) return box_face_feature(g.half, T, k, f);
+  f.count = 0;
   const HullData& hull = *g.hull;
   set_normal(f, T, hull.faces[k].normal);
   const std::size_t first = hull.first_corner[k], n = hull.faces[k].vertices.size();

@@ -54,6 +54,10 @@ class PairFinder {
     if (fits(bounds_[proxy], bounds, margin, displacement)) return false;
     return enlarge(proxy, bounds, margin, displacement);
   }
+  // Whether the enlarged bounds contain these.
+  bool holds(std::uint32_t proxy, const Bounds& bounds) const {
+    return contains(bounds_[proxy], rounded_outward(bounds));
+  }
   // The proxy counts as moved: update() finds its new pairs, old ones stay.
   void set_filter(std::uint32_t proxy, std::uint32_t category, std::uint32_t mask);
 

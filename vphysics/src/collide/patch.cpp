@@ -28,16 +28,38 @@ enum : std::uint32_t { kCornerOfA = 1u << 30, kCornerOfB = 2u << 30, kCrossing =
 struct ClipCorner {
   double u, v, h;
   std::uint32_t name;
-  int edge;       // the edge to the next corner: of the incident feature,
-  bool from_ref;  // or of the reference feature
+  int edge;  // the edge to the next corner: of the incident feature, or of_reference()
 };
+int of_reference(int edge) {
+  return -1 - edge;
+}
 
-struct ClipPolygon {
-  int count;
-  ClipCorner corners[kMaxPatch];
+// An array of each number: small numbers that are stored one by one and loaded together have to
+// wait for each other.
+class ClipPolygon {
+ public:
+  int count() const { return count_; }
+  void clear() { count_ = 0; }
   void add(const ClipCorner& c) {
-    if (count < kMaxPatch) corners[count++] = c;
+    if (count_ == kMaxPatch) return;
+    u_[count_] = c.u;
+    v_[count_] = c.v;
+    h_[count_] = c.h;
+    name_[count_] = c.name;
+    edge_[count_++] = c.edge;
   }
+  ClipCorner operator[](int i) const { return {u_[i], v_[i], h_[i], name_[i], edge_[i]}; }
+  void set_edge_of_last(int edge) { edge_[count_ - 1] = edge; }
+  // The distance of corner i along (a, b) from (u, v).
+  double along(int i, double a, double b, double u, double v) const {
+    return a * (u_[i] - u) + b * (v_[i] - v);
+  }
+
+ private:
+  int count_ = 0;
+  double u_[kMaxPatch], v_[kMaxPatch], h_[kMaxPatch];
+  std::uint32_t name_[kMaxPatch];
+  int edge_[kMaxPatch];
 };
 
 struct Axes {
@@ -103,7 +125,7 @@ class Clipper {
 
 ClipCorner Clipper::projected(const FeatureCorner& c) const {
   const Vec3 d = c.at() - axes_.origin;
-  return {dot(axes_.u, d), dot(axes_.v, d), dot(axes_.n, d), 0, c.edge, false};
+  return {dot(axes_.u, d), dot(axes_.v, d), dot(axes_.n, d), 0, c.edge};
 }
 
 void Clipper::project_reference() {
@@ -144,16 +166,12 @@ std::uint32_t Clipper::crossing_name(int incident_edge, int k) const {
 ClipCorner Clipper::cut(const ClipCorner& from, const ClipCorner& to, double d_from, double d_to,
                         int k) const {
   const double t = d_from / (d_from - d_to);
-  ClipCorner c{from.u + t * (to.u - from.u),
-               from.v + t * (to.v - from.v),
-               from.h + t * (to.h - from.h),
-               0,
-               from.edge,
-               from.from_ref};
-  if (!from.from_ref) {
+  ClipCorner c{from.u + t * (to.u - from.u), from.v + t * (to.v - from.v),
+               from.h + t * (to.h - from.h), 0, from.edge};
+  if (from.edge >= 0) {
     c.name = crossing_name(from.edge, k);
   } else {  // along a reference edge to the next one: their common corner
-    const int j = from.edge;
+    const int j = of_reference(from.edge);
     const int shared = j + 1 == k || (k == 0 && j == edges_ - 1) ? k : j;
     c.name = corner_name(ref_is_a_, ref().corners[shared].name);
   }
@@ -165,24 +183,21 @@ bool Clipper::cut_by_edge(int k, const ClipPolygon& in, ClipPolygon& out) const 
   const double on = coincident_[k];
   double distance[kMaxPatch];
   bool some_outside = false;
-  for (int i = 0; i < in.count; ++i) {
-    distance[i] = outside(k, in.corners[i]);
+  for (int i = 0; i < in.count(); ++i) {
+    distance[i] = in.along(i, rise_u_[k], rise_v_[k], ref_u_[k], ref_v_[k]);
     some_outside = some_outside || distance[i] > on;
   }
   if (!some_outside) return false;
-  out.count = 0;
-  for (int i = 0; i < in.count; ++i) {
-    const int after = i + 1 < in.count ? i + 1 : 0;
-    const ClipCorner &here = in.corners[i], &next = in.corners[after];
+  out.clear();
+  for (int i = 0; i < in.count(); ++i) {
+    const int after = i + 1 < in.count() ? i + 1 : 0;
     const double d = distance[i], d_next = distance[after];
-    if (d <= on) out.add(here);
+    if (d <= on) out.add(in[i]);
     if (d_next > on && d <= on) {  // leaves
-      if (d < -on) out.add(cut(here, next, d, d_next, k));
-      ClipCorner& last = out.corners[out.count - 1];
-      last.edge = k;
-      last.from_ref = true;
+      if (d < -on) out.add(cut(in[i], in[after], d, d_next, k));
+      out.set_edge_of_last(of_reference(k));
     } else if (d > on && d_next < -on) {  // enters
-      out.add(cut(here, next, d, d_next, k));
+      out.add(cut(in[i], in[after], d, d_next, k));
     }
   }
   return true;
@@ -206,18 +221,17 @@ bool Clipper::clip(bool ref_is_a) {
   project_reference();
   ClipPolygon one, two;
   ClipPolygon *in = &one, *out = &two;
-  in->count = 0;
   const Feature& f = incident();
   for (int i = 0; i < f.count; ++i) {
     ClipCorner c = projected(f.corners[i]);
     c.name = corner_name(!ref_is_a_, f.corners[i].name);
     in->add(c);
   }
-  for (int k = 0; k < edges_ && in->count > 0; ++k) {
+  for (int k = 0; k < edges_ && in->count() > 0; ++k) {
     if (cut_by_edge(k, *in, *out)) std::swap(in, out);
   }
-  for (int i = 0; i < in->count; ++i) keep(in->corners[i]);
-  return in->count > 0;
+  for (int i = 0; i < in->count(); ++i) keep((*in)[i]);
+  return in->count() > 0;
 }
 
 // Clips a segment or a point to a polygon.
@@ -244,7 +258,7 @@ void Clipper::clip_segment(bool ref_is_a) {
   const auto end = [&](double t, int edge, const FeatureCorner& corner) {
     const std::uint32_t name =
         edge < 0 ? corner_name(!ref_is_a_, corner.name) : crossing_name(f.corners[0].edge, edge);
-    keep({p.u + t * (q.u - p.u), p.v + t * (q.v - p.v), p.h + t * (q.h - p.h), name, 0, false});
+    keep({p.u + t * (q.u - p.u), p.v + t * (q.v - p.v), p.h + t * (q.h - p.h), name, 0});
   };
   end(first, first_edge, f.corners[0]);
   if (f.count > 1) end(last, last_edge, f.corners[1]);

@@ -233,8 +233,8 @@ std::uint32_t find_closer_pairs(const SpeculativePair* pairs, BodyState* states,
   const auto arc_error = [&](const V& rotation, const V& arm) {
     return F(0.5f) * dot(rotation, rotation) * size(arm);
   };
-  const F turned =
-      (of_pair[20] * size(rotation_a) + (F(1.0f) - of_pair[20]) * size(rotation_b)) * size(moved);
+  const F with_a = larger(of_pair[20], F(0.0f)), with_b = F(1.0f) - abs(of_pair[20]);
+  const F turned = (with_a * size(rotation_a) + with_b * size(rotation_b)) * size(moved);
   const auto is_directed = F(0.0f) < dot(normal, normal);
   const F approach = select(is_directed, turned - dot(normal, moved), size(moved)) +
                      of_pair[18] * size(rotation_b - rotation_a) + arc_error(rotation_a, arm_a) +

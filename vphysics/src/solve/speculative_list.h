@@ -20,19 +20,22 @@ struct alignas(32) SpeculativePair {
   float x[3], rotation_a[3], rotation_b[3];
   // Arms from the bodies' centres to the centre of the sphere in which the two can touch [m].
   float arm_a[3], arm_b[3];
-  // A direction from a to b that separated them, or zero. It rotates with the larger of the two.
+  // A direction from a to b that separated them, or zero.
   float normal[3];
   float radius;  // of that sphere: the lever arm of relative rotation [m]
   // How far they may approach each other along the normal; without one, the permitted relative
   // displacement [m].
   float clearance;
-  float a_is_larger;      // 1 or 0
+  float turns_with;       // the body with which the normal rotates: 1: a, 0: b, -1: none
   std::uint32_t a, b;     // indices of the bodies' states; kWorldState in an empty slot
   std::uint32_t contact;  // kNoContact in an empty slot
 };
 inline constexpr std::size_t kSpeculativeFloats = 21;
 static_assert(sizeof(SpeculativePair) == 96 &&
               offsetof(SpeculativePair, a) == kSpeculativeFloats * sizeof(float));
+inline bool is_between_spheres(const SpeculativePair& pair) {
+  return pair.turns_with < 0.0f;
+}
 struct SpeculativeBlock {
   SpeculativePair pairs[kLanes];
 };

@@ -101,6 +101,46 @@ collide::PairMargin Approach::margin(const Collider& a, const Collider& b, doubl
   return {largest, slack, motion(a, b, 0.0), {a.geometry, a.T}, {b.geometry, b.T}};
 }
 
+namespace {
+
+// A bounding sphere that the body's rotation does not move.
+struct SteadySphere {
+  Vec3 centre, velocity;
+  double radius;
+
+  SteadySphere(const Body& body, const Collider& collider) {
+    const Vec3 at = body.T * collider.centre;
+    if (body.motion == Motion::fixed) {
+      centre = at;
+      radius = collider.radius;
+      return;
+    }
+    centre = reference_point(body);
+    velocity = body.v;
+    radius = norm(at - centre) + collider.radius;
+  }
+};
+
+}  // namespace
+
+std::optional<Apart> Approach::spheres_apart(const Collider& a, const Collider& b,
+                                             double slack) const {
+  const Body &body_a = bodies[a.body], &body_b = bodies[b.body];
+  const SteadySphere of_a(body_a, a), of_b(body_b, b);
+  const double radii = of_a.radius + of_b.radius;
+  const Vec3 between = of_b.centre - of_a.centre, motion = dt * (of_b.velocity - of_a.velocity);
+  const double length2 = dot(motion, motion);
+  const double nearest =
+      length2 > 0.0 ? std::clamp(-dot(between, motion) / length2, 0.0, 1.0) : 0.0;
+  const Vec3 then = between + nearest * motion;
+  const double distance = norm(then);
+  if (!(distance > radii + slack + pushed_by_others(body_a) + pushed_by_others(body_b)) ||
+      !(pull_of(body_a) == Velocity{} && pull_of(body_b) == Velocity{}))
+    return std::nullopt;
+  const Vec3 n = (1.0 / distance) * then;
+  return Apart{n, dot(n, between) - radii};
+}
+
 double Approach::pushed(const Collider& a, const Collider& b) const {
   const Body &body_a = bodies[a.body], &body_b = bodies[b.body];
   return pushed_by_others(body_a) + pushed_by_others(body_b) + moved_by_tumbling(body_a, dt) +

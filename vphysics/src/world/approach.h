@@ -2,11 +2,19 @@
 // narrow phase and the broad phase.
 #pragma once
 
+#include <optional>
+
 #include "collide/impact_manifold.h"
 #include "world/collider.h"
 #include "world/loads.h"
 
 namespace vp {
+
+// A plane between two colliders.
+struct Apart {
+  Vec3 normal;      // unit, from a to b
+  double distance;  // by which it separates them [m]
+};
 
 struct Approach {
   const Bodies& bodies;
@@ -25,6 +33,9 @@ struct Approach {
   // The search distance of two convex colliders: `largest`, the one at rest and their approach.
   collide::PairMargin margin(const Collider& a, const Collider& b, double largest,
                              double at_rest) const;
+  // The plane between their bounding spheres about the bodies' reference points, along the motion.
+  // None if the spheres may come closer than `slack` within the step.
+  std::optional<Apart> spheres_apart(const Collider& a, const Collider& b, double slack) const;
   // How far the two may move within the step beside their motion at their velocities [m].
   double pushed(const Collider& a, const Collider& b) const;
   // Their motion at the present velocities.

@@ -215,28 +215,71 @@ void World::Impl::load_states(double dt) {
   }
 }
 
+namespace {
+
+// What the colliders of a body sweep within h.
+class SweptBounds {
+ public:
+  SweptBounds(const Stores& s, const Body& body, double h)
+      : s_(s),
+        body_(body),
+        h_(h),
+        pull_(s.approach_in(h).pull_of(body)),
+        rotation_(h * (norm(body.w) + norm(pull_.w))),
+        reference_(reference_point(body)) {}
+
+  // Calls f(collider, bounds, displacement) with those of each collider, grown by `share` of its
+  // margin, until f returns false; returns whether it never did.
+  template <class F>
+  bool each(double share, const F& f) const {
+    for (std::uint32_t c = body_.first_collider; c != kNone; c = s_.colliders[c].next) {
+      const Collider& collider = s_.colliders[c];
+      // Its centre moves along an arc, which deviates from its tangent by half the squared angle.
+      const Vec3 arm = body_.T * collider.centre - reference_;
+      const Vec3 displacement = h_ * (body_.v + cross(body_.w, arm));
+      const double own = collider.geometry.kind == collide::Kind::sphere ? 0.0 : collider.radius;
+      const double more =
+          rotation_ * own + 0.5 * rotation_ * rotation_ * norm(arm) + s_.desc.contact_slop;
+      const Vec3 pulled = h_ * (pull_.v + cross(pull_.w, arm));
+      const collide::Bounds start = bounds_along(collider.bounds, pulled, 0.0);
+      const double margin = share * kMargin * collider.size;
+      if (!f(collider, bounds_along(start, displacement, more + margin), displacement + pulled))
+        return false;
+    }
+    return true;
+  }
+
+ private:
+  const Stores& s_;
+  const Body& body_;
+  double h_;
+  Velocity pull_;
+  double rotation_;  // [rad], at most
+  Vec3 reference_;
+};
+
+}  // namespace
+
 void update_bounds(const Stores& s, std::uint32_t index, double h, bool is_solver_driven) {
   Body& body = s.bodies[index];
-  pose_colliders(s.bodies[index], s.colliders);
-  const Velocity pull = s.approach_in(h).pull_of(body);
-  const double rotation = h * (norm(body.w) + norm(pull.w));
-  const Vec3 reference = reference_point(body);
-  for (std::uint32_t c = body.first_collider; c != kNone; c = s.colliders[c].next) {
-    const Collider& collider = s.colliders[c];
-    // Its centre moves along an arc, which deviates from its tangent by half the squared angle.
-    const Vec3 arm = body.T * collider.centre - reference;
-    const Vec3 displacement = h * (body.v + cross(body.w, arm));
-    const double own = collider.geometry.kind == collide::Kind::sphere ? 0.0 : collider.radius;
-    const double more =
-        rotation * own + 0.5 * rotation * rotation * norm(arm) + s.desc.contact_slop;
-    // Half of the margin remains now, whether the enlarged bounds are new or old.
-    const double half = 0.5 * kMargin * collider.size;
-    const Vec3 pulled = h * (pull.v + cross(pull.w, arm));
-    const collide::Bounds start = bounds_along(collider.bounds, pulled, 0.0);
-    s.finder.set_bounds(collider.proxy, bounds_along(start, displacement, more + half), half,
-                        2.0 * (displacement + pulled));
-  }
+  pose_colliders(body, s.colliders);
+  // Half of the margin remains now, whether the enlarged bounds are new or old.
+  (void)SweptBounds(s, body, h)
+      .each(0.5,
+            [&](const Collider& collider, const collide::Bounds& swept, const Vec3& displacement) {
+              const double half = 0.5 * kMargin * collider.size;
+              s.finder.set_bounds(collider.proxy, swept, half, 2.0 * displacement);
+              return true;
+            });
   if (is_solver_driven) std::copy_n(s.body_states[index + 1].displacement, 6, body.bounded_at);
+}
+
+bool has_bounds_for(const Stores& s, std::uint32_t index, double h) {
+  pose_colliders(s.bodies[index], s.colliders);
+  return SweptBounds(s, s.bodies[index], h)
+      .each(0.0, [&](const Collider& collider, const collide::Bounds& swept, const Vec3&) {
+        return s.finder.holds(collider.proxy, swept);
+      });
 }
 
 Velocity World::Impl::settle(const BodyStates& states, std::uint32_t index) {
@@ -270,7 +313,7 @@ void World::Impl::forget_contacts(std::uint32_t body) {
       contact_store.forget_part(index, body_set);
     } else if (c.slot.points > 0) {
       contact_store.release_slot(index, body_set);
-      contact_store.set_speculative(index, 0.0, {}, body_set);
+      contact_store.set_speculative(index, {}, body_set);
     } else if (!c.parked) {
       contact_store.reset_speculative(c, body_set);
     }

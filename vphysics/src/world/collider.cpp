@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "collide/compound_data.h"
+#include "collide/support.h"
 
 namespace vp {
 namespace {
@@ -72,8 +73,12 @@ void note_collider(Body& body, Collider& c, const Vec3& line) {
   }
   const collide::Bounds local = bounds_of(c.geometry, c.T_body_shape);
   c.centre = 0.5 * (local.lower + local.upper);
-  c.radius = c.geometry.kind == collide::Kind::sphere ? c.geometry.radius
-                                                      : 0.5 * norm(local.upper - local.lower);
+  c.radius = 0.5 * norm(local.upper - local.lower);
+  const double around_core = core_radius(c.geometry) + core_extent(c.geometry);
+  if (is_convex_body(c.geometry) && around_core <= c.radius) {
+    c.centre = c.T_body_shape * core_centre(c.geometry);
+    c.radius = around_core;
+  }
   body.local = merged(body.local, local);
   c.size = min_half_extent(c.geometry);
   body.bounding_radius = bounding_radius_of(body);

@@ -25,8 +25,8 @@ namespace vp {
 struct NarrowPhaseResult {
   std::uint32_t contact;
   collide::Manifold manifold;
-  // Search distances, with motion and at rest, and the distance that is free of contact [m].
-  double margin, margin_at_rest, clearance;
+  double margin, margin_at_rest;  // search distances, with motion and at rest [m]
+  Clearance clearance;
   collide::MotionToImpact to_impact;
   bool taken_over = false;  // the contact had no points and gets none: its clearance is set
   // Of a contact with parts: `count` manifolds of a PartSearch from `first` on.
@@ -89,6 +89,7 @@ class ContactSearch {
   void find_manifolds_of(std::span<const std::uint32_t> contacts, double dt);
   void find_manifold_of(Contact& contact, NarrowPhaseResult& found, const Approach& approach,
                         PartSearch& search) const;
+  void find_convex(Contact& contact, NarrowPhaseResult& found, const Approach& approach) const;
   bool stays_without_points(const Contact& contact, const NarrowPhaseResult& found) const;
   // within_step: contact slots that have impulses in this step are kept.
   void take_over(const NarrowPhaseResult& found, bool within_step);
@@ -104,10 +105,10 @@ class ContactSearch {
   // find_again.cpp
   void load_inertias_of(const Contact& contact);
   bool list_deviating_bodies(double left);
-  void advance_within_step(std::uint32_t body);
-  void list_contacts_of_deviating(double left);
+  void advance_within_step(std::uint32_t body, const BodyStates& states);
+  void list_contacts_of_deviating(double left, const BodyStates& states);
   void list_contacts_of_precessing(std::span<const std::uint32_t> precessing);
-  void take_contacts_to_test();
+  void take_contacts_to_test(const BodyStates& states);
 
   const StepContext s_;
   ManifoldWriter writer_;

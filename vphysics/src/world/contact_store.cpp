@@ -10,10 +10,10 @@
 namespace vp {
 namespace {
 
-// A clearance goes on when a state's displacement restarts, until the body has moved this many
-// times as far as to the last restart, which costs as much of single precision, or has rotated so
-// far [rad].
-constexpr float kMaxRestarts = 4.0f, kMaxRotationSum = 0.25f;
+// A clearance goes on when a state's displacement restarts, until single precision may not resolve
+// it any more: the body has moved this many times as far as to the last restart, and as its
+// clearance. Or it has rotated so far [rad].
+constexpr float kMaxRestarts = 4.0f, kMaxOfClearance = 1024.0f, kMaxRotationSum = 0.25f;
 
 // Motion of one body of a pair: displacement at the centre of the vicinity sphere, rotation, and
 // the error bound of that displacement.
@@ -41,7 +41,9 @@ double max_approach(const solve::SpeculativePair& pair, const BodySet& on, doubl
   const Vec3 moved = b.displacement - a.displacement - vector_of(pair.x),
              normal = vector_of(pair.normal);
   const double rotated = static_cast<double>(pair.radius) * norm(b.rotation - a.rotation);
-  const double turned = norm(pair.a_is_larger > 0.0f ? a.rotation : b.rotation) * norm(moved);
+  const double turned = is_between_spheres(pair)
+                            ? 0.0
+                            : norm(pair.turns_with > 0.0f ? a.rotation : b.rotation) * norm(moved);
   const double approached = normal == Vec3{} ? norm(moved) : turned - dot(normal, moved);
   return approached + rotated + a.arc_error + b.arc_error;
 }
@@ -174,17 +176,16 @@ void ContactStore::follow_region(const Body& body, const BodySet& on) {
   });
 }
 
-void ContactStore::set_speculative(std::uint32_t index, double clearance, const Vec3& normal,
+void ContactStore::set_speculative(std::uint32_t index, const Clearance& clearance,
                                    const BodySet& on) {
   Contact& c = pool[index];
   const std::uint32_t a = on.colliders[c.a].body, b = on.colliders[c.b].body;
   c.speculative_index =
       speculative.add(index, end_of(on.bodies, a).state, end_of(on.bodies, b).state);
-  set_clearance(c, clearance, normal, on);
+  set_clearance(c, clearance, on);
 }
 
-void ContactStore::set_clearance(const Contact& c, double clearance, const Vec3& normal,
-                                 const BodySet& on) {
+void ContactStore::set_clearance(const Contact& c, const Clearance& clearance, const BodySet& on) {
   solve::SpeculativePair& pair = speculative.pair(c.speculative_index);
   const Collider &a = on.colliders[c.a], &b = on.colliders[c.b];
   const Vicinity at = vicinity_of(on.bodies, a, b);
@@ -193,19 +194,20 @@ void ContactStore::set_clearance(const Contact& c, double clearance, const Vec3&
   const auto put_end = [&](std::uint32_t state, const Body& body, float* rotation, float* arm) {
     std::copy_n(on.states[state].displacement + 3, 3, rotation);
     // Without a clearance any motion uses it up, so that the poses need not be those of one time.
-    const bool has_arm = state != solve::kWorldState && clearance > 0.0;
+    const bool has_arm =
+        state != solve::kWorldState && clearance.distance > 0.0 && !clearance.of_spheres;
     put(arm, has_arm ? at.centre - reference_point(body) : Vec3{});
   };
   put_end(pair.a, on.bodies[a.body], pair.rotation_a, pair.arm_a);
   put_end(pair.b, on.bodies[b.body], pair.rotation_b, pair.arm_b);
-  put(pair.normal, normal);
-  pair.clearance = static_cast<float>(clearance);
-  pair.radius = static_cast<float>(at.radius);
-  pair.a_is_larger = at.is_of_b ? 1.0f : 0.0f;
+  put(pair.normal, clearance.normal);
+  pair.clearance = static_cast<float>(clearance.distance);
+  pair.radius = clearance.of_spheres ? 0.0f : static_cast<float>(at.radius);
+  pair.turns_with = clearance.of_spheres ? -1.0f : at.is_of_b ? 1.0f : 0.0f;
 }
 
 void ContactStore::reset_speculative(const Contact& c, const BodySet& on) {
-  set_clearance(c, c.of_link ? kNeverTouches : 0.0, {}, on);
+  set_clearance(c, {c.of_link ? kNeverTouches : 0.0}, on);
 }
 
 void ContactStore::unset_speculative(std::uint32_t index) {
@@ -218,7 +220,7 @@ bool ContactStore::use_clearance(const Contact& c, const BodySet& on) {
   const solve::SpeculativePair& pair = speculative.pair(c.speculative_index);
   const double left = static_cast<double>(pair.clearance) - max_approach(pair, on, 0.0);
   if (!(left > 0.0)) return false;
-  set_clearance(c, left, {}, on);  // the normal has rotated
+  set_clearance(c, {left}, on);  // the normal has rotated
   return true;
 }
 
@@ -226,25 +228,29 @@ bool ContactStore::follow_restart(const Contact& c, std::uint32_t state,
                                   const float* displacement) {
   solve::SpeculativePair& pair = speculative.pair(c.speculative_index);
   const bool is_a = pair.a == state;
-  float* const rotation = is_a ? pair.rotation_a : pair.rotation_b;
   float restart = 0.0f, moved = 0.0f;
   for (int i = 0; i < 3; ++i) {
     pair.x[i] += is_a ? displacement[i] : -displacement[i];
-    rotation[i] -= displacement[3 + i];
     restart = std::max(restart, std::fabs(displacement[i]));
     moved = std::max(moved, std::fabs(pair.x[i]));
   }
+  const bool is_precise =
+      moved <= std::max(kMaxRestarts * restart, kMaxOfClearance * pair.clearance);
+  if (is_between_spheres(pair)) return is_precise;
+  float* const rotation = is_a ? pair.rotation_a : pair.rotation_b;
+  for (int i = 0; i < 3; ++i) rotation[i] -= displacement[3 + i];
   // Rotations are added as vectors. What their order makes of two is at most half of their product.
   const auto rotated = static_cast<float>(norm(vector_of(rotation)));
   const auto last = static_cast<float>(norm(vector_of(displacement + 3)));
   const auto arm = static_cast<float>(norm(vector_of(is_a ? pair.arm_a : pair.arm_b)));
   pair.clearance -= last * std::max(last, rotated) * (arm + pair.radius);
-  return moved <= kMaxRestarts * restart && rotated <= kMaxRotationSum;
+  return is_precise && rotated <= kMaxRotationSum;
 }
 
 bool ContactStore::may_touch_within(const Contact& c, double time, const BodySet& on) const {
   const solve::SpeculativePair& pair = speculative.pair(c.speculative_index);
-  return !(max_approach(pair, on, time) <= static_cast<double>(pair.clearance));
+  const auto clearance = static_cast<double>(pair.clearance);
+  return clearance < kNeverTouches && !(max_approach(pair, on, time) <= clearance);
 }
 
 // Does nothing if something awake may change the contact: a speculative pair with one body awake or

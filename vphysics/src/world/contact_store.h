@@ -22,6 +22,16 @@ struct BodySet {
   solve::LargeVector<solve::BodyState>& states;
 };
 
+// A pair cannot touch before its bodies have come nearer to each other by the distance.
+struct Clearance {
+  double distance = 0.0;  // [m]
+  Vec3 normal = {};       // along it, from a to b; zero: moved relative to each other so far
+  // Between spheres about the bodies' reference points: rotation brings nothing nearer.
+  bool of_spheres = false;
+};
+
+inline constexpr double kNeverTouches = 1e30;  // clearance of a pair that cannot touch [m]
+
 class ContactStore {
  public:
   // --- state
@@ -84,12 +94,8 @@ class ContactStore {
   void follow_region(const Body& body, const BodySet& on);
 
   // --- speculative lists
-  // The pair cannot touch before its bodies have approached each other by clearance [m] along the
-  // normal, a unit vector from a to b; if that is zero, moved so far relative to each other.
-  void set_speculative(std::uint32_t contact, double clearance, const Vec3& normal,
-                       const BodySet& on);
-  void set_clearance(const Contact& contact, double clearance, const Vec3& normal,
-                     const BodySet& on);
+  void set_speculative(std::uint32_t contact, const Clearance& clearance, const BodySet& on);
+  void set_clearance(const Contact& contact, const Clearance& clearance, const BodySet& on);
   // Sets the clearance to zero, so that it is tested; of links, which are tested elsewhere, to
   // never.
   void reset_speculative(const Contact& contact, const BodySet& on);
@@ -151,7 +157,5 @@ class ContactStore {
 
   std::vector<std::uint64_t> dirty_bits_;  // scratch
 };
-
-inline constexpr double kNeverTouches = 1e30;  // clearance of a pair that cannot touch [m]
 
 }  // namespace vp

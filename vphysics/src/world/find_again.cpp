@@ -80,20 +80,20 @@ bool ContactSearch::list_deviating_bodies(double left) {
 }
 
 // Sets the pose and the velocities of a body to those of the present sub-step.
-void ContactSearch::advance_within_step(std::uint32_t index) {
+void ContactSearch::advance_within_step(std::uint32_t index, const BodyStates& states) {
   Body& body = s_.bodies[index];
   if (body.advanced || body.asleep || !joins_sub_steps(body)) return;
   body.advanced = true;
   advanced_.push_back({index, body.T, body.w, body.v});
-  s_.states_in(s_.dt).copy_to_body(body, index);
+  states.copy_to_body(body, index);
 }
 
 // Marks the contacts to test.
-void ContactSearch::list_contacts_of_deviating(double left) {
+void ContactSearch::list_contacts_of_deviating(double left, const BodyStates& states) {
   for (const std::uint32_t i : deviating_) {
-    advance_within_step(i);
-    update_bounds(s_, i, left, true);
-    s_.states_in(s_.dt).note_searched(i);
+    advance_within_step(i, states);
+    if (!has_bounds_for(s_, i, left)) update_bounds(s_, i, left, true);
+    states.note_searched(i);
   }
   find_new_contacts();
   for (const std::uint32_t i : deviating_) {
@@ -118,7 +118,7 @@ void ContactSearch::list_contacts_of_precessing(std::span<const std::uint32_t> p
 }
 
 // Moves the contacts to test, and the poses of their bodies, to dirty_.
-void ContactSearch::take_contacts_to_test() {
+void ContactSearch::take_contacts_to_test(const BodyStates& states) {
   s_.contact_store.take_dirty(dirty_);
   std::erase_if(dirty_, [&](std::uint32_t index) {
     const Contact& c = s_.contact_store[index];
@@ -131,7 +131,7 @@ void ContactSearch::take_contacts_to_test() {
     if (c.sensor || must_wait) dirty_next_step_.push_back(index);
     if (c.sensor || c.of_link || must_wait) return true;
     for (const std::uint32_t body : {a, b}) {
-      advance_within_step(body);
+      advance_within_step(body, states);
       pose_colliders(s_.bodies[body], s_.colliders);
     }
     return false;
@@ -145,9 +145,10 @@ SearchedAgain ContactSearch::find_again(double left, std::span<const std::uint32
   // Contacts that wait for the next step are not tested now.
   dirty_next_step_.clear();
   dirty_next_step_.swap(s_.contact_store.dirty);
-  if (some_deviate) list_contacts_of_deviating(left);
+  const BodyStates states = s_.states_in(s_.dt);
+  if (some_deviate) list_contacts_of_deviating(left, states);
   list_contacts_of_precessing(precessing);
-  take_contacts_to_test();
+  take_contacts_to_test(states);
   for (std::size_t done = 0; done < dirty_.size(); done += results_.size()) {
     const std::span<const std::uint32_t> waiting = std::span(dirty_).subspan(done);
     find_manifolds_of(waiting.first(std::min(waiting.size(), kContactBatch)), left);

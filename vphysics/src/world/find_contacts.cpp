@@ -1,5 +1,6 @@
 // The search for contacts at the start of a step.
 #include <algorithm>
+#include <optional>
 #include <span>
 
 #include "world/contact_search.h"
@@ -99,7 +100,7 @@ void ContactSearch::add_contact_pair(std::uint32_t i, std::uint32_t j) {
   c.has_parts = has_parts(a.geometry, b.geometry);
   const std::uint32_t index = s_.contact_store.add(c, s_.body_set);
   if (!c.of_link) s_.contact_store.mark_dirty(index);
-  s_.contact_store.set_speculative(index, 0.0, {}, s_.body_set);
+  s_.contact_store.set_speculative(index, {}, s_.body_set);
   s_.contact_store.reset_speculative(s_.contact_store[index], s_.body_set);
 }
 
@@ -209,31 +210,35 @@ void ContactSearch::find_manifold_of(Contact& c, NarrowPhaseResult& found, const
   const Collider &a = s_.colliders[c.a], &b = s_.colliders[c.b];
   const double slop = s_.desc.contact_slop;
   found.margin_at_rest = c.sensor ? 0.0 : slop + slide_limit(a, b);
-  found.margin = c.sensor ? 0.0 : found.margin_at_rest + approach.of(a, b);
-  found.clearance = found.margin - slop;
   found.manifold.count = 0;
-  found.manifold.normal = {};
   found.manifold.rough = false;
   found.to_impact = {};
   found.count = 0;
+  std::optional<Apart> apart;
   if (disables_collision(s_.bodies, s_.joints, a.body, b.body)) {
-    found.clearance = kNeverTouches;
-  } else if (c.has_parts) {
-    find_parts(c, found, approach, search);
+    found.clearance = {kNeverTouches};
+  } else if (!c.sensor && (apart = approach.spheres_apart(a, b, found.margin_at_rest))) {
+    found.clearance = {apart->distance - slop, apart->normal, true};
   } else {
-    find_manifold(a.geometry, a.T, b.geometry, b.T,
-                  approach.margin(a, b, found.margin, found.margin_at_rest), c.cache,
-                  found.manifold);
-    if (found.manifold.count > 0 && !c.sensor)
-      found.to_impact =
-          move_to_impact(a.geometry, a.T, b.geometry, b.T,
-                         approach.motion(a, b, found.margin_at_rest), found.margin, found.manifold);
-    found.clearance = found.manifold.min_separation - slop;
+    found.margin = c.sensor ? 0.0 : found.margin_at_rest + approach.of(a, b);
+    c.has_parts ? find_parts(c, found, approach, search) : find_convex(c, found, approach);
   }
   found.taken_over = stays_without_points(c, found);
   if (!found.taken_over) return;
-  s_.contact_store.set_clearance(c, found.clearance, found.manifold.normal, s_.body_set);
+  s_.contact_store.set_clearance(c, found.clearance, s_.body_set);
   c.dirty = false;
+}
+
+void ContactSearch::find_convex(Contact& c, NarrowPhaseResult& found,
+                                const Approach& approach) const {
+  const Collider &a = s_.colliders[c.a], &b = s_.colliders[c.b];
+  find_manifold(a.geometry, a.T, b.geometry, b.T,
+                approach.margin(a, b, found.margin, found.margin_at_rest), c.cache, found.manifold);
+  if (found.manifold.count > 0 && !c.sensor)
+    found.to_impact =
+        move_to_impact(a.geometry, a.T, b.geometry, b.T,
+                       approach.motion(a, b, found.margin_at_rest), found.margin, found.manifold);
+  found.clearance = {found.manifold.min_separation - s_.desc.contact_slop, found.manifold.normal};
 }
 
 // Then nothing but its own clearance changes: no slot, no event, and no contact is parked.
@@ -249,7 +254,7 @@ bool ContactSearch::stays_without_points(const Contact& c, const NarrowPhaseResu
 
 void ContactSearch::take_over(const NarrowPhaseResult& found, bool within_step) {
   const std::uint32_t index = found.contact;
-  const bool separated = found.clearance >= kNeverTouches;
+  const bool separated = found.clearance.distance >= kNeverTouches;
   if (!separated) ++s_.counters.narrow_phase_pairs;
   s_.status.distance_limit |= found.manifold.rough;
   if (found.taken_over) return;
@@ -275,9 +280,9 @@ void ContactSearch::take_over(const NarrowPhaseResult& found, bool within_step) 
     if (c.touching) s_.events.touch(s_.colliders, c, false);
     if (c.slot.points > 0) {
       s_.contact_store.release_slot(index, s_.body_set);
-      s_.contact_store.set_speculative(index, found.clearance, found.manifold.normal, s_.body_set);
+      s_.contact_store.set_speculative(index, found.clearance, s_.body_set);
     } else {
-      s_.contact_store.set_clearance(c, found.clearance, found.manifold.normal, s_.body_set);
+      s_.contact_store.set_clearance(c, found.clearance, s_.body_set);
     }
   }
   s_.contact_store.park(index,

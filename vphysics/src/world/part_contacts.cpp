@@ -84,11 +84,10 @@ void ContactSearch::find_parts(const Contact& c, NarrowPhaseResult& found, const
     return is_convex_body(x.geometry) ? margin.approach_of(x.geometry, x.T, &x == &b).touching
                                       : found.margin;
   };
-  found.clearance = std::min(searched(a), searched(b)) - s_.desc.contact_slop;
+  double distance = std::min(searched(a), searched(b));
   if (found.count == 0 && !c.sensor)
-    found.clearance =
-        std::max(found.clearance, distance_of_parts(a.geometry, a.T, b.geometry, b.T, search.cast) -
-                                      s_.desc.contact_slop);
+    distance = std::max(distance, distance_of_parts(a.geometry, a.T, b.geometry, b.T, search.cast));
+  found.clearance = {distance - s_.desc.contact_slop};
 }
 
 std::span<collide::SubManifold> ContactSearch::parts_of(const NarrowPhaseResult& found) {
@@ -137,7 +136,7 @@ void ContactSearch::take_over_parts(const NarrowPhaseResult& result, bool within
   old_parts_.clear();
   for (std::uint32_t p = first; p != kNone; p = s_.contact_store[p].next_part)
     old_parts_.push_back(p);
-  s_.contact_store.set_clearance(s_.contact_store[index], result.clearance, {}, s_.body_set);
+  s_.contact_store.set_clearance(s_.contact_store[index], result.clearance, s_.body_set);
   const std::span<collide::SubManifold> parts = parts_of(result);
   claimed_parts_.clear();
   for (const collide::SubManifold& found : parts)

@@ -28,6 +28,10 @@ bool clearance_goes_on(const Stores& s, const Contact& c, const PairRestart& res
   ContactStore& contacts = s.contact_store;
   const solve::SpeculativePair& pair = contacts.speculative.pair(c.speculative_index);
   const std::uint32_t a = pair.a, b = pair.b;
+  // Two that fly past each other use up no clearance.
+  if (is_between_spheres(pair) &&
+      !s.finder.should_pair(s.colliders[c.a].proxy, s.colliders[c.b].proxy))
+    return false;
   bool follows = true;
   if (restarted.of_a) follows = contacts.follow_restart(c, a, restarted.of_a);
   if (restarted.of_b) follows = contacts.follow_restart(c, b, restarted.of_b) && follows;
@@ -100,7 +104,7 @@ void Restarts::restart_contacts_of(const Stores& s, std::uint32_t body) const {
     } else if (!c.dirty && !clearance_goes_on(s, c,
                                               {displacement_of(states.a), displacement_of(states.b),
                                                !forgets(states.a) && !forgets(states.b)})) {
-      contacts.set_clearance(c, kNoClearance, {}, s.body_set);
+      contacts.set_clearance(c, {kNoClearance}, s.body_set);
     }
   });
 }

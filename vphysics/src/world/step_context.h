@@ -93,6 +93,8 @@ struct StepContext : Stores {
 void wake(const Stores& stores, std::uint32_t body);
 // Passes the bounds of colliders that may leave their enlarged ones within h to the broad phase.
 void update_bounds(const Stores& stores, std::uint32_t body, double h, bool is_solver_driven);
+// Whether no collider may leave its enlarged bounds within h, even if no margin is left then.
+bool has_bounds_for(const Stores& stores, std::uint32_t body, double h);
 // Moves the body for h. freely: as a tumbling body without contact at the mean angular velocity
 // w + more_w, instead of at the constant twist.
 void advance_body(Body& body, const collide::Motion& motion, double h, bool freely,
