@@ -309,6 +309,36 @@ TEST(SearchMargin, WhatHasFlownPastIsNoPairAnyMore) {
   EXPECT_LE(world.counters().pairs, 2u);
 }
 
+// Pairs of compounds that touched have moved apart, corner to corner: their bounds still overlap.
+TEST(SearchMargin, CompoundsThatTouchedMayBeFarFromIt) {
+  const std::vector<CompoundPart> halves{{Box{{0.2, 0.2, 0.1}}, SE3(Vec3{0, 0, 0.1})},
+                                         {Box{{0.2, 0.2, 0.1}}, SE3(Vec3{0, 0, -0.1})}};
+  const Shape cube = must(Compound::of(halves));
+  const Mat3 R = Exp(Vec3{0, 0, kPi / 4}).matrix();
+  World world({.gravity = {}});
+  std::vector<BodyId> moved;
+  const auto beside = [](std::size_t k, const Vec3& by) {
+    return Vec3{3.0 * static_cast<double>(k), 0, 0} + by;
+  };
+  for (std::size_t k = 0; k < 4; ++k) {
+    add_dynamic(world, {.shape = cube, .pose = SE3(R, beside(k, {}))});
+    moved.push_back(
+        add_dynamic(world, {.shape = cube, .pose = SE3(R, beside(k, {0.282, 0.282, 0.05}))}));
+  }
+  must(world.step(kFrame));
+  EXPECT_GE(world.counters().contacts, 8u);
+  for (std::size_t k = 0; k < moved.size(); ++k) {
+    must(world.set_pose(moved[k], SE3(R, beside(k, {0.56, 0.45, 0.05}))));
+    must(world.set_velocity_world(moved[k], {{5, -5, 0}, {}}));
+  }
+  must(world.step(kFrame));
+  EXPECT_EQ(world.counters().contacts, 0u);
+  EXPECT_EQ(world.counters().pairs, 4u);
+  EXPECT_EQ(world.counters().narrow_phase_pairs, 4u);
+  for (const BodyId body : moved)
+    EXPECT_LT(norm(world.velocity_world(body).linear - Vec3{5, -5, 0}), 1e-6);
+}
+
 // Balls that are off their bodies' centres of mass swing around them, past each other or into each
 // other. Meanwhile some get another velocity.
 TEST(SearchMargin, BallsThatSwingOffTheirCentresMeet) {

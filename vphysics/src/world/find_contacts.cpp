@@ -213,7 +213,7 @@ void ContactSearch::find_manifold_of(Contact& c, NarrowPhaseResult& found, const
   found.manifold.count = 0;
   found.manifold.rough = false;
   found.to_impact = {};
-  found.count = 0;
+  found.first = found.count = 0;
   std::optional<Apart> apart;
   if (disables_collision(s_.bodies, s_.joints, a.body, b.body)) {
     found.clearance = {kNeverTouches};
